@@ -13,6 +13,7 @@ INTERVAL = 10.0  # [s] between looks
 MANY = 20  # connections
 MUCH = 100_000  # blocks of memory that Python has allocated; a page takes some 15,000
 CALM = 3  # looks
+TABS = 100  # a closed tab leaves up to 0.1 MB of garbage
 GROWTH = 0.125  # of the number of blocks, since the last complete collection
 LARGE = 320_000  # [B]; more than the 256 KiB that asyncio allocates whenever it reads
 SPARE = 4_000_000  # [B]
@@ -25,8 +26,8 @@ class MemoryRelease:
     What `release_page` leaves of a tab refers to itself, so that only a collection finds it. That
     stops all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left
     by one collection is not examined by the next ones ("frozen"), until a complete one is made.
-    That is when a tab has been closed and no other one for a while, or when an eighth more is
-    allocated than after the last complete one.
+    That is when a tab has been closed and no other one for a while, when many tabs have been
+    closed, or when an eighth more is allocated than after the last complete one.
 
     Args:
         forget: deletes what is no longer needed; called at each look.
@@ -44,9 +45,10 @@ class MemoryRelease:
         ended, tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
         self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
         self._tabs_seen = tabs_ended
-        is_calm = tabs_ended > self._tabs_ended and self._calm >= CALM
+        left = tabs_ended - self._tabs_ended
+        is_due = left >= TABS or (left > 0 and self._calm >= CALM)
         blocks = sys.getallocatedblocks()
-        if is_calm or blocks > (1 + GROWTH) * self._after_complete:
+        if is_due or blocks > (1 + GROWTH) * self._after_complete:
             gc.unfreeze()
             self._collect()
             self._tabs_ended, self._after_complete = tabs_ended, self._blocks

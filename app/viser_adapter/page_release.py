@@ -37,7 +37,11 @@ def release_page(client: viser.ClientHandle) -> None:
     scene._handle_from_node_name.clear()
     scene._children_from_node_name.clear()
     connection = client._websock_connection
-    connection.get_message_buffer().remove_from_buffer(lambda _: True)
+    buffer = connection.get_message_buffer()
+    with buffer.buffer_lock:
+        buffer.message_from_id.clear()
+        buffer.id_from_redundancy_key.clear()
+        buffer.ids_from_entity_state_key.clear()
     # Not cleared, since viser may be looking up the handlers of a message.
     connection._incoming_handlers = defaultdict(list)
 
