@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,6 +35,7 @@ RING = ((0.85, 0.06, 0.85), (0.55, 0.06, 0.55))
 DOT = ((0.62, 0.06, 0.62), (0.42, 0.06, 0.42))
 
 
+@lru_cache(maxsize=32)  # for every page
 def fading(colour: palette.Colour, wall: palette.Colour, count: int = TRACE_SEGMENTS) -> np.ndarray:
     """Linear colours from nearly `wall` to `colour` along a trace, shape (count, 2, 3), uint8."""
     shares = 0.92 * (1.0 - np.linspace(0.0, 1.0, count + 1))

@@ -12,8 +12,9 @@ from threading import Thread
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
-from onpath.assets.messages import catalogue, languages
+from onpath.assets.messages import languages
 from onpath.lessons.course import Course
+from onpath.lessons.words import Words
 
 LATER = (
     "onpath.app.scene.strokes.sketch_board",
@@ -37,7 +38,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
         for name in LATER:
             import_module(name)
         for language in languages():
-            catalogue(language)
+            Words(language)("full.text", places=2)  # a plural, whose rules are imported with it
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()

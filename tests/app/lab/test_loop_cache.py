@@ -138,7 +138,7 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
     """Free and held: whoever comes after a while meets no interpreted loop."""
     warm_up(store, NO_LESSONS, rest=0.0).join(PATIENCE)
     finish(store)
-    assert all(name in sys.modules for name in LATER)
+    assert all(name in sys.modules for name in (*LATER, "babel"))
     lab = Lab(store)
     for commands in ([], [c.Hold(on=True)]):
         do(lab, *commands)
