@@ -11,32 +11,60 @@ from contextlib import contextmanager, suppress
 import viser
 
 from onpath.app.common.error_log import log_error
+from onpath.app.common.on_time import give_way
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
-REST = 2.0  # pause after a build, relative to its duration; sending it takes time as well
-LONG = 0.5  # [s]; a longer build has the same pause
+REST = 2.0  # rests of a build, relative to its duration; sending it takes time as well
+LONG = 0.5  # [s]; a longer build has the same rests
+CALM = 1.0  # [s] without a build, after which the next one need not rest before it is finished
+PATIENCE = 0.1  # [s] for which a part of a build waits at most while frames are late
 FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 
 
 class BuildLock:
-    """A lock, which may also be kept from the next thread for a while. Use it with `with`."""
+    """A lock for builds, which rest so that the simulation can go on. Use it with `with`.
+
+    A build that follows another one rests for as long as it works, part by part. When it is
+    finished, the lock is kept from the next thread for the remaining rest. While frames are late,
+    each part waits.
+    """
 
     def __init__(self) -> None:
         self._lock, self._free_at = threading.Lock(), 0.0
+        self._owner, self._follows = 0, False
+        self._since = self._worked = self._rested = 0.0
 
     def __enter__(self) -> None:
         self._lock.acquire()
         rest = self._free_at - time.monotonic()
         if rest > 0:
             time.sleep(rest)
+        give_way(PATIENCE)
+        self._owner, self._follows = threading.get_ident(), rest > -CALM
+        self._since, self._worked, self._rested = time.monotonic(), 0.0, 0.0
 
     def __exit__(self, *_: object) -> None:
+        self._owner = 0
         self._lock.release()
 
-    def pause(self, seconds: float) -> None:
-        """Make the next thread wait for so long from now. Call it while holding the lock."""
-        self._free_at = time.monotonic() + seconds
+    def breathe(self) -> None:
+        """Rest after a part of a build. Without effect in a thread that does not hold the lock."""
+        if self._owner != threading.get_ident():
+            return
+        part = time.monotonic() - self._since
+        self._worked += part
+        if self._follows and self._worked < LONG:
+            time.sleep(part)
+            self._rested += part
+        give_way(PATIENCE)
+        self._since = time.monotonic()
+
+    def finish(self) -> None:
+        """Make the next thread wait for the remaining rest. Call it while holding the lock."""
+        now = time.monotonic()
+        worked = min(self._worked + now - self._since, LONG)
+        self._free_at = now + REST * worked - self._rested
 
 
 one_at_a_time = BuildLock()
@@ -45,16 +73,12 @@ one_at_a_time = BuildLock()
 
 @contextmanager
 def in_turn() -> Iterator[None]:
-    """Build a page or part of one, one at a time and with a pause, however many tabs ask for it.
-
-    Only the next build waits for the end of the pause.
-    """
+    """Build a page or part of one, one at a time and with rests, however many tabs ask for it."""
     with one_at_a_time:
-        begun = time.monotonic()
         try:
             yield
         finally:
-            one_at_a_time.pause(REST * min(time.monotonic() - begun, LONG))
+            one_at_a_time.finish()
 
 
 class BuildQueue:

@@ -10,7 +10,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
-from onpath.app.page.build_queue import in_turn
+from onpath.app.page.build_queue import in_turn, one_at_a_time
 from onpath.app.page.first_minute import FirstMinute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
@@ -142,6 +142,7 @@ class Page:
         stage = stage_of(robot, DARK if self._desk.dark else LIGHT)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
+        one_at_a_time.breathe()
         drawn = self._client.scene, self._scene.stage, robot
         how = self._switches, self._rebuilds.submit, self._is_phone
         self._overlays = Overlays(*drawn, *how)

@@ -10,6 +10,7 @@ import viser
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
@@ -152,6 +153,7 @@ class PanelFactory:
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()
+        one_at_a_time.breathe()
         return [] if part is None else [part]
 
     def _editor(self, first: PageSnapshot, expanded: bool) -> Part:

@@ -1,18 +1,18 @@
 """Chooses how often the labs are drawn: less often, for all alike, when there are too many.
 
-Simulated time has priority, so the display slows down first: from 30 Hz to 24, 20 and 15 Hz
-while the thread is too busy, and further, at once, while its frames are late.
+Simulated time has priority, so the display slows down first: from 30 Hz to 24 and 22 Hz while the
+thread is too busy, and at once to 15 Hz, or less, while its frames are late.
 """
 
 from __future__ import annotations
 
 from math import inf
 
-STRIDES = (2.0, 2.5, 3.0, 4.0)  # frames of simulation per frame of display
-ENOUGH = (0.4, 0.65, 0.75)  # load up to which the first, second, third stride is chosen
-BUSY = (0.5, 0.8, 0.9)  # load that is too much for the first, second, third
+STRIDES = (2.0, 2.5, 2.75)  # frames of simulation per frame of display
+ENOUGH = (0.4, 0.65)  # load up to which the first, second stride is chosen
+BUSY = (0.5, 0.8)  # load that is too much for the first, second
 FADING = 1 / 60  # low-pass gain of the measured load, per frame
-BEHIND, HURRIED = 1 / 60, 8.0  # [s] of lateness from which this stride is used
+LATE = {1 / 20: 8.0, 1 / 30: 4.0}  # least stride from such a lateness on, [s]
 WORTH = 0.1  # share of time spent on drawing above which drawing less helps
 PATIENCE, CAUTION = 60, 300  # minimum frames between changes, to slower and to faster
 
@@ -32,7 +32,10 @@ class DisplayRate:
 
     def stride_when(self, late: float) -> float:
         """Stride for a frame that is `late` seconds late."""
-        return HURRIED if late > BEHIND and self._drawing > WORTH else self.stride
+        if self._drawing < WORTH:
+            return self.stride
+        least = next((stride for behind, stride in LATE.items() if late > behind), 0.0)
+        return max(self.stride, least)
 
     def note(self, busy: float, drawing: float, frame: float) -> None:
         """Record the time spent on a frame.

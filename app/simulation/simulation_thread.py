@@ -16,6 +16,7 @@ from concurrent.futures import Future
 from typing import Any, Protocol, TypeVar
 
 from onpath.app.common.error_log import log_error
+from onpath.app.common.on_time import note_lateness
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
@@ -29,6 +30,7 @@ FRAME = 1 / FRAMES  # [s]
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
+TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 SELDOM = (10_000, 5, 1_000)  # allocations before a collection, which stops all threads for 20 ms
 HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
@@ -243,10 +245,12 @@ class SimulationThread:
             now = self._clock()
             late = now - deadline
             self.frames.append((now, late))
+            note_lateness(late > TOLERATED)
             deadline = now + FRAME if late > LATEST else deadline + FRAME
             busy, drawing = self._frame(now - last, late, count, pace.stride_when(late))
             pace.note(busy, drawing, now - last)
             last, count = now, count + 1
+        note_lateness(False)
 
     def _frame(self, seconds: float, late: float, count: int, stride: float) -> tuple[float, float]:
         """Run one frame: each step for all labs, which is faster than lab by lab.

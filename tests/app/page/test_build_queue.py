@@ -15,7 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import build_queue, page
-from onpath.app.page.build_queue import FEW, LONG, REST
+from onpath.app.page.build_queue import FEW, LONG, REST, BuildLock
 from onpath.app.page.page import Page
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH
@@ -54,12 +54,20 @@ class Builds:
             self.done += 1
 
         monkeypatch.setattr(Page, "_build", build)
-        clock = SimpleNamespace(monotonic=lambda: self._time, sleep=self._rest)
-        monkeypatch.setattr(build_queue, "time", clock)
+        self.time_by_hand(monkeypatch)
         monkeypatch.setattr(build_queue.one_at_a_time, "_free_at", 0.0)
 
+    def time_by_hand(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Have the queue's time pass with builds, rests and `pass_` alone."""
+        clock = SimpleNamespace(monotonic=lambda: self._time, sleep=self._rest)
+        monkeypatch.setattr(build_queue, "time", clock)
+
+    def pass_(self, seconds: float) -> None:
+        self._time += seconds
+
     def _rest(self, seconds: float) -> None:
-        self.rests.append(seconds)
+        if seconds > 0:
+            self.rests.append(seconds)
         self._time += seconds
 
 
@@ -130,6 +138,38 @@ def test_pages_are_built_one_at_a_time_and_waiting_clients_are_told(
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 60)
         assert builds.most == 1
+
+
+def test_a_build_that_follows_another_rests_for_as_long_as_it_works(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """So the simulation gets the processor in between; a first build, and a short one, do not."""
+    lock, clock = BuildLock(), Builds()
+    clock.time_by_hand(monkeypatch)
+
+    def build() -> list[float]:
+        clock.rests.clear()
+        with lock:
+            for _ in range(3):
+                clock.pass_(0.01)
+                lock.breathe()
+            clock.pass_(0.01)
+            lock.finish()
+        return list(clock.rests)
+
+    clock.pass_(60.0)
+    assert build() == []
+    assert build() == pytest.approx([REST * 0.04, 0.01, 0.01, 0.01])
+    assert build() == pytest.approx([REST * 0.04 - 0.03, 0.01, 0.01, 0.01])
+    clock.pass_(60.0)
+    assert build() == []
+    other = threading.Thread(target=lock.breathe)  # of a thread that builds nothing
+    with lock:
+        clock.rests.clear()
+        clock.pass_(0.01)
+        other.start()
+        other.join()
+    assert not clock.rests
 
 
 def test_a_file_that_is_being_made_does_not_delay_the_page(

@@ -59,5 +59,5 @@ def test_display_is_as_often_as_the_stride_says_and_even(stride: float) -> None:
     for step in (stride, 5 * stride):
         turns = [frame for frame in range(1, 1201) if is_turn(frame, step)]
         gaps = {later - earlier for earlier, later in itertools.pairwise(turns)}
-        assert len(turns) == 1200 / step and gaps <= {math.floor(step), math.ceil(step)}
+        assert len(turns) == 1200 // step and gaps <= {math.floor(step), math.ceil(step)}
         assert all(is_turn(frame, stride) for frame in turns)

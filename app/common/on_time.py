@@ -1,0 +1,24 @@
+"""Whether the frames of the simulation are on time: long work in other threads gives way to them.
+
+An interpreter runs one thread at a time, so that work in other threads makes frames late.
+"""
+
+from __future__ import annotations
+
+from threading import Event
+
+_on_time = Event()
+_on_time.set()
+
+
+def note_lateness(late: bool) -> None:
+    """Note whether frames are late. The simulation thread calls this in every frame."""
+    if late:
+        _on_time.clear()
+    else:
+        _on_time.set()
+
+
+def give_way(most: float) -> bool:
+    """Wait until frames are on time, for at most so many seconds; returns whether they are."""
+    return _on_time.wait(most)
