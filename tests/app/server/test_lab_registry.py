@@ -166,10 +166,13 @@ def test_abandoned_lab_is_kept_for_a_while_and_then_dropped(desk: Desk) -> None:
 def test_the_number_of_waiting_labs_is_limited(desk: Desk) -> None:
     tabs = [desk.open(str(k)) for k in range(MOST_ABANDONED + 5)]
     assert len(desk.sessions) == MOST_ABANDONED + 5
-    for client, _ in tabs:
+    for client, entry in tabs:
+        entry.scheduled.lab.advance(0.1)
         desk.now += 0.1
         desk.sessions.leave(client)
     assert len(desk.sessions) == len(desk.simulation.labs) == MOST_ABANDONED
+    kept = [len(entry.scheduled.session.history) > 0 for _, entry in tabs]
+    assert kept == 5 * [False] + MOST_ABANDONED * [True]  # most of a lab's memory
     assert desk.open("0")[1] is not tabs[0][1]  # the oldest went
     assert desk.open(str(MOST_ABANDONED + 4))[1] is tabs[-1][1]
 

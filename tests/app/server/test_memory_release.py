@@ -12,7 +12,7 @@ import pytest
 
 from onpath.app.bench.raw_socket import knock
 from onpath.app.server import memory_release
-from onpath.app.server.memory_release import CALM, GROWTH, MANY, MemoryRelease
+from onpath.app.server.memory_release import CALM, GROWTH, MANY, TABS, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.secure_server import make_server
@@ -99,6 +99,23 @@ def test_many_tabs_that_are_closed_together_are_collected_once_no_other_one_is(
         assert left() is not None
     memory.look()
     assert left() is None
+
+
+def test_what_many_tabs_leave_is_collected_while_others_are_closed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for name in ("ended", "tabs_ended"):
+        monkeypatch.setattr(CountedConnection, name, getattr(CountedConnection, name))
+    memory, page, looks = MemoryRelease(lambda: None), Circle(), 0
+    CountedConnection.ended += MANY
+    memory.look()  # the page is in use
+    left = weakref.ref(page)
+    del page
+    while left() is not None:
+        CountedConnection.tabs_ended += TABS // 10
+        memory.look()
+        looks += 1
+    assert looks == 10
 
 
 def test_pages_that_are_built_anew_are_collected_although_nobody_leaves(
