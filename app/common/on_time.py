@@ -1,4 +1,4 @@
-"""Whether the frames of the simulation are on time: long work in other threads gives way to them.
+"""Whether the frames of the simulation are on time; long work in other threads waits for them.
 
 An interpreter runs one thread at a time, so that work in other threads makes frames late.
 """
@@ -19,6 +19,6 @@ def note_lateness(late: bool) -> None:
         _on_time.set()
 
 
-def give_way(most: float) -> bool:
+def wait_until_on_time(most: float) -> bool:
     """Wait until frames are on time, for at most so many seconds; returns whether they are."""
     return _on_time.wait(most)

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 import viser
 
 from onpath.app.common.error_log import log_error
-from onpath.app.common.on_time import give_way
+from onpath.app.common.on_time import wait_until_on_time
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
@@ -25,9 +25,8 @@ FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
 class BuildLock:
     """A lock for builds, which rest so that the simulation can go on. Use it with `with`.
 
-    A build that follows another one rests for as long as it works, part by part. When it is
-    finished, the lock is kept from the next thread for the remaining rest. While frames are late,
-    each part waits.
+    A build that soon follows another one rests after each part, for as long as the part took. The
+    next build waits for the rest that remains. Each part also waits while frames are late.
     """
 
     def __init__(self) -> None:
@@ -40,7 +39,7 @@ class BuildLock:
         rest = self._free_at - time.monotonic()
         if rest > 0:
             time.sleep(rest)
-        give_way(PATIENCE)
+        wait_until_on_time(PATIENCE)
         self._owner, self._follows = threading.get_ident(), rest > -CALM
         self._since, self._worked, self._rested = time.monotonic(), 0.0, 0.0
 
@@ -48,7 +47,7 @@ class BuildLock:
         self._owner = 0
         self._lock.release()
 
-    def breathe(self) -> None:
+    def rest(self) -> None:
         """Rest after a part of a build. Without effect in a thread that does not hold the lock."""
         if self._owner != threading.get_ident():
             return
@@ -57,7 +56,7 @@ class BuildLock:
         if self._follows and self._worked < LONG:
             time.sleep(part)
             self._rested += part
-        give_way(PATIENCE)
+        wait_until_on_time(PATIENCE)
         self._since = time.monotonic()
 
     def finish(self) -> None:

@@ -142,7 +142,7 @@ class Page:
         stage = stage_of(robot, DARK if self._desk.dark else LIGHT)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
-        one_at_a_time.breathe()
+        one_at_a_time.rest()
         drawn = self._client.scene, self._scene.stage, robot
         how = self._switches, self._rebuilds.submit, self._is_phone
         self._overlays = Overlays(*drawn, *how)

@@ -153,7 +153,7 @@ class PanelFactory:
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()
-        one_at_a_time.breathe()
+        one_at_a_time.rest()
         return [] if part is None else [part]
 
     def _editor(self, first: PageSnapshot, expanded: bool) -> Part:

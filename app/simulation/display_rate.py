@@ -34,8 +34,7 @@ class DisplayRate:
         """Stride for a frame that is `late` seconds late."""
         if self._drawing < WORTH:
             return self.stride
-        least = next((stride for behind, stride in LATE.items() if late > behind), 0.0)
-        return max(self.stride, least)
+        return max([self.stride, *(least for behind, least in LATE.items() if late > behind)])
 
     def note(self, busy: float, drawing: float, frame: float) -> None:
         """Record the time spent on a frame.

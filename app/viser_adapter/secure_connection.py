@@ -36,10 +36,10 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.FileTransferStartUpload,
     wire.FileTransferPart,
 )
-GESTURES = (wire.ViewerCameraMessage, wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
-"""Handled at once: a browser may send many in succession, and no handler of them waits."""
 CHANGES = (wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
-"""What a lab may have to compute for; the rate of each kind is limited."""
+"""They may make a lab compute; the rate of each kind is limited."""
+GESTURES = (wire.ViewerCameraMessage, *CHANGES)
+"""Handled at once: a browser may send many in succession, and no handler of them waits."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
@@ -153,7 +153,7 @@ class SecureConnection(CountedConnection):
         """Count all frames, including pings and fragments, and drop those that exceed the rate."""
         if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
             if not self._allowance.take(1 + len(event.data) / LONG):
-                self._flood(f"{self._limits.messages_per_second:g} messages")
+                self._close_flood(f"{self._limits.messages_per_second:g} messages")
             if self._closing is not None:
                 return
             if event.fin and event.opcode in _DATA:
@@ -164,7 +164,7 @@ class SecureConnection(CountedConnection):
             self._is_next = self._is_next and event.opcode not in _DATA
         super().process_event(event)
 
-    def _flood(self, most: str) -> None:
+    def _close_flood(self, most: str) -> None:
         """Close the connection, since at most `most` per second are allowed."""
         if self._closing is not None:
             return
@@ -181,7 +181,7 @@ class SecureConnection(CountedConnection):
         message = self._forms.decoded(raw)
         allowance = self._changes.get(type(message))
         if allowance is not None and not allowance.take():
-            self._flood(f"{self._limits.changes_per_second:g} changes")
+            self._close_flood(f"{self._limits.changes_per_second:g} changes")
             raise InvalidMessage("a flood of changes")
         return message
 

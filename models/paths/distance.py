@@ -100,14 +100,14 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
     return float(found[0][0])
 
 
-def closest_parameters(frame: Frame, curve: Curve, y: Array, samples: int = 256) -> Array:
+def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
     """The same of several y, shape (n, p) -> (n,), [rad], by Newton steps as in `path_distance`.
 
     On an open curve, θ is between its ends.
     """
     if curve.dimension == 2:
         frame, y = Plane(), frame.planar(y)
-    row, theta, distance = _minima(frame, curve, y, samples)
+    row, theta, distance = _minima(frame, curve, y, 256)
     own = [np.flatnonzero(row == number) for number in range(len(y))]
     found = np.array([theta[each[distance[each].argmin()]] for each in own])
     return found if curve.closed else np.clip(found, -np.pi, np.pi)

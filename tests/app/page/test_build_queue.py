@@ -152,7 +152,7 @@ def test_a_build_that_follows_another_rests_for_as_long_as_it_works(
         with lock:
             for _ in range(3):
                 clock.pass_(0.01)
-                lock.breathe()
+                lock.rest()
             clock.pass_(0.01)
             lock.finish()
         return list(clock.rests)
@@ -163,7 +163,7 @@ def test_a_build_that_follows_another_rests_for_as_long_as_it_works(
     assert build() == pytest.approx([REST * 0.04 - 0.03, 0.01, 0.01, 0.01])
     clock.pass_(60.0)
     assert build() == []
-    other = threading.Thread(target=lock.breathe)  # of a thread that builds nothing
+    other = threading.Thread(target=lock.rest)  # of a thread that builds nothing
     with lock:
         clock.rests.clear()
         clock.pass_(0.01)

@@ -11,7 +11,7 @@ from math import ceil
 
 import pytest
 
-from onpath.app.common.on_time import give_way
+from onpath.app.common.on_time import wait_until_on_time
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
@@ -206,14 +206,14 @@ def test_long_work_in_other_threads_gives_way_while_frames_are_late() -> None:
     on_time = list[bool]()
 
     def cost(frame: int) -> float:
-        on_time.append(give_way(0.0))
+        on_time.append(wait_until_on_time(0.0))
         return 0.05 if frame == 100 else 0.004
 
     thread, *_ = simulated(4.0, cost)
     assert on_time == [late <= TOLERATED for late in thread.lateness]
     assert 1 <= on_time.count(False) <= 5
     simulated(1.0, lambda _: 2.5 * FRAME)
-    assert give_way(0.0)  # nobody waits for a thread that has stopped
+    assert wait_until_on_time(0.0)  # nobody waits for a thread that has stopped
 
 
 def test_late_frames_are_drawn_as_usual_where_drawing_costs_nothing() -> None:
