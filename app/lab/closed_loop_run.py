@@ -188,6 +188,10 @@ class ClosedLoopRun:
             self.max_distance if largest is None else largest,
         )
 
+    def leave_others(self) -> None:
+        """Go on in arrays of its own, without the loops that were simulated together with it."""
+        self._change()
+
     def fields(self) -> dict[str, np.ndarray]:
         """Views of the state by name."""
         return self._kernel.state.unpack(self.state)
@@ -207,7 +211,7 @@ class ClosedLoopRun:
         assert self._inputs is not None
         self._recorded = self.settings  # those of the input
         size, rest = self._kernel.changed, self._kernel.state.size - self._kernel.changed
-        return Input(self.kind, self.settings, frozen, size, rest, self._inputs[0])
+        return Input(self.bench, self.kind, self.settings, frozen, size, rest, self._inputs[0])
 
     def loop(self) -> Loop:
         """The fastest loop of its kind available now."""

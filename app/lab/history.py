@@ -235,7 +235,7 @@ def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:
     """Of each loop: sizes of the recorded part of its state, of its state, and of its record."""
     return [
         (own.size, states.size, states.records.shape[1])
-        for (states, _), own in zip(frame.places, frame.inputs.of.values(), strict=True)
+        for (states, _), own in zip(frame.places, frame.inputs.of, strict=True)
     ]
 
 

@@ -24,6 +24,14 @@ def look_back(session: Session, ago: float) -> None:
     session.viewing = session.time - min(ago, session.history.span())
 
 
+def forget_history(session: Session) -> None:
+    """Delete the history, and leave the arrays that hold the last frame of other labs, too."""
+    session.history.clear()
+    for run in session.runs.values():
+        run.leave_others()
+    session.instant()  # refers to the runs' arrays
+
+
 def go_on(session: Session) -> tuple[float, float] | None:
     """Continue from the viewed instant; the later history is discarded.
 

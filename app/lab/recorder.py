@@ -32,10 +32,9 @@ class Recorder:
         Args:
             begun: `ClosedLoopRun.place` of the runs at their beginning.
         """
-        inputs = [run.input() for run in runs]
+        inputs = tuple(run.input() for run in runs)
         if self._inputs is None or not self._inputs.are(ticks.curve, ticks.dt, inputs):
-            of = {run.bench: own for run, own in zip(runs, inputs, strict=True)}
-            self._inputs = Inputs(ticks.curve, ticks.dt, of)
+            self._inputs = Inputs(ticks.curve, ticks.dt, inputs)
         return HistoryFrame(ticks.time, ticks.count, self._inputs, begun)
 
 

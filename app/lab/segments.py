@@ -26,6 +26,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     settings differ from earlier ones, and is not examined for garbage; nothing in it refers to it.
 
     Attributes:
+        bench: where the robot is.
         kind: of the loop.
         base: settings of an earlier input, or its own.
         frozen: whether the robot has diverged and stands still.
@@ -35,6 +36,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         places, values: where the settings differ from `base`, uint16, and how, float64.
     """
 
+    bench: str
     kind: Kind
     base: np.ndarray
     frozen: bool
@@ -61,8 +63,10 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         places = np.flatnonzero(base.view(np.int64) != self.base.view(np.int64))
         if len(places) > FEW:
             return self
-        given = places.astype(np.uint16).tobytes(), self.base[places].tobytes()
-        return replace(self, base=base, places=given[0], values=given[1])
+        where = places.astype(np.uint16).tobytes()
+        if where == earlier.places:  # as in most frames of a pull: stored once
+            where = earlier.places
+        return replace(self, base=base, places=where, values=self.base[places].tobytes())
 
 
 class Inputs(Struct, frozen=True, eq=False, gc=False):
@@ -71,17 +75,17 @@ class Inputs(Struct, frozen=True, eq=False, gc=False):
     Attributes:
         curve: the path.
         dt: length of a tick, [s].
-        of: inputs of the robots, by bench.
+        of: inputs of the robots.
     """
 
     curve: Curve
     dt: float
-    of: dict[str, Input]
+    of: tuple[Input, ...]
 
     def are(self, curve: Curve, dt: float, of: Iterable[Input]) -> bool:
         """Whether the inputs are the given ones."""
         same = self.curve is curve and self.dt == dt
-        return same and all(map(is_, self.of.values(), of))
+        return same and all(map(is_, self.of, of))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,9 +201,9 @@ def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     """Make a segment from one row of the columns."""
     inputs: Inputs = columns["inputs"][row]
     states, end, drives = columns["state"][row], 0, dict[str, Drive]()
-    for (bench, one), most in zip(inputs.of.items(), columns["most"][row].tolist(), strict=True):
+    for one, most in zip(inputs.of, columns["most"][row].tolist(), strict=True):
         begin, end = end, end + one.size
         state = np.concatenate([states[begin:end], np.zeros(one.rest)])
-        drives[bench] = Drive(one.kind, state, one.settings, one.frozen, most, one.parameters)
+        drives[one.bench] = Drive(one.kind, state, one.settings, one.frozen, most, one.parameters)
     time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
     return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())

@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import Throttle
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.looking_back import forget_history
 from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
 from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.records import NotKept
@@ -28,7 +29,7 @@ log = logging.getLogger(__name__)
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
 KEPT = 15 * 60.0  # [s] that an abandoned session is kept
-HISTORY_KEPT = 60.0  # [s] that its history is kept, which is most of its memory
+HISTORY_KEPT = 30.0  # [s] that its history is kept, which is most of its memory
 MOST_ABANDONED = 60
 
 
@@ -256,14 +257,14 @@ class LabRegistry:
             left = [e for e in self._entries.values() if e.client is None]
             left = [e for e in left if self.clock() - e.left > HISTORY_KEPT]
         sessions = [e.scheduled.session for e in left]
-        histories = [s.history for s in sessions if s.viewing is None and len(s.history)]
+        outdated = [s for s in sessions if s.viewing is None and len(s.history)]
 
-        def clear() -> None:
-            for history in histories:
-                history.clear()
+        def forget() -> None:
+            for session in outdated:
+                forget_history(session)
 
-        if histories:
-            self.simulation.call(clear)
+        if outdated:
+            self.simulation.call(forget)
 
     def _drop_old(self) -> None:
         idle = [e for e in self._entries.values() if e.client is None]

@@ -26,7 +26,7 @@ from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
-MOST_TYPED = 16  # kernels of typed laws that are kept here
+MOST, MOST_TYPED = 32, 16  # kernels, 0.2 MB each, and those of typed laws, that are kept here
 NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
 
 
@@ -119,7 +119,7 @@ def _built(robot: Robot, kind: Kind) -> Kernel:
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
 
 
-_kernel, _typed_kernel = lru_cache(maxsize=256)(_built), lru_cache(maxsize=MOST_TYPED)(_built)
+_kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST_TYPED)(_built)
 """Apart, so that no number of typed laws displaces the kernels of the registry's."""
 
 

@@ -250,7 +250,7 @@ def fourier(constant: Array, cosine: Array, sine: Array) -> Curve:
     for _ in range(ORDERS - 1):
         a, b = k * b, -k * a
         orders.append(np.vstack([np.zeros(d), a, b]))
-    return Curve(True, np.stack(orders))
+    return Curve(True, _by_terms(orders))
 
 
 def chebyshev_curve(coefficients: Array) -> Curve:
@@ -265,7 +265,12 @@ def chebyshev_curve(coefficients: Array) -> Curve:
         derived = chebyshev.chebder(coefficients, order) if order else coefficients
         table[: len(derived)] = derived / np.pi**order
         orders.append(table)
-    return Curve(False, np.stack(orders))
+    return Curve(False, _by_terms(orders))
+
+
+def _by_terms(orders: list[Array]) -> Array:
+    """The series of a curve from its orders, in memory as `Curve.table` needs it without a copy."""
+    return np.stack(orders, axis=1).transpose(1, 0, 2)
 
 
 def terms_of(closed: bool) -> int:

@@ -23,14 +23,14 @@ from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
-MOST = 64  # loops that are kept besides those in use; 0.2 to 0.5 MB each
+MOST = 16  # loops that are kept, those used last; 0.2 to 0.5 MB each
 
 
 class LoopCache:
     """Loops by robot and kind. `get` never waits for compilation.
 
-    Of the registry's laws, the loops that labs use are shared, and of the others those used last
-    are kept. For those of typed laws see `TypedLoops`.
+    Of the registry's laws, the loops that labs use are shared, and those compiled that were used
+    last are kept, too. For those of typed laws see `TypedLoops`.
 
     Args:
         at_once: whether loops of typed laws are made while they are asked for, not in the
@@ -43,7 +43,7 @@ class LoopCache:
 
     def __init__(self, at_once: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
         self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
-        self._kept: OrderedDict[Key, Loop] = OrderedDict()  # the one used last comes last
+        self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the one used last comes last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile", run_anywhere)
@@ -58,13 +58,14 @@ class LoopCache:
         key = (robot.core, kind)
         if is_text(kind.controller):
             return self._typed.find(key) or known or InterpretedLoop(kernel_of(robot, kind))
-        found = self._find(key) or self._keep(key, InterpretedLoop(kernel_of(robot, kind)))
+        found = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
         return found
 
     def kernel(self, robot: Robot, kind: Kind) -> Kernel:
         """The kernel of a loop; built now if that of a typed law is not ready."""
-        made = self._typed.find((robot.core, kind)) if is_text(kind.controller) else None
+        find = self._typed.find if is_text(kind.controller) else self._find
+        made = find((robot.core, kind))
         return kernel_of(robot, kind) if made is None else made.kernel
 
     def is_ready(self, robot: Robot, kind: Kind) -> bool:
@@ -120,15 +121,22 @@ class LoopCache:
     def _find(self, key: Key) -> Loop | None:
         """The loop that was made, which then counts as the one used last."""
         with self._lock:
-            found = self._made.get(key)
-            return found if found is None else self._keep(key, found)
+            if key in self._kept:
+                self._kept.move_to_end(key)
+            return self._made.get(key)
 
-    def _keep(self, key: Key, loop: Loop) -> Loop:
+    def _share(self, key: Key, loop: Loop) -> Loop:
+        """Let all labs use a loop, and keep it if it is compiled.
+
+        An interpreted one is not kept: those of labs that wait for compiled ones, and ask in every
+        frame, would displace a compiled one before its lab asks again.
+        """
         with self._lock:
-            self._made[key] = self._kept[key] = loop
-            self._kept.move_to_end(key)
-            if len(self._kept) > MOST:
-                self._kept.popitem(last=False)
+            self._made[key] = loop
+            if isinstance(loop, CompiledLoop):
+                self._kept[key] = loop
+                if len(self._kept) > MOST:
+                    self._kept.popitem(last=False)
         return loop
 
     def _compile_next(self) -> None:
@@ -139,9 +147,9 @@ class LoopCache:
             self._making.add(key)
         try:
             kernel = kernel_of(*key)
-            if self._find(key) is None:
-                self._keep(key, InterpretedLoop(kernel))
-            self._keep(key, translate_loop(kernel))
+            meanwhile = self._find(key) or self._share(key, InterpretedLoop(kernel))
+            self._share(key, translate_loop(kernel))
+            del meanwhile  # nothing else refers to it, unless a lab uses it
             prepare_speed_limit(key[0])
         except Exception as error:  # the lab continues with interpreted loops
             log.warning("cannot compile a loop, the interpreted one goes on: %s", error)

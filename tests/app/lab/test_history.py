@@ -46,7 +46,7 @@ def add(
 @lru_cache
 def inputs_of(curve: Curve, dt: float, settings: int, frozen: bool) -> Inputs:
     """The same object for the same inputs."""
-    return Inputs(curve, dt, {FOLLOWER: Input(KIND, np.full(3, float(settings)), frozen, 1)})
+    return Inputs(curve, dt, (Input(FOLLOWER, KIND, np.full(3, float(settings)), frozen, 1),))
 
 
 def new_history() -> History:
@@ -127,7 +127,7 @@ def test_a_minute_takes_little_memory() -> None:
 def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
     names, rows = list(lab.session.runs), list(one.sample)
-    inputs = Inputs(one.curve, one.dt, {name: lab.session.runs[name].input() for name in names})
+    inputs = Inputs(one.curve, one.dt, tuple(lab.session.runs[name].input() for name in names))
     states = [lab.session.runs[name].state for name in names]
     places = [single(state, row, 0.0, 0.0) for state, row in zip(states, rows, strict=True)]
     tracemalloc.start()
@@ -377,7 +377,7 @@ def test_an_input_stores_its_settings_exactly(
     """To the last bit, also the sign of zero, whether many of them have changed or few."""
     base, later = np.array(before), np.array(before)
     later[list(changes)] = list(changes.values())
-    made = Input(KIND, later, False, 1).based_on(Input(KIND, base, False, 1))
+    made = Input(FOLLOWER, KIND, later, False, 1).based_on(Input(FOLLOWER, KIND, base, False, 1))
     assert made.settings.tobytes() == later.tobytes()
     if len(changes) <= FEW:
         assert made.base is base
@@ -393,4 +393,5 @@ def test_inputs_that_differ_in_the_push_alone_share_their_settings() -> None:
     drives = [s.drives[FOLLOWER] for s in lab.session.history.all()[-4:]]
     assert len({d.settings.tobytes() for d in drives}) == 4
     inputs = lab.session.history.copy().columns["inputs"][-4:]
-    assert len({id(each.of[FOLLOWER].base) for each in inputs}) == 1
+    own = [one for each in inputs for one in each.of if one.bench == FOLLOWER]
+    assert len({id(one.base) for one in own}) == len({id(one.places) for one in own}) == 1

@@ -46,15 +46,19 @@ def store() -> Iterator[LoopCache]:
 
 
 class Gate(threading.Event):
-    """Nothing is translated before it is open; `passed` has what was."""
+    """Nothing is translated for a store before it is open; `passed` has what was."""
 
-    def __init__(self, translate: Callable[[Kernel], CompiledLoop]) -> None:
+    def __init__(self, translate: Callable[[Kernel], CompiledLoop], store: LoopCache) -> None:
         super().__init__()
+        assert store._pool is not None
+        self._threads = store._pool._threads
         self.reached = threading.Event()
         self.passed: list[Kernel] = []
         self._translate = translate
 
     def __call__(self, kernel: Kernel) -> CompiledLoop:
+        if threading.current_thread() not in self._threads:  # another test's store
+            return self._translate(kernel)
         self.reached.set()
         assert self.wait(PATIENCE)
         self.passed.append(kernel)
@@ -64,7 +68,7 @@ class Gate(threading.Event):
 @pytest.fixture
 def gate(store: LoopCache, monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
     """It is opened before the store waits for what is being made."""
-    made = Gate(loop_store.translate_loop)
+    made = Gate(loop_store.translate_loop, store)
     monkeypatch.setattr(loop_store, "translate_loop", made)
     yield made
     made.set()
@@ -183,6 +187,32 @@ def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept(store:
     gc.collect()
     assert store.get(robot, mine) is used
     assert len(store._kept) <= MOST and len(seen) <= MOST + 1  # the loop of the last turn
+
+
+@pytest.mark.usefixtures("cheap")
+def test_labs_that_wait_for_more_loops_than_are_kept_get_them(
+    store: LoopCache, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Loops that labs go on with meanwhile do not displace those that have been compiled."""
+    turn, made = threading.Semaphore(0), list[int]()
+
+    def translate(kernel: Kernel) -> Loop:
+        """Less than one loop is compiled in a frame."""
+        assert turn.acquire(timeout=PATIENCE)
+        loop = Quick(kernel)
+        made.append(id(loop))
+        return loop
+
+    monkeypatch.setattr(loop_store, "translate_loop", translate)
+    robot = rigid_five_bar()
+    used: dict[Kind, Loop] = {kind: store.get(robot, kind) for kind in some_kinds(2 * MOST)}
+    for frame in range(2 * MOST):
+        turn.release()
+        wait_for(lambda n=frame: made[n:] and made[n] in map(id, store._made.values()), PATIENCE)
+        for kind, loop in reversed(used.items()):
+            if not isinstance(loop, Quick):
+                used[kind] = store.get(robot, kind, loop)
+    assert all(isinstance(loop, Quick) for loop in used.values())
 
 
 def test_settings_changed_without_end_do_not_hold_up_another_lab(
