@@ -201,11 +201,15 @@ class ClosedLoopRun:
         return self.log.unpack(self.row)
 
     def input(self) -> Input:
-        """Current input, for the history; the same object until something changes."""
+        """Current input, for the history; the same object until more than `values` changes."""
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
-            self._input = self._made_input(frozen).based_on(self._input)
+            self._input = self._made_input(frozen).like(self._input)
         return self._input
+
+    def values(self) -> bytes:
+        """Values of the settings that the last `input` lacks, float64."""
+        return self.settings[self._input.places].tobytes()
 
     def _made_input(self, frozen: bool) -> Input:
         assert self._inputs is not None

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from itertools import groupby
 from math import prod
 from mmap import ACCESS_COPY, mmap
+from operator import gt
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ class History:
         """Add the frame just simulated. Frames older than a minute are dropped eventually."""
         with self._lock:
             waiting = self._waiting
-            if waiting and waiting[-1].inputs is frame.inputs:
+            if waiting and frame.has_inputs_of(waiting[-1]):
                 together = waiting[-1].ticks + frame.ticks
                 if together <= LONGEST:
                     waiting[-1] = replace(waiting[-1], ticks=together)
@@ -94,14 +95,18 @@ class History:
         states, rows, distances, most = _columns_of(frames)
         samples = self._sample(rows.reshape(-1, rows.shape[-1]), distances.ravel())
         samples = samples.reshape(*distances.shape, -1)
-        room = self._columns["state"][self._end :].shape if self._columns else (0, 0)
-        if len(frames) > room[0] or states.shape[1] > room[1]:
-            self._make_room(len(frames), states.shape[1], samples.shape[1:])
+        values = _values_of(frames)
+        widths = states.shape[1], values.shape[1]
+        room = len(self._columns["time"]) - self._end if self._columns else 0
+        if len(frames) > room or any(map(gt, widths, self._widths())):
+            self._make_room(len(frames), widths, samples.shape[1:])
         columns, place = self._columns, slice(self._end, self._end + len(frames))
         columns["time"][place] = [frame.time for frame in frames]
         columns["ticks"][place] = [frame.ticks for frame in frames]
         columns["inputs"][place] = [frame.inputs for frame in frames]
-        columns["state"][place, : states.shape[1]] = states
+        columns["values"][place, : widths[1]] = values
+        columns["values"][place, widths[1] :] = 0.0
+        columns["state"][place, : widths[0]] = states
         columns["most"][place] = most
         columns["sample"][place] = samples
         self._end = place.stop
@@ -161,20 +166,26 @@ class History:
         times = self._columns["time"][self._begin : self._end]
         return self._begin + int(times.searchsorted(time, side))
 
-    def _make_room(self, frames: int, width: int, sample: tuple[int, ...]) -> None:
+    def _widths(self) -> tuple[int, int]:
+        """Lengths of the rows of states and of values."""
+        columns = self._columns
+        return (columns["state"].shape[1], columns["values"].shape[1]) if columns else (0, 0)
+
+    def _make_room(self, frames: int, widths: tuple[int, int], sample: tuple[int, ...]) -> None:
         """Make free rows at the end: merge older rows, and enlarge the arrays if necessary.
 
         Args:
-            width: length of the states of the next rows; all are padded to the longest.
+            widths: lengths of the states and of the values of the next rows; all are padded to the
+                longest.
             sample: shape of a sample, (robots, fields).
         """
         kept, old = self._kept(), self._columns
-        size, widest = old["state"].shape if old else (0, 0)
+        size, widest = len(old.get("time", ())), self._widths()
         if len(kept):
             old["ticks"][kept] = np.add.reduceat(old["ticks"][: self._end], kept)
         rows = max(size + MORE, FIRST) if len(kept) + frames > FULL * size else size
-        if rows > size or width > widest:
-            self._columns = _empty_columns(rows, max(width, widest), sample)
+        if rows > size or any(map(gt, widths, widest)):
+            self._columns = _empty_columns(rows, tuple(map(max, widths, widest)), sample)
         for name, column in old.items():
             part = tuple(map(slice, (len(kept), *column.shape[1:])))
             self._columns[name][part] = column[kept]
@@ -188,9 +199,10 @@ class History:
             return np.zeros(0, dtype=int)
         inside = slice(self._begin, self._end)
         times, ticks, inputs = (self._columns[n][inside] for n in ("time", "ticks", "inputs"))
+        values = self._columns["values"][inside].view(np.int64)
         ends = times + ticks * np.array([each.dt for each in inputs])
         joins = (inputs[1:] == inputs[:-1]) & (np.abs(times[1:] - ends[:-1]) < 1e-6)
-        joins &= times[1:] < times[-1] - RECENT
+        joins &= (values[1:] == values[:-1]).all(axis=1) & (times[1:] < times[-1] - RECENT)
         kept, joined, last = np.ones(len(times), dtype=bool), 0, -1
         for row in (1 + np.flatnonzero(joins)).tolist():
             joined = joined if row == last + 1 else int(ticks[row - 1])
@@ -205,20 +217,23 @@ class History:
         return columns["time"][row] + columns["ticks"][row] * columns["inputs"][row].dt
 
 
-def _empty_columns(rows: int, width: int, sample: tuple[int, ...]) -> dict[str, np.ndarray]:
+def _empty_columns(
+    rows: int, widths: tuple[int, ...], sample: tuple[int, ...]
+) -> dict[str, np.ndarray]:
     """Columns for some segments, filled with zeros.
 
     The numbers are in memory of their own, not in the heap: what is not used takes none, and the
     system takes it back at once when it is free.
 
     Args:
-        width: length of the states.
+        widths: lengths of the states and of the values.
         sample: shape of a sample, (robots, fields).
     """
     kinds = {
         "time": (np.float64, (rows,)),
         "ticks": (np.int64, (rows,)),
-        "state": (np.float64, (rows, width)),
+        "values": (np.float64, (rows, widths[1])),
+        "state": (np.float64, (rows, widths[0])),
         "most": (np.float64, (rows, sample[0])),
         "sample": (np.float32, (rows, *sample)),
     }
@@ -229,6 +244,13 @@ def _empty_columns(rows: int, width: int, sample: tuple[int, ...]) -> dict[str, 
     for part, (name, (kind, shape)) in zip(parts, kinds.items(), strict=True):
         columns[name] = part.view(kind).reshape(shape)
     return columns
+
+
+def _values_of(frames: Sequence[HistoryFrame]) -> Array:
+    """`HistoryFrame.values` of all frames, padded with zeros to the longest, a row for each."""
+    size = max(len(frame.values) for frame in frames)
+    padded = b"".join([frame.values.ljust(size, b"\0") for frame in frames])
+    return np.frombuffer(padded).reshape(len(frames), size // 8)
 
 
 def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:

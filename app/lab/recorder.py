@@ -35,7 +35,8 @@ class Recorder:
         inputs = tuple(run.input() for run in runs)
         if self._inputs is None or not self._inputs.are(ticks.curve, ticks.dt, inputs):
             self._inputs = Inputs(ticks.curve, ticks.dt, inputs)
-        return HistoryFrame(ticks.time, ticks.count, self._inputs, begun)
+        values = b"".join([run.values() for run in runs])
+        return HistoryFrame(ticks.time, ticks.count, self._inputs, begun, values)
 
 
 class CurrentInstant:

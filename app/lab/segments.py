@@ -16,24 +16,26 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
-FEW = 8  # settings that are stored one by one
+FEW = 8  # settings whose values are stored apart from the others
+NONE = np.zeros(0, np.uint16)
 
 
 class Input(Struct, frozen=True, eq=False, gc=False):
-    """The input of one robot; the same object until something changes.
+    """The input of one robot, but for the values of some settings.
 
-    While somebody pulls, a lab makes one in every frame. Therefore it stores only where its
-    settings differ from earlier ones, and is not examined for garbage; nothing in it refers to it.
+    While somebody pulls, settings change in every frame, and always the same few. Their values are
+    stored apart, so that this remains the same object. Not examined for garbage; nothing in it
+    refers to it.
 
     Attributes:
         bench: where the robot is.
         kind: of the loop.
-        base: settings of an earlier input, or its own.
+        base: settings, but for those at `places`.
         frozen: whether the robot has diverged and stands still.
         size: length of the part of the loop's state that it changes, which is recorded.
-        parameters: with which the robot was made, None if that does not matter.
         rest: length of the rest, which a loop of another kind changes; restored as 0.
-        places, values: where the settings differ from `base`, uint16, and how, float64.
+        parameters: with which the robot was made, None if that does not matter.
+        places: indices of at most `FEW` settings whose values are stored apart.
     """
 
     bench: str
@@ -43,34 +45,49 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     size: int
     rest: int = 0
     parameters: Parameters | None = None
-    places: bytes = b""
-    values: bytes = b""
+    places: np.ndarray = NONE
 
-    @property
-    def settings(self) -> Array:
-        """Settings of the loop."""
-        if not self.places:
+    def settings(self, values: Array) -> Array:
+        """Settings of the loop.
+
+        Args:
+            values: of the settings at `places`, shape (places,).
+        """
+        if not len(self.places):
             return self.base
         settings = self.base.copy()
-        settings[np.frombuffer(self.places, np.uint16)] = np.frombuffer(self.values)
+        settings[self.places] = values
         return settings
 
-    def based_on(self, earlier: Input) -> Input:
-        """This input, with the base of an earlier one if its settings differ in few places."""
-        base = earlier.base
-        if base.shape != self.base.shape:
+    def like(self, earlier: Input) -> Input:
+        """The same input with the base of an earlier one, or the earlier one if that says the same.
+
+        If the settings of this one, which has no places, differ from that base in many places, it
+        remains as it is.
+        """
+        if earlier.base.shape != self.base.shape:
             return self
-        places = np.flatnonzero(base.view(np.int64) != self.base.view(np.int64))
-        if len(places) > FEW:
-            return self
-        where = places.astype(np.uint16).tobytes()
-        if where == earlier.places:  # as in most frames of a pull: stored once
-            where = earlier.places
-        return replace(self, base=base, places=where, values=self.base[places].tobytes())
+        differs = earlier.base.view(np.int64) != self.base.view(np.int64)
+        differs[earlier.places] = False
+        places = earlier.places
+        if differs.any():
+            differs[earlier.places] = True
+            places = np.flatnonzero(differs).astype(np.uint16)
+        elif self._is_like(earlier):
+            return earlier
+        return self if len(places) > FEW else replace(self, base=earlier.base, places=places)
+
+    def _is_like(self, other: Input) -> bool:
+        """Whether they are equal but for their settings."""
+        return (
+            self.parameters is other.parameters
+            and (self.bench, self.frozen, self.size) == (other.bench, other.frozen, other.size)
+            and (self.kind, self.rest) == (other.kind, other.rest)
+        )
 
 
 class Inputs(Struct, frozen=True, eq=False, gc=False):
-    """All inputs of a segment. Not examined for garbage, as `Input`.
+    """All inputs of a segment, but for the values of some settings; see `Input`.
 
     Attributes:
         curve: the path.
@@ -134,14 +151,20 @@ class HistoryFrame(Struct, frozen=True, eq=False):
     Attributes:
         time: at the beginning, [s].
         ticks: number of ticks.
-        inputs: the same object until something changes.
+        inputs: the same object until something else than `values` changes.
         places: of each robot's closed loop, at the beginning.
+        values: of the settings that `inputs` lacks, of all robots, float64.
     """
 
     time: float
     ticks: int
     inputs: Inputs
     places: Sequence[Place]
+    values: bytes = b""
+
+    def has_inputs_of(self, other: HistoryFrame) -> bool:
+        """Whether the inputs of two frames are the same."""
+        return self.inputs is other.inputs and self.values == other.values
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -200,10 +223,11 @@ class HistoryCopy:
 def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     """Make a segment from one row of the columns."""
     inputs: Inputs = columns["inputs"][row]
-    states, end, drives = columns["state"][row], 0, dict[str, Drive]()
+    states, values, drives = columns["state"][row], columns["values"][row], dict[str, Drive]()
     for one, most in zip(inputs.of, columns["most"][row].tolist(), strict=True):
-        begin, end = end, end + one.size
-        state = np.concatenate([states[begin:end], np.zeros(one.rest)])
-        drives[one.bench] = Drive(one.kind, state, one.settings, one.frozen, most, one.parameters)
+        own, states = states[: one.size], states[one.size :]
+        given, values = values[: len(one.places)], values[len(one.places) :]
+        state, settings = np.concatenate([own, np.zeros(one.rest)]), one.settings(given)
+        drives[one.bench] = Drive(one.kind, state, settings, one.frozen, most, one.parameters)
     time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
     return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())
