@@ -87,7 +87,8 @@ class Curve:
     def table(self) -> Array:
         """The coefficients for the compiled loop: a (d ORDERS, TERMS) matrix, flat, by columns.
 
-        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each.
+        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each. It shares the memory of
+        `series` if that was laid out for it.
         """
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 

@@ -10,6 +10,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.looking_back import forget_history
 from onpath.models.closed_loop.loops import CompiledLoop
 from onpath.models.control.benches import BENCHES
 from onpath.models.paths.path_design import presets
@@ -140,3 +141,17 @@ def test_no_lab_keeps_the_log_of_all_ticks() -> None:
         advance_together([lab.frame(FRAME) for lab in labs])
     assert len(labs[0].session.runs[FOLLOWER].place[0].records) == 1
     assert all(run.diverged is None for lab in labs[1:] for run in lab.session.runs.values())
+
+
+def test_a_lab_that_was_left_keeps_nothing_of_those_it_was_advanced_with() -> None:
+    labs = [new_lab(0.0) for _ in range(3)]
+    for _ in range(5):
+        advance_together([lab.frame(FRAME) for lab in labs])
+    session = labs[0].session
+    together, before = session.runs[FOLLOWER].place[0].records, session.instant()
+    assert len(together) >= len(labs)
+    forget_history(session)
+    after = session.instant()
+    assert not len(session.history)
+    for old, new in zip(before.states, after.states, strict=True):
+        assert np.array_equal(old, new) and not np.shares_memory(new, together)

@@ -92,6 +92,13 @@ def test_table_is_the_series_by_columns() -> None:
     )
 
 
+@pytest.mark.parametrize("curve", [ellipse((0.07, 0.03)), segment((0, 0), (0.1, 0))])
+def test_a_curve_and_its_table_are_stored_once_after_a_blend_too(curve: Curve) -> None:
+    """While a path is dragged, a history keeps a curve for each frame."""
+    for each in (curve, blend(curve, curve, 0.5)):
+        assert np.shares_memory(each.table(), each.series)
+
+
 @given(st.integers(0, 10_000), st.booleans())
 def test_nearest_point_is_nearest(seed: int, closed: bool) -> None:
     rng = np.random.default_rng(seed)
