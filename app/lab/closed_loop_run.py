@@ -54,6 +54,7 @@ class ClosedLoopRun:
         law: name of its control law.
         is_typed: whether that is a typed law.
         place: its state, log row and distances; another object as soon as anything changes.
+        values: of the settings that the last `input` lacks, float64.
     """
 
     place: Place
@@ -74,7 +75,7 @@ class ClosedLoopRun:
         self._inputs: tuple[Parameters, Curve, Push] | None = None
         self._leg: Leg | None = None
         self.configure(parameters, curve, Push())
-        self._input = self._made_input(frozen=False)
+        self._input, self.values = self._made_input(frozen=False), b""
         self.reset(curve, start)
 
     def reset(self, curve: Curve, start: Start) -> None:
@@ -205,11 +206,8 @@ class ClosedLoopRun:
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
             self._input = self._made_input(frozen).like(self._input)
+            self.values = self.settings[self._input.places].tobytes()
         return self._input
-
-    def values(self) -> bytes:
-        """Values of the settings that the last `input` lacks, float64."""
-        return self.settings[self._input.places].tobytes()
 
     def _made_input(self, frozen: bool) -> Input:
         assert self._inputs is not None

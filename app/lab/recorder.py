@@ -35,7 +35,7 @@ class Recorder:
         inputs = tuple(run.input() for run in runs)
         if self._inputs is None or not self._inputs.are(ticks.curve, ticks.dt, inputs):
             self._inputs = Inputs(ticks.curve, ticks.dt, inputs)
-        values = b"".join([run.values() for run in runs])
+        values = b"".join([run.values for run in runs])
         return HistoryFrame(ticks.time, ticks.count, self._inputs, begun, values)
 
 

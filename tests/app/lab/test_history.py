@@ -392,8 +392,8 @@ def test_inputs_that_differ_in_the_push_alone_share_their_settings() -> None:
     for k in range(5):
         do(lab, c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])))
         lab.session.simulate(17)
-        given = np.frombuffer(follower.values())
-        assert np.array_equal(follower.input().settings(given), follower.settings)
+        made = follower.input()
+        assert np.array_equal(made.settings(np.frombuffer(follower.values)), follower.settings)
     drives = [s.drives[FOLLOWER] for s in lab.session.history.all()[-4:]]
     assert len({d.settings.tobytes() for d in drives}) == 4
     inputs = lab.session.history.copy().columns["inputs"][-4:]
