@@ -30,6 +30,7 @@ from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, finish, run, states
+from tests.support.lab import store as store_of_other_tests
 from tests.support.waiting import wait_for
 
 PATIENCE = 60.0  # [s]
@@ -37,6 +38,7 @@ PATIENCE = 60.0  # [s]
 
 @pytest.fixture
 def store() -> Iterator[LoopCache]:
+    finish(store_of_other_tests())  # it would use what these tests replace
     made = LoopCache()
     pool = made._pool
     yield made
