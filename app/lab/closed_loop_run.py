@@ -189,8 +189,8 @@ class ClosedLoopRun:
             self.max_distance if largest is None else largest,
         )
 
-    def leave_others(self) -> None:
-        """Go on in arrays of its own, without the loops that were simulated together with it."""
+    def unshare(self) -> None:
+        """Copy the state out of the arrays that hold those of all loops simulated with it."""
         self._change()
 
     def fields(self) -> dict[str, np.ndarray]:

@@ -25,11 +25,11 @@ def look_back(session: Session, ago: float) -> None:
 
 
 def forget_history(session: Session) -> None:
-    """Delete the history, and leave the arrays that hold the last frame of other labs, too."""
+    """Delete the history, and do not keep arrays in memory that hold the states of other labs."""
     session.history.clear()
     for run in session.runs.values():
-        run.leave_others()
-    session.instant()  # refers to the runs' arrays
+        run.unshare()
+    session.instant()  # otherwise the session would keep the previous one, made of those arrays
 
 
 def go_on(session: Session) -> tuple[float, float] | None:

@@ -17,7 +17,7 @@ from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
 FEW = 8  # settings whose values are stored apart from the others
-NONE = np.zeros(0, np.uint16)
+NO_PLACES = np.zeros(0, np.uint16)
 
 
 class Input(Struct, frozen=True, eq=False, gc=False):
@@ -45,7 +45,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     size: int
     rest: int = 0
     parameters: Parameters | None = None
-    places: np.ndarray = NONE
+    places: np.ndarray = NO_PLACES
 
     def settings(self, values: Array) -> Array:
         """Settings of the loop.

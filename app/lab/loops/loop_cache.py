@@ -23,14 +23,14 @@ from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
-MOST = 16  # loops that are kept, those used last; 0.2 to 0.5 MB each
+MOST = 16  # compiled loops that are kept, in use or not; 0.2 to 0.5 MB each
 
 
 class LoopCache:
     """Loops by robot and kind. `get` never waits for compilation.
 
-    Of the registry's laws, the loops that labs use are shared, and those compiled that were used
-    last are kept, too. For those of typed laws see `TypedLoops`.
+    Labs share the loops of the registry's laws. A loop exists as long as a lab uses it; the
+    compiled ones that were used last are kept longer. For those of typed laws see `TypedLoops`.
 
     Args:
         at_once: whether loops of typed laws are made while they are asked for, not in the
