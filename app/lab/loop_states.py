@@ -22,12 +22,12 @@ class LoopStates(Struct, frozen=True, eq=False):
 
     @property
     def states(self) -> Array:
-        """Shape (loops, kernel.state.size)."""
+        """Shape (loops, vectors.state.size)."""
         return self.records[:, : self.size]
 
     @property
     def rows(self) -> Array:
-        """Log rows, shape (loops, kernel.log.size)."""
+        """Log rows, shape (loops, vectors.log.size)."""
         return self.records[:, self.size : -2]
 
     @property

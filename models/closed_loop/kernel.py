@@ -10,7 +10,7 @@ tick, and its torque is held in between.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -25,10 +25,11 @@ from onpath.models.closed_loop.law_view import (
 )
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import (
+    LoopVectors,
     kept_layout,
     log_layout,
+    loop_vectors,
     settings_layout,
-    state_layout,
 )
 from onpath.models.closed_loop.plant_tick import held_torque, move
 from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
@@ -39,8 +40,7 @@ from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.linearization import admissible_along, linearization
 from onpath.models.errors import CodedError
-from onpath.models.layout import Fields, Layout
-from onpath.models.paths.curves import TABLE_SHAPE
+from onpath.models.layout import Fields
 from onpath.models.paths.frames import Frame
 from onpath.models.paths.projection import basis
 from onpath.models.systems import forces
@@ -50,29 +50,23 @@ DEFAULT_GRIP = forces.Grip()
 
 
 @dataclass(frozen=True, slots=True)
-class Kernel:
+class Kernel(LoopVectors):
     """One tick of a closed loop, and the layouts of its flat vectors.
 
     Attributes:
         basis: (state, settings) -> basis functions of the curve at the parameters that the tick
             needs, (TERMS, 1 or 2).
         advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
-        state, settings, log: layouts of the vectors. The functions take the leading fields of the
-            state that this loop changes, and the others stay as they are.
-        table_shape: shape of the curve's table.
-        changed: length of the leading part of the state that this loop changes.
+            Both take the part of the state that the loop changes.
     """
 
     basis: ca.Function
     advance: ca.Function
-    state: Layout
-    settings: Layout
-    log: Layout
-    table_shape: tuple[int, int] = TABLE_SHAPE
-    changed: int = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "changed", self.advance.size_in(0)[0])
+    @property
+    def vectors(self) -> LoopVectors:
+        """The layouts alone: the functions take 0.2 MB."""
+        return LoopVectors(self.state, self.settings, self.log, self.changed, self.table_shape)
 
     def block(self, ticks: int) -> ca.Function:
         """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
@@ -127,10 +121,11 @@ def build_kernel(
         raise CodedError("error.law_does_not_suit", law=law.label)
     if kind.space:
         frame = _space(system, frame, kind)
-    layouts = state_layout(system, law.memory), settings_layout(system), log_layout(system)
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
-    return Kernel(bases, advance, *layouts, kind.table_shape)
+    own = loop_vectors(system, kind)
+    layouts = own.state, own.settings, own.log
+    return Kernel(*layouts, own.changed, own.table_shape, bases, advance)
 
 
 def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:

@@ -2,15 +2,53 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import lru_cache
+
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control import composite_control as composite
 from onpath.models.control.laws.law import Memory
-from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.layout import Layout
 from onpath.models.systems.system import MechanicalSystem
 
 GAINS = ("K1", "K2", "K3", "K4", "K5")
+_layout = lru_cache(maxsize=128)(Layout)  # 3 kB each, the same for all loops of a kind
+
+
+@dataclass(frozen=True, slots=True)
+class LoopVectors:
+    """Layouts of the flat vectors of a closed loop.
+
+    Attributes:
+        state, settings, log: of the vectors. The loop takes the leading fields of the state that it
+            changes, and the others stay as they are.
+        changed: length of the leading part of the state that the loop changes.
+        table_shape: shape of the curve's table.
+    """
+
+    state: Layout
+    settings: Layout
+    log: Layout
+    changed: int
+    table_shape: tuple[int, int]
+
+
+def loop_vectors(system: MechanicalSystem, kind: Kind) -> LoopVectors:
+    """The layouts for a robot and a kind of loop.
+
+    Raises:
+        ValueError: an unknown law.
+    """
+    memory = law_named(kind.controller).memory
+    return LoopVectors(
+        state_layout(system, memory),
+        settings_layout(system),
+        log_layout(system),
+        kept_layout(system, kind, memory).size,
+        kind.table_shape,
+    )
 
 
 def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
@@ -21,7 +59,7 @@ def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
             it are at the same places for all laws.
     """
     n, m, p = system.n, system.m, system.p
-    return Layout(
+    return _layout(
         (
             ("q", n),
             ("v", n),
@@ -49,7 +87,7 @@ def kept_layout(system: MechanicalSystem, kind: Kind, memory: Memory = ()) -> La
     """
     unused = () if kind.delay else ("queue",) if kind.noise else ("ticks", "queue")
     fields = state_layout(system, memory).fields
-    return Layout(tuple(each for each in fields if each[0] not in unused))
+    return _layout(tuple(each for each in fields if each[0] not in unused))
 
 
 def settings_layout(system: MechanicalSystem) -> Layout:
@@ -63,7 +101,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     flexible = (*composite.GAINS, "strain_noise") if system.n > system.m else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
     realism += ("stiction", "torque_step", "look_ahead", "delay_ticks", "sensor_noise", "seed")
-    return Layout(
+    return _layout(
         (
             *((name, 1) for name in (*scalars, *OWN_GAINS, *flexible)),
             ("plane", 3),  # see `Frame.numbers`
@@ -89,7 +127,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
 def log_layout(system: MechanicalSystem) -> Layout:
     """One log row: the state at the beginning of a tick, and the torque and force during it."""
     n, m, p = system.n, system.m, system.p
-    return Layout(
+    return _layout(
         (
             ("q", n),
             ("v", n),

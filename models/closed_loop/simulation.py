@@ -11,7 +11,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import GAINS
+from onpath.models.closed_loop.loop_vectors import GAINS, LoopVectors
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
 from onpath.models.control.implicit_level import check_level, implicit_level
@@ -26,7 +26,7 @@ from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, rise_of, time_step
 from onpath.models.systems.robots import Robot
 
-MOST, MOST_TYPED = 32, 16  # kernels, 0.2 MB each, and those of typed laws, that are kept here
+MOST = 8  # kernels that are kept, and as many of typed laws; 0.2 MB each
 NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
 
 
@@ -54,6 +54,7 @@ class Push:
 
 FREE = Push()  # nothing acts
 _conic = lru_cache(maxsize=64)(Curve.conic)  # needed at every change of a setting
+_kind = lru_cache(maxsize=64)(Kind)  # one object for all loops of a kind, and their histories
 
 
 def has_level_set(curve: Curve) -> bool:
@@ -91,7 +92,7 @@ def kind_of(
     exact = parameters.torque_step == parameters.delay == parameters.stiction == 0
     every_tick = parameters.control_rate * TICK >= 1
     untouched = push is not None and not push.acts and not is_text(controller)
-    return Kind(
+    return _kind(
         controller=controller,
         closed=curve.closed,
         level_set=(level_set := parameters.across == LEVEL_SET and has_level_set(curve)),
@@ -110,7 +111,7 @@ def kind_of(
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
     """The kernel for a robot and a kind, built once for all robots with the same `core`.
 
-    Those of typed laws are not kept for long.
+    Only those asked for last are kept: a compiled loop does not need its kernel any more.
     """
     return (_typed_kernel if is_text(kind.controller) else _kernel)(robot.core, kind)
 
@@ -119,12 +120,12 @@ def _built(robot: Robot, kind: Kind) -> Kernel:
     return build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip)
 
 
-_kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST_TYPED)(_built)
+_kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST)(_built)
 """Apart, so that no number of typed laws displaces the kernels of the registry's."""
 
 
 def settings_vector(
-    robot: Robot, kernel: Kernel, parameters: Parameters, curve: Curve, push: Push
+    robot: Robot, vectors: LoopVectors, parameters: Parameters, curve: Curve, push: Push
 ) -> Array:
     """The settings of a closed loop as a flat vector: everything but the state and the curve.
 
@@ -133,12 +134,12 @@ def settings_vector(
         push: what acts from outside.
 
     Returns:
-        Shape (kernel.settings.size,).
+        Shape (vectors.settings.size,).
     """
     p, dt = robot.system.p, time_step(parameters)
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
-    return kernel.settings.pack(
+    return vectors.settings.pack(
         {name: getattr(parameters, name) for name in (*GAINS, *OWN_GAINS)}
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
@@ -163,7 +164,7 @@ def settings_vector(
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),
             **_push_fields(push, p),
-            **_composite_gains(kernel, parameters),
+            **_composite_gains(vectors, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),
         }
@@ -178,20 +179,20 @@ def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:
     return speed_limit(robot, model, curve, parameters.torque_limit, parameters.speed < 0)
 
 
-def pushed(kernel: Kernel, settings: Array, push: Push) -> Array:
+def pushed(vectors: LoopVectors, settings: Array, push: Push) -> Array:
     """The same settings with another push.
 
     Much cheaper than `settings_vector`, because it runs for every movement of a hand.
     """
-    result, slices = settings.copy(), kernel.settings.slices
+    result, slices = settings.copy(), vectors.settings.slices
     for name, value in _push_fields(push, result[slices["hand_target"]].size).items():
         result[slices[name]] = value
     return result
 
 
-def paced(kernel: Kernel, settings: Array, leg: Leg) -> Array:
+def paced(vectors: LoopVectors, settings: Array, leg: Leg) -> Array:
     """The same settings with the wanted speed of a part of a speed profile."""
-    result, slices = settings.copy(), kernel.settings.slices
+    result, slices = settings.copy(), vectors.settings.slices
     result[slices["speed"]], result[slices["ramp"]] = leg.last, leg.rate
     return result
 
@@ -212,15 +213,15 @@ def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
     }
 
 
-def _composite_gains(kernel: Kernel, parameters: Parameters) -> dict[str, float]:
+def _composite_gains(vectors: LoopVectors, parameters: Parameters) -> dict[str, float]:
     """Gains of composite control and the gauges' noise, if the robot has a flexible link."""
     known = composite_control.GAINS.keys() | {"strain_noise"}
-    names = kernel.settings.slices.keys() & known
+    names = vectors.settings.slices.keys() & known
     return {name: getattr(parameters, name) for name in names}
 
 
 def first_state(
-    robot: Robot, kernel: Kernel, curve: Curve, q: Array, v: Array | None = None
+    robot: Robot, vectors: LoopVectors, curve: Curve, q: Array, v: Array | None = None
 ) -> Array:
     """The state at the start of a run, with θ and θ_r at the closest point, by global search.
 
@@ -230,14 +231,14 @@ def first_state(
         v: velocity, shape (n,); None: at rest.
 
     Returns:
-        Shape (kernel.state.size,).
+        Shape (vectors.state.size,).
     """
     velocity = np.zeros_like(q) if v is None else v
     y = robot.endpoint(q)
     theta = closest_parameter(robot.frame, curve, y)
     m = robot.system.m
-    memory = {name: np.zeros(size) for name, size in kernel.state.fields}
-    return kernel.state.pack(
+    memory = {name: np.zeros(size) for name, size in vectors.state.fields}
+    return vectors.state.pack(
         memory
         | {
             "q": q,
@@ -255,9 +256,9 @@ def first_state(
     )
 
 
-def primed(kernel: Kernel, state: Array) -> Array:
+def primed(vectors: LoopVectors, state: Array) -> Array:
     """The state of a loop without delay for one with delay: the torque has been the same so far."""
-    result, slices = state.copy(), kernel.state.slices
+    result, slices = state.copy(), vectors.state.slices
     result[slices["queue"]] = np.tile(state[slices["u"]], LONGEST)
     return result
 

@@ -76,7 +76,7 @@ def logging_kernel(*rows: ca.SX, x: ca.SX) -> Kernel:
         "advance", [x, settings, values], [x, ca.vertcat(*rows), ca.DM.ones(TERMS)]
     )
     layouts = Layout((("x", x.numel()),)), Layout((("s", 1),)), Layout((("row", len(rows)),))
-    return Kernel(still, advance, *layouts)
+    return Kernel(*layouts, x.numel(), TABLE_SHAPE, still, advance)
 
 
 def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: Page) -> None:

@@ -13,7 +13,6 @@ from weakref import WeakValueDictionary
 from onpath.app.common.processors import run_anywhere
 from onpath.app.lab.loops.compile_queue import CompileQueue
 from onpath.app.lab.loops.typed_loops import Key, TypedLoops
-from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
@@ -61,12 +60,6 @@ class LoopCache:
         found = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
         return found
-
-    def kernel(self, robot: Robot, kind: Kind) -> Kernel:
-        """The kernel of a loop; built now if that of a typed law is not ready."""
-        find = self._typed.find if is_text(kind.controller) else self._find
-        made = find((robot.core, kind))
-        return kernel_of(robot, kind) if made is None else made.kernel
 
     def is_ready(self, robot: Robot, kind: Kind) -> bool:
         """Whether `get` returns a loop at once.

@@ -161,10 +161,10 @@ def test_what_cannot_be_made_is_an_error_and_nobody_else_is_affected(
 def test_kernels_of_typed_laws_displace_no_others() -> None:
     known = ROBOT, kind_of(DEFAULT_LAWS[LEFT], FIVE_BAR.lab, CURVE)
     kernel = kernel_of(*known)
-    for number in range(simulation.MOST_TYPED + 2):
+    for number in range(simulation.MOST + 2):
         kernel_of(*key(number))
     assert kernel_of(*known) is kernel
-    assert simulation._typed_kernel.cache_info().currsize == simulation.MOST_TYPED
+    assert simulation._typed_kernel.cache_info().currsize == simulation.MOST
 
 
 # In a lab.

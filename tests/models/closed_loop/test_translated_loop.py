@@ -16,6 +16,7 @@ import pytest
 
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loop_vectors import LoopVectors, loop_vectors
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of
 from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
@@ -44,7 +45,23 @@ def logging_kernel(*rows: ca.SX, x: ca.SX) -> Kernel:
         "advance", [x, settings, values], [x, ca.vertcat(*rows), ca.DM.ones(TERMS)]
     )
     layouts = Layout((("x", x.numel()),)), Layout((("s", 1),)), Layout((("row", len(rows)),))
-    return Kernel(still, advance, *layouts)
+    return Kernel(*layouts, x.numel(), TABLE_SHAPE, still, advance)
+
+
+@pytest.mark.parametrize("stiction", [False, True])
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_compiled_loop_keeps_the_layouts_and_not_the_graphs(name: str, stiction: bool) -> None:
+    robot = ROBOTS[name].make(ROBOTS[name].lab)
+    kind = Kind(NAMES[0], delay=stiction, noise=stiction, stiction=stiction)
+    kernel = kernel_of(robot, kind)
+    vectors = translate_loop(kernel).vectors
+    assert type(vectors) is LoopVectors and vectors == loop_vectors(robot.system, kind)
+    inputs = [kernel.advance.numel_in(i) for i in range(2)]
+    outputs = [kernel.advance.numel_out(i) for i in range(2)]
+    assert (inputs, outputs) == (
+        [vectors.changed, vectors.settings.size],
+        [vectors.changed, vectors.log.size],
+    )
 
 
 def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers() -> None:
