@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from onpath.app.lab.events import LabEvent
 from onpath.app.lab.session import Session
-from onpath.app.lab.timeline import LabEvent
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.benches import ROLES
 from onpath.lessons.measures.thinning import peaks

@@ -7,9 +7,9 @@ of now; a law that was not in force at that instant begins there as after any ch
 
 from __future__ import annotations
 
-from collections import deque
 from copy import copy
 
+from onpath.app.lab.events import EventLog
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.segments import Segment
 from onpath.app.lab.session import Session
@@ -102,13 +102,12 @@ def _branch(session: Session, segment: Segment) -> Timeline:
     runs = {name: copy(run) for name, run in session.runs.items()}
     for name, run in runs.items():
         run.restore(segment.drives[name], segment.curve)
-    events = session.events
-    kept = [e for e in events if e.run != session.run_number or e.time <= segment.time]
+    kept = [e for e in session.events if e.run != session.run_number or e.time <= segment.time]
     return Timeline(
         segment.time,
         segment.curve,
         session.history.before(segment),
         runs,
         ExternalForces(session.robot, runs, session.note),
-        deque(kept, events.maxlen),
+        EventLog(kept),
     )

@@ -5,7 +5,6 @@ It does not know its user: commands, lessons, class and messages belong to `app.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from onpath.app.lab.advance_together import NO_FRAME, Frame, Ticks, advance_together
 from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, project
+from onpath.app.lab.events import EventLog, LabEvent
 from onpath.app.lab.external_forces import ExternalForces
 from onpath.app.lab.history import History
 from onpath.app.lab.loops.law_changes import LawChanges, suits
@@ -21,7 +21,7 @@ from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.recorder import CurrentInstant, Recorder, sample_of
 from onpath.app.lab.segments import Instant
-from onpath.app.lab.timeline import LabEvent, Timeline
+from onpath.app.lab.timeline import Timeline
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.profile_shapes import profile_of
@@ -36,7 +36,6 @@ from onpath.models.systems.parameters import TICK, Parameters, rise_of, time_ste
 from onpath.models.systems.robots import Robot
 
 MOST_TICKS = 200  # per frame
-MOST_EVENTS = 500  # 0.05 MB
 
 
 class Session:
@@ -83,7 +82,7 @@ class Session:
         self.copy = True
         self.hold_direction = ALONG
         self.exaggeration = 1.0
-        self.events: deque[LabEvent] = deque(maxlen=MOST_EVENTS)
+        self.events = EventLog()
         self.faults: list[str] = []
         self.run_number = 0
         self._set_up(entry)
@@ -176,9 +175,7 @@ class Session:
 
     def note(self, name: str, detail: str = "", benches: tuple[str, ...] = BENCHES) -> None:
         """Record an event; what a drag of a slider repeats within a second is recorded once."""
-        event = LabEvent(self.run_number, self.time, name, detail, benches)
-        if not self.events or not event.repeats(self.events[-1]):
-            self.events.append(event)
+        self.events.append(LabEvent(self.run_number, self.time, name, detail, benches))
 
     # Time
 

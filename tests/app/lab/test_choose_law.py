@@ -54,7 +54,8 @@ def test_the_robot_goes_on_from_where_it_is(bench: str, law: str) -> None:
     assert new["theta_ref"] == new["theta"] and not new["integral"].any()
     assert all(not new[name].any() for name, _ in LAWS[law].memory)
     assert lab.session.time == time and lab.session.laws[bench] == law
-    event = lab.session.events[-1]
+    event = lab.session.events.last
+    assert event is not None
     assert (event.name, event.detail, event.benches) == ("law", law, (bench,))
     assert lab.session.grips.held == set(BENCHES)
     run(lab, 0.2)

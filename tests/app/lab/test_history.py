@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import tracemalloc
+from collections.abc import Callable
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any
@@ -386,11 +387,21 @@ def test_an_input_stores_its_settings_exactly(
         assert made.base is first.base or len(changed) > FEW
 
 
-def test_inputs_that_differ_in_the_push_alone_share_their_settings() -> None:
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda k: c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])),
+        lambda k: c.SetParameter("K1", 400.0 + k),
+    ],
+    ids=["pull", "slider"],
+)
+def test_inputs_that_differ_in_few_settings_share_the_others(
+    change: Callable[[int], c.Command],
+) -> None:
     lab = new_lab(0.1)
     follower = lab.session.runs[FOLLOWER]
     for k in range(5):
-        do(lab, c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])))
+        do(lab, change(k))
         lab.session.simulate(17)
         made = follower.input()
         assert np.array_equal(made.settings(np.frombuffer(follower.values)), follower.settings)

@@ -136,7 +136,8 @@ def test_titles_labels_and_texts() -> None:
 
 def test_an_event_tells_that_a_law_was_typed_and_not_its_text() -> None:
     lab = typed(left=SLOW)
-    event = lab.session.events[-1]
+    event = lab.session.events.last
+    assert event is not None
     assert (event.name, event.detail, event.benches) == ("law", "own", (LEFT,))
 
 

@@ -1,0 +1,87 @@
+"""The events of a lab: what its user did, and incidents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from msgspec import Struct
+
+MOST, FIRST = 500, 16  # events that are kept, and for which there is room at first
+_ROW = np.dtype([("run", "i4"), ("time", "f8"), ("name", "O"), ("detail", "O"), ("benches", "O")])
+
+
+class LabEvent(Struct, frozen=True):
+    """A user action or an incident.
+
+    Attributes:
+        run: number of resets before it.
+        time: simulated time, [s].
+        name: "set", "path", "robot", "law", "reset", "hold", "let_go", "pull", "release",
+            "identify" or "diverged".
+        detail: the parameter, the path, the robot, or the `short_name` of the law; or empty.
+        benches: the benches concerned.
+    """
+
+    run: int
+    time: float
+    name: str
+    detail: str
+    benches: tuple[str, ...]
+
+    def repeats(self, earlier: LabEvent) -> bool:
+        """Whether it sets the same parameter again, less than a second after an earlier event."""
+        return (
+            self.name == earlier.name == "set"
+            and (self.run, self.detail) == (earlier.run, earlier.detail)
+            and 0.0 <= self.time - earlier.time < 1.0
+        )
+
+
+class EventLog:
+    """The latest events, oldest first.
+
+    They are rows of one array, because small objects that are replaced one by one after minutes
+    keep the memory around them from being given back.
+
+    Args:
+        events: the first ones.
+    """
+
+    def __init__(self, events: Iterable[LabEvent] = ()) -> None:
+        self._rows, self._count = np.zeros(FIRST, _ROW), 0
+        for event in events:
+            self._add(event)
+
+    def __len__(self) -> int:
+        return min(self._count, MOST)
+
+    def __iter__(self) -> Iterator[LabEvent]:
+        for number in range(self._count - len(self), self._count):
+            yield self._event(number)
+
+    @property
+    def last(self) -> LabEvent | None:
+        """The latest event."""
+        return self._event(self._count - 1) if self._count else None
+
+    def append(self, event: LabEvent) -> None:
+        """Add an event, unless it repeats the last one; see `LabEvent.repeats`."""
+        if (last := self.last) is None or not event.repeats(last):
+            self._add(event)
+
+    def clear(self) -> None:
+        """Forget all events."""
+        self._rows, self._count = np.zeros(FIRST, _ROW), 0
+
+    def _add(self, event: LabEvent) -> None:
+        if self._count == len(self._rows) < MOST:
+            longer = np.zeros(min(2 * self._count, MOST), _ROW)
+            longer[: self._count] = self._rows
+            self._rows = longer
+        own = event.run, event.time, event.name, event.detail, event.benches
+        self._rows[self._count % MOST] = own
+        self._count += 1
+
+    def _event(self, number: int) -> LabEvent:
+        return LabEvent(*self._rows[number % MOST].tolist())

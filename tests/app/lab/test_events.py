@@ -1,0 +1,56 @@
+"""The events of a lab: the latest ones are kept as they were noted."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections import deque
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from onpath.app.lab.events import FIRST, MOST, EventLog, LabEvent
+from onpath.models.control.benches import BENCHES
+
+NAMES, DETAILS = ("set", "path", "hold", "release"), ("K1", "speed", "")
+EVENTS = st.builds(
+    LabEvent,
+    run=st.integers(0, 2),
+    time=st.floats(0, 9).map(lambda time: round(time, 1)),
+    name=st.sampled_from(NAMES),
+    detail=st.sampled_from(DETAILS),
+    benches=st.sampled_from([BENCHES, BENCHES[:1]]),
+)
+
+
+@given(st.lists(EVENTS, max_size=2 * FIRST), st.lists(EVENTS, max_size=2 * FIRST))
+def test_events_are_kept_in_their_order_but_for_repetitions(
+    first: list[LabEvent], noted: list[LabEvent]
+) -> None:
+    log, expected = EventLog(first), list(first)
+    for event in noted:
+        log.append(event)
+        if not expected or not event.repeats(expected[-1]):
+            expected.append(event)
+    assert list(log) == expected and len(log) == len(expected)
+    assert log.last == (expected[-1] if expected else None)
+    log.clear()
+    assert not log and log.last is None
+
+
+def test_the_latest_events_are_kept() -> None:
+    log, expected = EventLog(), deque[LabEvent](maxlen=MOST)
+    for number in range(2 * MOST + 7):
+        event = LabEvent(0, float(number), "set", "K1", BENCHES)
+        log.append(event)
+        expected.append(event)
+    assert list(log) == list(expected)
+
+
+def test_events_are_no_objects_of_their_own() -> None:
+    log, benches = EventLog(), BENCHES
+    gc.collect()
+    before = sys.getallocatedblocks()
+    for number in range(MOST):
+        log.append(LabEvent(0, 2.0 * number, "set", "K1", benches))
+    assert sys.getallocatedblocks() < before + 20
