@@ -87,8 +87,8 @@ class Watchdog:
 
 
 def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop) -> dict[str, Sign]:
-    """The latest frame of a simulation thread, and a number that an event loop counts up."""
-    frames, count = simulation.frames, 0
+    """The number of frames of a simulation thread, and one that an event loop counts up."""
+    count = 0
 
     def beat() -> None:
         nonlocal count
@@ -97,7 +97,7 @@ def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop)
 
     loop.call_soon_threadsafe(beat)
     return {
-        "the simulation thread": lambda: frames[-1] if frames else None,
+        "the simulation thread": lambda: simulation.frames.count,
         "the event loop": lambda: count,
     }
 

@@ -62,9 +62,9 @@ def metrics_json(simulation: SimulationThread, query: str) -> str:
 def measure_metrics(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
     """Measure this process over the last `seconds`."""
     now = time.perf_counter()
-    frames = simulation.frames.copy()
-    since = max(now - seconds, frames[0][0]) if frames else now
-    late = sorted(late for began, late in frames if began > since)
+    began, lateness = simulation.frames.latest().T
+    since = max(now - seconds, began[0]) if len(began) else now
+    late = sorted(lateness[began > since].tolist())
     p50, p95, p99 = (_quantile_ms(late, part) for part in QUANTILES)
     seen = [lab for lab in simulation.labs if lab.view is not None]
     return Metrics(

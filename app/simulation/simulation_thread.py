@@ -20,6 +20,7 @@ from onpath.app.common.on_time import note_lateness
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
+from onpath.app.simulation.frame_times import FrameTimes
 from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
 from onpath.models.systems.parameters import TICK
 
@@ -168,7 +169,7 @@ class SimulationThread:
 
     Attributes:
         thread: the thread that runs them.
-        frames: start and lateness of the latest frames, [s].
+        frames: the latest frames.
     """
 
     def __init__(
@@ -181,7 +182,7 @@ class SimulationThread:
         self._lock = threading.Lock()
         self._stop = threading.Event()
         self.thread = threading.Thread(target=self.run, name="simulation", daemon=True)
-        self.frames: deque[tuple[float, float]] = deque(maxlen=3600)
+        self.frames = FrameTimes()
         self._calls: deque[tuple[Callable[[], Any], Future[Any]]] = deque()
         self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
         self._advancing = 0.0  # [s] of a frame, without commands, low-pass filtered as `_drawing`
@@ -233,7 +234,7 @@ class SimulationThread:
     @property
     def lateness(self) -> list[float]:
         """Lateness of the latest frames, [s]."""
-        return [late for _, late in self.frames.copy()]
+        return self.frames.latest()[:, 1].tolist()
 
     def run(self) -> None:
         """Run frames, each at its deadline, until stopped."""
@@ -244,7 +245,7 @@ class SimulationThread:
             self._sleep(max(deadline - now, PAUSE))
             now = self._clock()
             late = now - deadline
-            self.frames.append((now, late))
+            self.frames.append(now, late)
             note_lateness(late > TOLERATED)
             deadline = now + FRAME if late > LATEST else deadline + FRAME
             busy, drawing = self._frame(now - last, late, count, pace.stride_when(late))

@@ -5,9 +5,7 @@ On a busy machine frames come later, and so does all that a lab does; seconds wo
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
-from itertools import takewhile
 
 from onpath.app.simulation.simulation_thread import FRAME, SimulationThread
 
@@ -19,11 +17,6 @@ class FrameClock:
         self._thread = thread
 
     def alarm(self, seconds: float) -> Callable[[], bool]:
-        """Tells whether the frames of so many seconds have passed; at most a minute."""
-        begun, wanted = time.perf_counter(), round(seconds / FRAME)
-
-        def passed() -> bool:
-            latest = reversed(self._thread.frames.copy())
-            return sum(1 for _ in takewhile(lambda frame: frame[0] > begun, latest)) >= wanted
-
-        return passed
+        """Tells whether the frames of so many seconds have passed."""
+        wanted = self._thread.frames.count + round(seconds / FRAME)
+        return lambda: self._thread.frames.count >= wanted

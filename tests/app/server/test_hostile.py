@@ -501,7 +501,7 @@ server = LabServer("127.0.0.1", 0, LoopCache())
 print("told", server.server.get_port(), flush=True)
 for _ in sys.stdin:
     (lab,) = server.simulation.labs
-    print("told", lab.session.time, len(server.simulation.frames), flush=True)
+    print("told", lab.session.time, server.simulation.frames.count, flush=True)
 """
 
 

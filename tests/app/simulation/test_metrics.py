@@ -28,14 +28,15 @@ def thread(monkeypatch: pytest.MonkeyPatch) -> SimulationThread:
     monkeypatch.setattr(metrics, "time", clock)
     for i in range(3600):
         ago = 60.0 - i / 60
-        made.frames.append((now - ago, 0.08 if i == 3400 else 0.005 if ago < 10.5 else 0.0))
+        made.frames.append(now - ago, 0.08 if i == 3400 else 0.005 if ago < 10.5 else 0.0)
     return made
 
 
 def test_metrics_are_those_of_the_window(thread: SimulationThread) -> None:
     lately, long = measure_metrics(thread, 9.0), measure_metrics(thread, LONGEST)
     assert lately.late_ms == (5.0, 5.0, 5.0) and max(long.late_ms) == 5.0 > min(long.late_ms)
-    thread.frames.extend([(thread.frames[-1][0], 0.08)] * 20)
+    for _ in range(20):
+        thread.frames.append(thread.frames.latest()[-1, 0], 0.08)
     assert [lately.overdue, long.overdue] == pytest.approx([1 / 540, 1 / 3600], rel=0.02)
     after = measure_metrics(thread, 9.0)
     assert after.late_ms[2] == 80.0 and after.overdue == pytest.approx(21 / 560, rel=0.02)
@@ -45,7 +46,8 @@ def test_metrics_are_those_of_the_window(thread: SimulationThread) -> None:
 
 def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread) -> None:
     old = SimulationThread()
-    old.frames.extend((began - LONGEST, late) for began, late in thread.frames)
+    for began, late in thread.frames.latest():
+        old.frames.append(began - LONGEST, late)
     for silent in (old, SimulationThread()):
         assert measure_metrics(silent).frames_per_s == 0.0
 

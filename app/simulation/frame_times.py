@@ -1,0 +1,34 @@
+"""When the latest frames of the simulation began, and how late they were."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from onpath.models.arrays import Array
+
+
+class FrameTimes:
+    """The latest frames, written by one thread and read by any.
+
+    They are in one array. Objects that are replaced one by one, each after a minute, would spread
+    over all memory that is freed meanwhile, so that little of it could be given back.
+
+    Args:
+        most: number of frames that are kept.
+
+    Attributes:
+        count: number of frames so far.
+    """
+
+    def __init__(self, most: int = 3600) -> None:
+        self._rows, self.count = np.zeros((most, 2)), 0
+
+    def append(self, began: float, late: float) -> None:
+        """Add a frame: when it began, by the thread's clock, and how late that was, [s]."""
+        self._rows[self.count % len(self._rows)] = began, late
+        self.count += 1
+
+    def latest(self) -> Array:
+        """Beginning and lateness of the frames that are kept, oldest first, shape (n, 2), [s]."""
+        count, most = self.count, len(self._rows)
+        return self._rows[np.arange(max(count - most, 0), count) % most]
