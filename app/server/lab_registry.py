@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
-KEPT = 15 * 60.0  # [s] that an abandoned session is kept
+KEPT = 15 * 60.0  # [s] that an abandoned session is kept, if it was used
 HISTORY_KEPT = 30.0  # [s] that its history is kept, which is most of its memory
 MOST_ABANDONED = 60
 
@@ -69,6 +69,7 @@ class LabRegistry:
     keeper: WriteBehind | None = None
     _entries: dict[str, RegisteredLab] = field(default_factory=dict)
     _opening: set[str] = field(default_factory=set)
+    _dropped: bool = False
     _lock: threading.Condition = field(default_factory=threading.Condition)
     _making: threading.Lock = field(default_factory=threading.Lock)
     _throttle: Throttle = field(default_factory=Throttle)
@@ -231,6 +232,7 @@ class LabRegistry:
         self.simulation.remove(entry.scheduled)
         self._entries.pop(entry.code, None)
         entry.scheduled.session.history.clear()  # the rest waits until garbage is collected
+        self._dropped = True
 
     def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
@@ -248,14 +250,21 @@ class LabRegistry:
     def __len__(self) -> int:
         return len(self._entries)
 
-    def free_memory(self) -> None:
-        """Delete the histories of labs that were left a while ago, unless a past instant is shown.
+    def free_memory(self) -> bool:
+        """Drop labs that were left a while ago if nobody has used them, and the others' histories.
 
-        Not to be called by the simulation thread, for which this waits.
+        A history stays where a past instant is shown. A lab that was used before, and is dropped,
+        is in the database. Not to be called by the simulation thread, for which this waits.
+
+        Returns:
+            Whether labs have been dropped, here or elsewhere, whose garbage is to be collected.
         """
         with self._lock:
-            left = [e for e in self._entries.values() if e.client is None]
-            left = [e for e in left if self.clock() - e.left > HISTORY_KEPT]
+            left = [e for e in self._waiting() if self.clock() - e.left > HISTORY_KEPT]
+            for entry in left:
+                if not entry.scheduled.lab.asked:
+                    self._remove(entry)
+            dropped, self._dropped = self._dropped, False
         sessions = [e.scheduled.session for e in left]
         outdated = [s for s in sessions if s.viewing is None and len(s.history)]
 
@@ -265,11 +274,15 @@ class LabRegistry:
 
         if outdated:
             self.simulation.call(forget)
+        return dropped
 
     def _drop_old(self) -> None:
-        idle = [e for e in self._entries.values() if e.client is None]
-        waiting = [e for e in idle if e.code not in self._opening]
-        waiting.sort(key=lambda e: e.left, reverse=True)
+        waiting = sorted(self._waiting(), key=lambda e: e.left, reverse=True)
         for rank, entry in enumerate(waiting):
             if rank >= MOST_ABANDONED or self.clock() - entry.left > KEPT:
                 self._remove(entry)
+
+    def _waiting(self) -> list[RegisteredLab]:
+        """The labs without a client that nobody is opening."""
+        idle = [e for e in self._entries.values() if e.client is None]
+        return [e for e in idle if e.code not in self._opening]

@@ -26,32 +26,35 @@ class MemoryRelease:
     What `release_page` leaves of a tab refers to itself, so that only a collection finds it. That
     stops all threads, with 40 labs for 0.3 s if it examines everything. Therefore whatever is left
     by one collection is not examined by the next ones ("frozen"), until a complete one is made.
-    That is when a tab has been closed and no other one for a while, when many tabs have been
-    closed, or when an eighth more is allocated than after the last complete one.
+    That is when a tab has been closed or a lab dropped and no other tab closed for a while, when
+    many tabs have been closed, or when an eighth more is allocated than after the last complete
+    one.
 
     Args:
-        forget: deletes what is no longer needed; called at each look.
+        forget: drops what is no longer needed, and returns whether that leaves garbage; called at
+            each look.
     """
 
-    def __init__(self, forget: Callable[[], None]) -> None:
-        self._forget = forget
+    def __init__(self, forget: Callable[[], bool]) -> None:
+        self._forget, self._has_dropped = forget, False
         self._tabs_seen, self._calm = CountedConnection.tabs_ended, 0
         self._remember()
         self._tabs_ended, self._after_complete = self._tabs_seen, self._blocks
 
     def look(self) -> None:
         """Collect garbage if it is time to, and give free memory back, which takes 1 ms."""
-        self._forget()
+        self._has_dropped |= self._forget()
         ended, tabs_ended = CountedConnection.ended, CountedConnection.tabs_ended
         self._calm = self._calm + 1 if tabs_ended == self._tabs_seen else 0
         self._tabs_seen = tabs_ended
         left = tabs_ended - self._tabs_ended
-        is_due = left >= TABS or (left > 0 and self._calm >= CALM)
+        is_due = left >= TABS or ((left > 0 or self._has_dropped) and self._calm >= CALM)
         blocks = sys.getallocatedblocks()
         if is_due or blocks > (1 + GROWTH) * self._after_complete:
             gc.unfreeze()
             self._collect()
             self._tabs_ended, self._after_complete = tabs_ended, self._blocks
+            self._has_dropped = False
         elif blocks > self._blocks + MUCH or ended >= self._ended + MANY:
             self._collect()
         _call_glibc("malloc_trim", 0)

@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from onpath.app.lab.commands import SetLanguage
+from onpath.app.lab.commands import SetLanguage, SetRunning
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.looking_back import look_back
 from onpath.app.server.lab_registry import (
@@ -184,11 +184,35 @@ def test_leaving_twice_or_never_having_come_does_no_harm(desk: Desk) -> None:
     assert len(desk.sessions) == 1
 
 
+def test_a_lab_in_which_nobody_did_anything_is_soon_dropped(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    desk = Desk()
+    monkeypatch.setattr(desk.simulation, "call", lambda function: function())
+    (_, seen), (left, unused), (gone, used) = (desk.open(name) for name in "abc")
+    for entry in (seen, unused, used):
+        entry.scheduled.lab.advance(0.5)
+    do(used.scheduled.lab, SetRunning(False))
+    desk.sessions.leave(left)
+    desk.sessions.leave(gone)
+    labs, garbage = list[list[bool]](), list[bool]()
+    for seconds in (HISTORY_KEPT - 1, 2, 10):
+        desk.now += seconds
+        garbage.append(desk.sessions.free_memory())
+        present = desk.simulation.labs
+        labs.append([entry.scheduled in present for entry in (seen, unused, used)])
+    assert labs == [[True, True, True], [True, False, True], [True, False, True]]
+    assert garbage == [False, True, False]
+    assert desk.open("c")[1] is used
+    assert desk.open("b")[1].scheduled.session.time == 0.0
+
+
 def test_a_lab_that_was_left_a_while_ago_keeps_no_history(monkeypatch: pytest.MonkeyPatch) -> None:
     desk = Desk()
     monkeypatch.setattr(desk.simulation, "call", lambda function: function())
     (_, used), (left, gone), (paused, looking) = (desk.open(name) for name in "abc")
     for entry in (used, gone, looking):
+        do(entry.scheduled.lab, SetRunning(True))
         entry.scheduled.lab.advance(0.5)
     look_back(looking.scheduled.session, 0.2)
     desk.sessions.leave(left)

@@ -49,7 +49,7 @@ def old_garbage() -> weakref.ref[Circle]:
 def test_garbage_is_collected_when_many_connections_have_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    garbage, memory = old_garbage(), MemoryRelease(lambda: None)
+    garbage, memory = old_garbage(), MemoryRelease(lambda: False)
     monkeypatch.setattr(CountedConnection, "ended", CountedConnection.ended + MANY - 1)
     memory.look()
     assert garbage() is not None
@@ -61,10 +61,24 @@ def test_garbage_is_collected_when_many_connections_have_ended(
     assert left() is not None  # nobody has left since
 
 
+def test_what_a_dropped_lab_leaves_is_collected_once_tabs_are_not_closed() -> None:
+    garbage, dropped = old_garbage(), [True]
+    memory = MemoryRelease(lambda: bool(dropped and dropped.pop()))
+    for _ in range(CALM - 1):
+        memory.look()
+        assert garbage() is not None
+    memory.look()
+    assert garbage() is None
+    left = old_garbage()
+    for _ in range(3 * CALM):
+        memory.look()
+    assert left() is not None  # none has been dropped since
+
+
 def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    memory = MemoryRelease(lambda: None)
+    memory = MemoryRelease(lambda: False)
     monkeypatch.setattr(CountedConnection, "tabs_ended", CountedConnection.tabs_ended)
     for closed in (0, 1, 1):
         garbage = old_garbage()
@@ -86,7 +100,7 @@ def test_many_tabs_that_are_closed_together_are_collected_once_no_other_one_is(
     """Also if a collection that was not complete has come before."""
     for name in ("ended", "tabs_ended"):
         monkeypatch.setattr(CountedConnection, name, getattr(CountedConnection, name))
-    memory = MemoryRelease(lambda: None)
+    memory = MemoryRelease(lambda: False)
     page = Circle()
     CountedConnection.ended += MANY
     memory.look()  # the page is in use
@@ -106,7 +120,7 @@ def test_what_many_tabs_leave_is_collected_while_others_are_closed(
 ) -> None:
     for name in ("ended", "tabs_ended"):
         monkeypatch.setattr(CountedConnection, name, getattr(CountedConnection, name))
-    memory, page, looks = MemoryRelease(lambda: None), Circle(), 0
+    memory, page, looks = MemoryRelease(lambda: False), Circle(), 0
     CountedConnection.ended += MANY
     memory.look()  # the page is in use
     left = weakref.ref(page)
@@ -122,7 +136,7 @@ def test_pages_that_are_built_anew_are_collected_although_nobody_leaves(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(memory_release, "MUCH", 1_000)
-    memory = MemoryRelease(lambda: None)
+    memory = MemoryRelease(lambda: False)
     garbage = old_garbage()
     memory.look()
     assert garbage() is not None
@@ -135,7 +149,7 @@ def test_what_was_in_use_at_a_collection_is_examined_by_complete_ones_only(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(CountedConnection, "ended", CountedConnection.ended)
-    memory = MemoryRelease(lambda: None)
+    memory = MemoryRelease(lambda: False)
 
     def collect() -> None:
         CountedConnection.ended += MANY
