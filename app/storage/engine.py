@@ -27,6 +27,7 @@ log = logging.getLogger(__name__)
 VERSION = 1  # of the tables and of what `state` holds
 PATIENCE = 10.0  # [s] to wait, while opening, for a lock that another process holds
 TRANSACTION_WAIT = 2.0  # [s], the same for a transaction, for which a user may be waiting
+CACHE = 256  # [KiB] of the file that each connection keeps in memory; a state has a few
 Identity = tuple[int, int]
 """Device and inode of a file."""
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
@@ -214,6 +215,7 @@ def _connected(connection: Any, _: Any) -> None:
         "synchronous = NORMAL",
         "foreign_keys = ON",
         "secure_delete = ON",
+        f"cache_size = -{CACHE}",
     ):
         connection.execute(f"PRAGMA {pragma}")
 

@@ -29,6 +29,7 @@ from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage import records as database
+from onpath.app.storage.engine import opened_file, parsed
 from onpath.app.storage.records import LARGEST, NotKept, Records, default_file, file_url
 from onpath.app.storage.schema import labs, metadata
 from onpath.app.storage.write_behind import BREATH, WriteBehind
@@ -136,6 +137,16 @@ def test_the_time_of_storing_is_that_of_the_clock(file: Path) -> None:
     with sqlite3.connect(file) as raw:
         assert raw.execute("SELECT updated, version FROM labs").fetchall() == [(NOON, 1)]
         assert raw.execute("PRAGMA journal_mode").fetchone() == ("wal",)
+
+
+def test_little_of_the_file_is_in_memory(file: Path) -> None:
+    file.parent.mkdir()
+    engine, _ = opened_file(parsed(file_url(file)), lambda: NOON)
+    for _ in range(2):
+        with engine.begin() as connection:
+            size = connection.exec_driver_sql("PRAGMA cache_size").scalar()
+            assert size == -256  # KiB; SQLite's default is 2000
+    engine.dispose()
 
 
 @pytest.mark.parametrize(
