@@ -110,7 +110,7 @@ def trace_segments(trace: np.ndarray, count: int) -> np.ndarray:
     return trace[_kept(len(trace), count)] if len(trace) else np.zeros((count, 2, 3))
 
 
-@lru_cache(maxsize=512)
+@lru_cache(maxsize=16)
 def _kept(length: int, count: int) -> np.ndarray:
     """Indices of the first and last point of each segment, shape (count, 2)."""
     step = max(1, -(-(length - 1) // count))
