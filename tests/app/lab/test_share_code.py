@@ -220,7 +220,7 @@ def test_random_bytes_with_a_right_checksum(data: bytes) -> None:
 @example("222222222222")
 def test_random_text(text: str) -> None:
     for code in (text, "ONPATH1-" + text, SENT + text):
-        with pytest.raises(ValueError, match="share code|code of a lab"):
+        with pytest.raises(ValueError, match=r"share code|code of a lab"):
             decode(code)
 
 
