@@ -6,6 +6,8 @@ import numpy as np
 
 from onpath.models.arrays import Array
 
+SPARE = 60  # frames that may be added while the others are read
+
 
 class FrameTimes:
     """The latest frames, written by one thread and read by any.
@@ -21,7 +23,7 @@ class FrameTimes:
     """
 
     def __init__(self, most: int = 3600) -> None:
-        self._rows, self.count = np.zeros((most, 2)), 0
+        self._most, self._rows, self.count = most, np.zeros((most + SPARE, 2)), 0
 
     def append(self, began: float, late: float) -> None:
         """Add a frame: when it began, by the thread's clock, and how late that was, [s]."""
@@ -30,5 +32,5 @@ class FrameTimes:
 
     def latest(self) -> Array:
         """Beginning and lateness of the frames that are kept, oldest first, shape (n, 2), [s]."""
-        count, most = self.count, len(self._rows)
-        return self._rows[np.arange(max(count - most, 0), count) % most]
+        count = self.count
+        return self._rows[np.arange(max(count - self._most, 0), count) % len(self._rows)]

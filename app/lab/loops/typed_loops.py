@@ -25,7 +25,7 @@ from onpath.models.systems.robots import Robot
 log = logging.getLogger(__name__)
 Key = tuple[Robot, Kind]
 Submit = Callable[[Callable[[], None]], "Future[None]"]
-MOST = 64  # loops that are kept; 0.2 to 0.5 MB each
+MOST = 64  # loops that are kept; 0.1 to 0.4 MB each
 MOST_MADE, WITHIN = 8, 10.0  # loops that are begun for one lab, in these seconds
 
 

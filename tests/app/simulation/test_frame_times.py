@@ -9,10 +9,12 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.app.simulation.frame_times import FrameTimes
+from onpath.app.simulation.frame_times import SPARE, FrameTimes
+
+FRAMES = st.tuples(st.floats(0, 9), st.floats(0, 1))
 
 
-@given(st.integers(1, 9), st.lists(st.tuples(st.floats(0, 9), st.floats(0, 1)), max_size=30))
+@given(st.integers(1, 9), st.lists(FRAMES, max_size=30) | st.lists(FRAMES, min_size=SPARE + 9))
 def test_the_latest_frames_are_kept_in_their_order(
     most: int, frames: list[tuple[float, float]]
 ) -> None:
