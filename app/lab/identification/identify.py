@@ -149,7 +149,7 @@ def _rows(robot: Robot, segments: list[Segment]) -> Array:
     return np.concatenate(rows)
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=4)
 def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
     """A loop for one thread alone: that of `identification`."""
     return InterpretedLoop(kernel_of(robot, kind))

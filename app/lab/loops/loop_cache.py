@@ -22,7 +22,7 @@ from onpath.models.control.speed_limit import prepare_speed_limit
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
-MOST = 16  # compiled loops that are kept, in use or not; 0.1 to 0.4 MB each
+MOST = 8  # compiled loops that are kept, in use or not; 0.1 to 0.4 MB each
 
 
 class LoopCache:
