@@ -251,13 +251,13 @@ class LabRegistry:
         return len(self._entries)
 
     def free_memory(self) -> bool:
-        """Drop labs that were left a while ago if nobody has used them, and the others' histories.
+        """Drop labs that were left a while ago and not used; delete the histories of the others.
 
-        A history stays where a past instant is shown. A lab that was used before, and is dropped,
-        is in the database. Not to be called by the simulation thread, for which this waits.
+        A lab that was reopened and not used since is in the database. A history stays where a past
+        instant is shown. Not to be called by the simulation thread, for which this waits.
 
         Returns:
-            Whether labs have been dropped, here or elsewhere, whose garbage is to be collected.
+            Whether any lab has been dropped since the last call; it leaves garbage.
         """
         with self._lock:
             left = [e for e in self._waiting() if self.clock() - e.left > HISTORY_KEPT]

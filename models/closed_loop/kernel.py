@@ -124,8 +124,8 @@ def build_kernel(
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
     own = loop_vectors(system, kind)
-    layouts = own.state, own.settings, own.log
-    return Kernel(*layouts, own.changed, own.table_shape, bases, advance)
+    layouts = own.state, own.settings, own.log, own.changed, own.table_shape
+    return Kernel(*layouts, bases, advance)
 
 
 def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:

@@ -28,7 +28,7 @@ class Loop(Protocol):
 
     @property
     def vectors(self) -> LoopVectors:
-        """Layouts of its vectors."""
+        """Layouts of its flat vectors."""
         ...
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
@@ -101,7 +101,7 @@ class CompiledLoop:
     thread may take 5 ms.
 
     Args:
-        vectors: layouts of the vectors.
+        vectors: layouts of its flat vectors.
         address: of `void onpath_run(const double* settings, const double* curves, double* states,
             double* logs, long long ticks, long long robots)`, which advances the states and fills
             the logs. Each array holds the robots' data one after the other.

@@ -46,6 +46,13 @@ def old_garbage() -> weakref.ref[Circle]:
     return weakref.ref(thing)
 
 
+def assert_collects_no_more(memory: MemoryRelease) -> None:
+    left = old_garbage()
+    for _ in range(3 * CALM):
+        memory.look()
+    assert left() is not None
+
+
 def test_garbage_is_collected_when_many_connections_have_ended(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -61,7 +68,7 @@ def test_garbage_is_collected_when_many_connections_have_ended(
     assert left() is not None  # nobody has left since
 
 
-def test_what_a_dropped_lab_leaves_is_collected_once_tabs_are_not_closed() -> None:
+def test_what_a_dropped_lab_leaves_is_collected_once_no_tab_is_closed() -> None:
     garbage, dropped = old_garbage(), [True]
     memory = MemoryRelease(lambda: bool(dropped and dropped.pop()))
     for _ in range(CALM - 1):
@@ -69,10 +76,7 @@ def test_what_a_dropped_lab_leaves_is_collected_once_tabs_are_not_closed() -> No
         assert garbage() is not None
     memory.look()
     assert garbage() is None
-    left = old_garbage()
-    for _ in range(3 * CALM):
-        memory.look()
-    assert left() is not None  # none has been dropped since
+    assert_collects_no_more(memory)  # none has been dropped since
 
 
 def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
@@ -88,10 +92,7 @@ def test_what_a_tab_leaves_is_collected_once_no_other_is_closed(
             assert garbage() is not None
     memory.look()
     assert garbage() is None
-    left = old_garbage()
-    for _ in range(3 * CALM):
-        memory.look()
-    assert left() is not None  # nobody has left since
+    assert_collects_no_more(memory)  # nobody has left since
 
 
 def test_many_tabs_that_are_closed_together_are_collected_once_no_other_one_is(
