@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import Any
 
 import numpy as np
 from msgspec import Struct
+from numpy.typing import NDArray
 
 MOST, FIRST = 500, 16  # events that are kept, and for which there is room at first
 _ROW = np.dtype([("run", "i4"), ("time", "f8"), ("name", "O"), ("detail", "O"), ("benches", "O")])
@@ -49,7 +51,8 @@ class EventLog:
     """
 
     def __init__(self, events: Iterable[LabEvent] = ()) -> None:
-        self._rows, self._count = np.zeros(FIRST, _ROW), 0
+        self._rows: NDArray[Any] = np.zeros(FIRST, _ROW)
+        self._count = 0
         for event in events:
             self._add(event)
 
@@ -84,4 +87,4 @@ class EventLog:
         self._count += 1
 
     def _event(self, number: int) -> LabEvent:
-        return LabEvent(*self._rows[number % MOST].tolist())
+        return LabEvent(*self._rows.item(number % MOST))

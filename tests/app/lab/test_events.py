@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import sys
 from collections import deque
 
 from hypothesis import given
@@ -11,6 +9,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.events import FIRST, MOST, EventLog, LabEvent
 from onpath.models.control.benches import BENCHES
+from tests.support.kept_blocks import blocks_kept
 
 NAMES, DETAILS = ("set", "path", "hold", "release"), ("K1", "speed", "")
 EVENTS = st.builds(
@@ -48,9 +47,10 @@ def test_the_latest_events_are_kept() -> None:
 
 
 def test_events_are_no_objects_of_their_own() -> None:
-    log, benches = EventLog(), BENCHES
-    gc.collect()
-    before = sys.getallocatedblocks()
-    for number in range(MOST):
-        log.append(LabEvent(0, 2.0 * number, "set", "K1", benches))
-    assert sys.getallocatedblocks() < before + 20
+    log = EventLog()
+
+    def note_events() -> None:
+        for number in range(MOST):
+            log.append(LabEvent(0, 2.0 * number, "set", "K1", BENCHES))
+
+    assert blocks_kept(note_events, "*/lab/events.py", __file__) < 20

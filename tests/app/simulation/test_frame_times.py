@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import gc
-import sys
-
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.simulation.frame_times import SPARE, FrameTimes
+from tests.support.kept_blocks import blocks_kept
 
 FRAMES = st.tuples(st.floats(0, 9), st.floats(0, 1))
 
@@ -27,9 +25,9 @@ def test_the_latest_frames_are_kept_in_their_order(
 
 def test_frames_add_no_objects() -> None:
     kept = FrameTimes(1000)
-    kept.append(0.0, 0.0)
-    gc.collect()
-    before = sys.getallocatedblocks()
-    for count in range(3000):
-        kept.append(count / 60, 0.001 * count)
-    assert sys.getallocatedblocks() < before + 20
+
+    def note_frames() -> None:
+        for count in range(3000):
+            kept.append(count / 60, 0.001 * count)
+
+    assert blocks_kept(note_frames, "*/simulation/frame_times.py", __file__) < 20
