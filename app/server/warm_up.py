@@ -5,6 +5,7 @@ What is needed earlier is imported, or read, where it is needed.
 
 from __future__ import annotations
 
+import mimetypes
 import time
 from dataclasses import replace
 from importlib import import_module
@@ -39,6 +40,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             import_module(name)
         for language in languages():
             Words(language)("full.text", places=2)  # a plural, whose rules are imported with it
+        mimetypes.init()  # the types of files, for downloads
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()
