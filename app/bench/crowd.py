@@ -16,6 +16,7 @@ from pathlib import Path
 
 import msgspec
 
+from onpath.app.bench.processor import Processor, watched_processor
 from onpath.app.bench.server_process import Server, serving
 from onpath.app.bench.simulated_browser import Observations
 from onpath.app.server.admission_queue import RESERVED
@@ -25,9 +26,8 @@ from onpath.app.viser_adapter.message_filter import Limits
 MOST = Limits().max_connections_each  # clients; the server sees them at one address
 SHORTEST = 1.0  # [s]
 HEAD = """\
-clients settled  sim slow  display [Hz]  frames late [ms] >50ms       CPU [%]        for each  labs
-            [s] [Hz]  lab slowest median  p50   p95   p99   [%] server load stolen  [MB] [kB/s]"""
-PROCESSOR = Path("/proc/stat")  # Linux only
+clients settled  sim slow display [Hz] frames late [ms] >50ms      CPU [%]      loop for each  labs
+            [s] [Hz]  lab slowest med.  p50   p95   p99   [%] server load stolen [ns] [MB] [kB/s]"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Row:
         late_ms: lateness of frames, three quantiles, [ms].
         overdue: share of the frames more than 50 ms late.
         cpu: of the server, in cores.
-        stolen: share of this machine's time that its host gave to others; nan if unknown.
+        processor: of this machine.
         memory_mb: increase of the server's memory, per client, [MB]; nan if unknown.
     """
 
@@ -79,17 +79,18 @@ class Row:
     late_ms: tuple[float, float, float]
     overdue: float
     cpu: float
-    stolen: float
+    processor: Processor
     memory_mb: float
 
     def __str__(self) -> str:
-        seen, labs = self.seen, self.labs
+        seen, labs, processor = self.seen, self.labs, self.processor
         p50, p95, p99 = self.late_ms
         return (
             f"{seen.clients:7d}{self.settled:8.1f}{self.simulation_hz:5.1f}{self.slowest_lab:5.2f}"
-            f"{seen.slowest_hz:8.1f}{seen.median_hz:7.1f}{p50:5.1f}{p95:6.1f}{p99:6.1f}"
+            f"{seen.slowest_hz:8.1f}{seen.median_hz:5.1f}{p50:5.1f}{p95:6.1f}{p99:6.1f}"
             f"{100 * self.overdue:6.2f}{100 * self.cpu:7.0f}{100 * seen.cpu:5.0f}"
-            f"{100 * self.stolen:7.1f}{self.memory_mb:6.2f}{seen.bytes_per_s / 1e3:7.1f} {labs}"
+            f"{100 * processor.stolen:7.1f}{processor.step_ns:5.0f}"
+            f"{self.memory_mb:5.2f}{seen.bytes_per_s / 1e3:7.1f} {labs}"
         )
 
 
@@ -104,15 +105,17 @@ def measured(crowd: ClientLoad, environment: Mapping[str, str]) -> Iterator[Row]
     """
     with serving(environment, places_for(crowd.clients)) as server:
         alone = server.at_rest()
-        with simulated_crowd(server, crowd.clients, crowd.seconds) as seen:
-            settled = next(seen).seconds
-            before, spent = server.metrics(), _processor()
+        with (
+            simulated_crowd(server, crowd.clients, crowd.seconds) as seen,
+            watched_processor() as processor,
+        ):
+            settled, before = next(seen).seconds, server.metrics()
+            processor()
             for _ in range(crowd.rows):
                 during = next(seen)
-                after, now = server.metrics(crowd.seconds), _processor()
-                stolen = (now[0] - spent[0]) / max(now[1] - spent[1], 1.0)
-                yield _row(during, settled, stolen, alone, before, after)
-                before, spent = after, now
+                after = server.metrics(crowd.seconds)
+                yield _row(during, settled, processor(), alone, before, after)
+                before = after
 
 
 def places_for(clients: int) -> int:
@@ -155,7 +158,7 @@ def _lines(process: subprocess.Popen[bytes]) -> Iterator[Observations]:
 def _row(
     seen: Observations,
     settled: float,
-    stolen: float,
+    processor: Processor,
     alone: Metrics,
     before: Metrics,
     after: Metrics,
@@ -170,18 +173,9 @@ def _row(
         late_ms=after.late_ms,
         overdue=after.overdue,
         cpu=(after.cpu_s - before.cpu_s) / (after.clock - before.clock),
-        stolen=stolen,
+        processor=processor,
         memory_mb=grown / max(seen.clients, 1),
     )
-
-
-def _processor() -> tuple[float, float]:
-    """Time that the host gave to others, and total time, of all cores since boot, [ticks]."""
-    try:
-        spent = [float(word) for word in PROCESSOR.read_text().split()[1:9]]
-    except OSError:
-        return nan, nan
-    return spent[7], sum(spent)
 
 
 def _speeds(before: Metrics, after: Metrics) -> list[float]:
