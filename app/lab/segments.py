@@ -67,12 +67,10 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         """
         if earlier.base.shape != self.base.shape:
             return self
-        differs = earlier.base.view(np.int64) != self.base.view(np.int64)
-        differs[earlier.places] = False
-        places = earlier.places
-        if differs.any():
-            differs[earlier.places] = True
-            places = np.flatnonzero(differs).astype(np.uint16)
+        differs = (earlier.base.view(np.int64) != self.base.view(np.int64)).nonzero()[0].tolist()
+        places, known = earlier.places, earlier.places.tolist()
+        if not set(differs).issubset(known):
+            places = np.array(sorted({*differs, *known}), np.uint16)
         elif self._is_like(earlier):
             return earlier
         return self if len(places) > FEW else replace(self, base=earlier.base, places=places)
