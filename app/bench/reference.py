@@ -43,4 +43,4 @@ def reference_loop(kernel: Kernel, folder: Path, lanes: int = 1) -> CompiledLoop
     code = ctypes.CDLL(str(library))
     address = ctypes.cast(code.onpath_run, ctypes.c_void_p).value
     assert address is not None
-    return CompiledLoop(kernel.vectors, address, code)
+    return CompiledLoop(kernel.layouts, address, code)

@@ -58,7 +58,7 @@ def _replayed(robot: Robot, bench: str, history: list[Segment]) -> list[Trajecto
         loop = _fast_loop(robots[id(segments[0].drives[bench].parameters)], kind)
         logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, bench, segments)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
-        log, law = loop.vectors.log, kind.controller
+        log, law = loop.layouts.log, kind.controller
         part = record(robot, log, law, merged(logged), dt, times).thinned()
         parts.append(replace(part, level_set=kind.level_set))
     return _of_one_unit(parts)
@@ -96,7 +96,7 @@ def _rows(loop: Loop, bench: str, segments: list[Segment]) -> Iterable[tuple[Seg
         drive = segment.drives[bench]
         table = segment.curve.table()
         rows = loop.run(drive.state, drive.settings, table, segment.ticks)[1]
-        held = loop.vectors.settings.unpack(drive.settings)["hold_active"][0] > 0
+        held = loop.layouts.settings.unpack(drive.settings)["hold_active"][0] > 0
         yield segment, rows, bool(held)
 
 

@@ -110,7 +110,7 @@ def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
 
 def _advance(loop: Loop, members: Sequence[Row]) -> None:
     """Advance closed loops of one robot and kind by equally many ticks, all or none."""
-    (first, ticks), log = members[0], loop.vectors.log
+    (first, ticks), log = members[0], loop.layouts.log
     before, largest = _gathered([run.place for run, _ in members])
     states, rows = loop.run_many(
         before,

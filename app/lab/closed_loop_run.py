@@ -13,7 +13,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import loop_vectors, state_layout
+from onpath.models.closed_loop.loop_vectors import loop_layouts, state_layout
 from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import (
     Push,
@@ -81,9 +81,9 @@ class ClosedLoopRun:
     def reset(self, curve: Curve, start: Start) -> None:
         """Begin anew at a start, which must be within reach."""
         assert self._inputs is not None
-        vectors = self._vectors
-        state = start_state(self.robot, vectors, curve, self._inputs[0], start)
-        self.place = single(state, np.zeros(vectors.log.size), 0.0, 0.0)
+        layouts = self._layouts
+        state = start_state(self.robot, layouts, curve, self._inputs[0], start)
+        self.place = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
         self._fill_row(curve)
         self.diverged = None
         self._change(largest=self.distance)
@@ -126,7 +126,7 @@ class ClosedLoopRun:
 
     def _under_law(self, state: Array, kind: Kind) -> Array:
         """The state of a loop under another law, as the loop of the present one begins with it."""
-        memory, layout = law_named(kind.controller).memory, self._vectors.state
+        memory, layout = law_named(kind.controller).memory, self._layouts.state
         before = state_layout(self.robot.system, memory)
         values = {name: np.zeros(size) for name, size in layout.fields}
         own = {name for name, _ in law_named(self.law).memory}
@@ -195,7 +195,7 @@ class ClosedLoopRun:
 
     def fields(self) -> dict[str, np.ndarray]:
         """Views of the state by name."""
-        return self._vectors.state.unpack(self.state)
+        return self._layouts.state.unpack(self.state)
 
     def shown(self) -> dict[str, np.ndarray]:
         """The last log row by name."""
@@ -206,12 +206,12 @@ class ClosedLoopRun:
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
             self._input = self._made_input(frozen).like(self._input)
-            self.values = self.settings[self._input.places].tobytes()
+            self.values = self.settings.take(self._input.places).tobytes()
         return self._input
 
     def _made_input(self, frozen: bool) -> Input:
         self._recorded = self.settings  # those of the input
-        size, rest = self._vectors.changed, self._vectors.state.size - self._vectors.changed
+        size, rest = self._layouts.changed, self._layouts.state.size - self._layouts.changed
         return Input(self.bench, self.kind, self.settings, frozen, size, rest, self._made_with)
 
     def loop(self) -> Loop:
@@ -265,7 +265,7 @@ class ClosedLoopRun:
         elif leg == ended:
             return
         if leg is not None:
-            self.settings = paced(self._vectors, self.settings, leg)
+            self.settings = paced(self._layouts, self.settings, leg)
         if leg is not None and leg != ended:
             self._change()
             self.fields()["speed_ref"][:] = leg.at(tick)
@@ -283,19 +283,19 @@ class ClosedLoopRun:
         if (new := kind_of(self.law, parameters, curve, push)) != before:
             self.kind: Kind = new
             self._loop: Loop | None = None
-            self._vectors = loop_vectors(self.robot.system, new)
-            self.log: Layout = self._vectors.log
+            self._layouts = loop_layouts(self.robot.system, new)
+            self.log: Layout = self._layouts.log
         if same:
-            self.settings = pushed(self._vectors, self.settings, push)
+            self.settings = pushed(self._layouts, self.settings, push)
         else:
-            self.settings = settings_vector(self.robot, self._vectors, parameters, curve, push)
+            self.settings = settings_vector(self.robot, self._layouts, parameters, curve, push)
         if before is not None:
             self._prime(before)
 
     def _prime(self, before: Kind) -> None:
         """Fill the queue of delayed torques if the loop of this kind did not keep it."""
         if self.kind.delay and not before.delay:
-            self._change(primed(self._vectors, self.state))
+            self._change(primed(self._layouts, self.state))
 
     def _fill_row(self, curve: Curve) -> None:
         """Fill the log row of a robot that has not moved yet, and on which nothing has acted."""

@@ -22,12 +22,12 @@ class LoopStates(Struct, frozen=True, eq=False):
 
     @property
     def states(self) -> Array:
-        """Shape (loops, vectors.state.size)."""
+        """Shape (loops, layouts.state.size)."""
         return self.records[:, : self.size]
 
     @property
     def rows(self) -> Array:
-        """Log rows, shape (loops, vectors.log.size)."""
+        """Log rows, shape (loops, layouts.log.size)."""
         return self.records[:, self.size : -2]
 
     @property

@@ -25,10 +25,10 @@ from onpath.models.closed_loop.law_view import (
 )
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import (
-    LoopVectors,
+    LoopLayouts,
     kept_layout,
     log_layout,
-    loop_vectors,
+    loop_layouts,
     settings_layout,
 )
 from onpath.models.closed_loop.plant_tick import held_torque, move
@@ -50,7 +50,7 @@ DEFAULT_GRIP = forces.Grip()
 
 
 @dataclass(frozen=True, slots=True)
-class Kernel(LoopVectors):
+class Kernel(LoopLayouts):
     """One tick of a closed loop, and the layouts of its flat vectors.
 
     Attributes:
@@ -64,9 +64,9 @@ class Kernel(LoopVectors):
     advance: ca.Function
 
     @property
-    def vectors(self) -> LoopVectors:
+    def layouts(self) -> LoopLayouts:
         """The layouts alone: the functions take 0.2 MB."""
-        return LoopVectors(self.state, self.settings, self.log, self.changed, self.table_shape)
+        return LoopLayouts(self.state, self.settings, self.log, self.changed, self.table_shape)
 
     def block(self, ticks: int) -> ca.Function:
         """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
@@ -123,7 +123,7 @@ def build_kernel(
         frame = _space(system, frame, kind)
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
-    own = loop_vectors(system, kind)
+    own = loop_layouts(system, kind)
     layouts = own.state, own.settings, own.log, own.changed, own.table_shape
     return Kernel(*layouts, bases, advance)
 

@@ -18,7 +18,7 @@ _layout = lru_cache(maxsize=128)(Layout)  # 3 kB each, the same for all loops of
 
 
 @dataclass(frozen=True, slots=True)
-class LoopVectors:
+class LoopLayouts:
     """Layouts of the flat vectors of a closed loop.
 
     Attributes:
@@ -35,14 +35,14 @@ class LoopVectors:
     table_shape: tuple[int, int]
 
 
-def loop_vectors(system: MechanicalSystem, kind: Kind) -> LoopVectors:
+def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
     """The layouts for a robot and a kind of loop.
 
     Raises:
         ValueError: an unknown law.
     """
     memory = law_named(kind.controller).memory
-    return LoopVectors(
+    return LoopLayouts(
         state_layout(system, memory),
         settings_layout(system),
         log_layout(system),

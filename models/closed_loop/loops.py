@@ -17,7 +17,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loop_vectors import LoopVectors
+from onpath.models.closed_loop.loop_vectors import LoopLayouts
 
 BLOCK = 16  # ticks per call of the interpreted loop, about one frame of the display
 SHORT = 1000  # ticks, of all robots, up to which a compiled loop keeps the interpreter's lock
@@ -27,7 +27,7 @@ class Loop(Protocol):
     """A kernel that can be run."""
 
     @property
-    def vectors(self) -> LoopVectors:
+    def layouts(self) -> LoopLayouts:
         """Layouts of its flat vectors."""
         ...
 
@@ -35,11 +35,11 @@ class Loop(Protocol):
         """Advance by `ticks`.
 
         Args:
-            state, settings: flat vectors, laid out as `vectors`.
+            state, settings: flat vectors, laid out as `layouts`.
             table: `Curve.table()`.
 
         Returns:
-            The new state, shape (vectors.state.size,), and the log rows, (ticks, vectors.log.size).
+            The new state, shape (layouts.state.size,), and the log rows, (ticks, layouts.log.size).
         """
         ...
 
@@ -53,8 +53,8 @@ class Loop(Protocol):
         """Advance several robots by `ticks`; the arguments of `run`, one per robot.
 
         Returns:
-            The new states, (robots, vectors.state.size), and log rows, (robots, ticks,
-            vectors.log.size), bit by bit those of `run`.
+            The new states, (robots, layouts.state.size), and log rows, (robots, ticks,
+            layouts.log.size), bit by bit those of `run`.
         """
         ...
 
@@ -66,12 +66,12 @@ class InterpretedLoop:
     """
 
     def __init__(self, kernel: Kernel) -> None:
-        self.vectors = kernel.vectors
+        self.layouts = kernel.layouts
         self._blocks = {size: Buffered(kernel.block(size)) for size in (BLOCK, 1)}
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """See `Loop.run`."""
-        rows = np.empty((ticks, self.vectors.log.size))
+        rows = np.empty((ticks, self.layouts.log.size))
         done = 0
         while done < ticks:
             size = BLOCK if ticks - done >= BLOCK else 1
@@ -101,15 +101,15 @@ class CompiledLoop:
     thread may take 5 ms.
 
     Args:
-        vectors: layouts of its flat vectors.
+        layouts: those of its flat vectors.
         address: of `void onpath_run(const double* settings, const double* curves, double* states,
             double* logs, long long ticks, long long robots)`, which advances the states and fills
             the logs. Each array holds the robots' data one after the other.
         owner: the object that keeps the machine code in memory.
     """
 
-    def __init__(self, vectors: LoopVectors, address: int, owner: object) -> None:
-        self.vectors = vectors
+    def __init__(self, layouts: LoopLayouts, address: int, owner: object) -> None:
+        self.layouts = layouts
         self._short = ctypes.PYFUNCTYPE(*_SIGNATURE)(address)
         self._long = ctypes.CFUNCTYPE(*_SIGNATURE)(address)
         self._owner = owner
@@ -127,11 +127,11 @@ class CompiledLoop:
         ticks: int,
     ) -> tuple[Array, Array]:
         """See `Loop.run_many`."""
-        vectors, robots = self.vectors, len(states)
-        after = _stacked(states, robots, vectors.state.size)
-        own = _stacked(settings, robots, vectors.settings.size)
-        curves = _stacked(tables, robots, prod(vectors.table_shape))
-        rows = np.empty((robots, ticks, vectors.log.size))
+        layouts, robots = self.layouts, len(states)
+        after = _stacked(states, robots, layouts.state.size)
+        own = _stacked(settings, robots, layouts.settings.size)
+        curves = _stacked(tables, robots, prod(layouts.table_shape))
+        rows = np.empty((robots, ticks, layouts.log.size))
         run = self._short if ticks * robots <= SHORT else self._long
         run(_address(own), _address(curves), _address(after), _address(rows), ticks, robots)
         return after, rows

@@ -11,7 +11,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import GAINS, LoopVectors
+from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
 from onpath.models.control.implicit_level import check_level, implicit_level
@@ -125,7 +125,7 @@ _kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST
 
 
 def settings_vector(
-    robot: Robot, vectors: LoopVectors, parameters: Parameters, curve: Curve, push: Push
+    robot: Robot, layouts: LoopLayouts, parameters: Parameters, curve: Curve, push: Push
 ) -> Array:
     """The settings of a closed loop as a flat vector: everything but the state and the curve.
 
@@ -134,12 +134,12 @@ def settings_vector(
         push: what acts from outside.
 
     Returns:
-        Shape (vectors.settings.size,).
+        Shape (layouts.settings.size,).
     """
     p, dt = robot.system.p, time_step(parameters)
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
-    return vectors.settings.pack(
+    return layouts.settings.pack(
         {name: getattr(parameters, name) for name in (*GAINS, *OWN_GAINS)}
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
@@ -164,7 +164,7 @@ def settings_vector(
             "sensor_noise": parameters.sensor_noise,
             "seed": round(parameters.seed),
             **_push_fields(push, p),
-            **_composite_gains(vectors, parameters),
+            **_composite_gains(layouts, parameters),
             "plant": robot.plant(parameters),
             "model": robot.model(parameters),
         }
@@ -179,20 +179,20 @@ def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:
     return speed_limit(robot, model, curve, parameters.torque_limit, parameters.speed < 0)
 
 
-def pushed(vectors: LoopVectors, settings: Array, push: Push) -> Array:
+def pushed(layouts: LoopLayouts, settings: Array, push: Push) -> Array:
     """The same settings with another push.
 
     Much cheaper than `settings_vector`, because it runs for every movement of a hand.
     """
-    result, slices = settings.copy(), vectors.settings.slices
+    result, slices = settings.copy(), layouts.settings.slices
     for name, value in _push_fields(push, result[slices["hand_target"]].size).items():
         result[slices[name]] = value
     return result
 
 
-def paced(vectors: LoopVectors, settings: Array, leg: Leg) -> Array:
+def paced(layouts: LoopLayouts, settings: Array, leg: Leg) -> Array:
     """The same settings with the wanted speed of a part of a speed profile."""
-    result, slices = settings.copy(), vectors.settings.slices
+    result, slices = settings.copy(), layouts.settings.slices
     result[slices["speed"]], result[slices["ramp"]] = leg.last, leg.rate
     return result
 
@@ -213,15 +213,15 @@ def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
     }
 
 
-def _composite_gains(vectors: LoopVectors, parameters: Parameters) -> dict[str, float]:
+def _composite_gains(layouts: LoopLayouts, parameters: Parameters) -> dict[str, float]:
     """Gains of composite control and the gauges' noise, if the robot has a flexible link."""
     known = composite_control.GAINS.keys() | {"strain_noise"}
-    names = vectors.settings.slices.keys() & known
+    names = layouts.settings.slices.keys() & known
     return {name: getattr(parameters, name) for name in names}
 
 
 def first_state(
-    robot: Robot, vectors: LoopVectors, curve: Curve, q: Array, v: Array | None = None
+    robot: Robot, layouts: LoopLayouts, curve: Curve, q: Array, v: Array | None = None
 ) -> Array:
     """The state at the start of a run, with θ and θ_r at the closest point, by global search.
 
@@ -231,14 +231,14 @@ def first_state(
         v: velocity, shape (n,); None: at rest.
 
     Returns:
-        Shape (vectors.state.size,).
+        Shape (layouts.state.size,).
     """
     velocity = np.zeros_like(q) if v is None else v
     y = robot.endpoint(q)
     theta = closest_parameter(robot.frame, curve, y)
     m = robot.system.m
-    memory = {name: np.zeros(size) for name, size in vectors.state.fields}
-    return vectors.state.pack(
+    memory = {name: np.zeros(size) for name, size in layouts.state.fields}
+    return layouts.state.pack(
         memory
         | {
             "q": q,
@@ -256,9 +256,9 @@ def first_state(
     )
 
 
-def primed(vectors: LoopVectors, state: Array) -> Array:
+def primed(layouts: LoopLayouts, state: Array) -> Array:
     """The state of a loop without delay for one with delay: the torque has been the same so far."""
-    result, slices = state.copy(), vectors.state.slices
+    result, slices = state.copy(), layouts.state.slices
     result[slices["queue"]] = np.tile(state[slices["u"]], LONGEST)
     return result
 

@@ -9,7 +9,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.loop_vectors import LoopVectors
+from onpath.models.closed_loop.loop_vectors import LoopLayouts
 from onpath.models.closed_loop.simulation import first_state
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import LEAST_MARGIN
@@ -117,9 +117,9 @@ def _jacobian(robot: Robot) -> ca.Function:
     return ca.Function("jacobian", [system.q, system.parameters], [matrix])
 
 
-def lead(state: Array, vectors: LoopVectors, curve: Curve, offset: float) -> Array:
+def lead(state: Array, layouts: LoopLayouts, curve: Curve, offset: float) -> Array:
     """Put the reference point of a first state ahead by an offset, [rad], or at a path's end."""
-    theta_ref = vectors.state.unpack(state)["theta_ref"]
+    theta_ref = layouts.state.unpack(state)["theta_ref"]
     theta_ref += offset
     if not curve.closed:
         np.clip(theta_ref, -np.pi, np.pi, out=theta_ref)
@@ -127,15 +127,15 @@ def lead(state: Array, vectors: LoopVectors, curve: Curve, offset: float) -> Arr
 
 
 def start_state(
-    robot: Robot, vectors: LoopVectors, curve: Curve, parameters: Parameters, start: Start
+    robot: Robot, layouts: LoopLayouts, curve: Curve, parameters: Parameters, start: Start
 ) -> Array:
-    """The first state of a run, shape (vectors.state.size,).
+    """The first state of a run, shape (layouts.state.size,).
 
     Raises:
         ValueError: the start is out of reach.
     """
     q, v = _motion(robot, curve, parameters, start)
-    return lead(first_state(robot, vectors, curve, q, v), vectors, curve, start.clock_offset)
+    return lead(first_state(robot, layouts, curve, q, v), layouts, curve, start.clock_offset)
 
 
 def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start) -> None:

@@ -217,7 +217,7 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
     if missing:  # otherwise LLVM would abort the process
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()
-    return CompiledLoop(kernel.vectors, engine.get_function_address("onpath_run"), engine)
+    return CompiledLoop(kernel.layouts, engine.get_function_address("onpath_run"), engine)
 
 
 def _machine() -> TargetMachine:

@@ -67,7 +67,7 @@ class Driven:
         if self.stopped is None and ticks > 0:
             kind = kind_of(self.who, self.parameters, CURVE)
             loop = _loop(self.robot, kind)
-            settings = settings_vector(self.robot, loop.vectors, self.parameters, CURVE, self.push)
+            settings = settings_vector(self.robot, loop.layouts, self.parameters, CURVE, self.push)
             self.state, rows = loop.run(self.state, settings, CURVE.table(), ticks)
             fields = self._log.unpack(rows)
             fault = self.robot.fault(fields["q"], fields["v"], self.parameters)

@@ -13,7 +13,7 @@ from onpath.app.lab.segments import Drive, HistoryCopy, Segment
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import loop_vectors
+from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control.benches import RIGHT
@@ -89,7 +89,7 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     if linkage is None or not segments:
         raise CodedError("error.nothing_recorded")
     drive, dt = segments[-1].drives[MEASURED], segments[-1].dt
-    log = loop_vectors(robot.system, drive.kind).log.unpack(_rows(robot, segments))
+    log = loop_layouts(robot.system, drive.kind).log.unpack(_rows(robot, segments))
     q, v = log["q"], log["v"]
     torque = log["u"] + joint_torques(q, log["force"], linkage.l1, linkage.l4)
     if drive.kind.encoder:
@@ -133,7 +133,7 @@ def _alike(robot: Robot, one: Drive, other: Drive) -> bool:
 
 
 def _setting(robot: Robot, drive: Drive, name: str) -> Array:
-    return drive.settings[loop_vectors(robot.system, drive.kind).settings.slices[name]]
+    return drive.settings[loop_layouts(robot.system, drive.kind).settings.slices[name]]
 
 
 def _rows(robot: Robot, segments: list[Segment]) -> Array:

@@ -17,7 +17,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_sn
 from onpath.app.storage.lab_state import _now, _state, put_back
 from onpath.lessons.action_schema import Action
 from onpath.lessons.course import Course, read_course
-from onpath.models.closed_loop.loop_vectors import loop_vectors
+from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.closed_loop.start import BOUNDS
@@ -702,11 +702,11 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
     class Breaking:
         """A loop whose closest point is lost before the robot is."""
 
-        vectors = loop_vectors(lab.session.robot.system, run_.kind)
+        layouts = loop_layouts(lab.session.robot.system, run_.kind)
 
         def run_many(self, states: list[np.ndarray], *_: object) -> tuple[np.ndarray, np.ndarray]:
             rows = np.tile(run_.row, (len(states), 9, 1))
-            fields = self.vectors.log.unpack(rows)
+            fields = self.layouts.log.unpack(rows)
             fields["y"][..., 0] = np.arange(9)
             fields["theta"][:, 4:] = np.nan
             fields["q"][:, 6:] = np.inf

@@ -156,7 +156,7 @@ def test_both_controllers_get_the_identical_force(rig: Rig) -> None:
         }
         settings = rig.settings(FOLLOWING, **changes)
         forces = [
-            loop.vectors.log.unpack(loop.run(state, settings, CIRCLE.table(), 1)[1])["force"]
+            loop.layouts.log.unpack(loop.run(state, settings, CIRCLE.table(), 1)[1])["force"]
             for loop in loops
         ]
         assert forces[0].tobytes() == forces[1].tobytes()

@@ -66,9 +66,9 @@ def test_any_number_of_ticks(rig: Rig, ticks: int) -> None:
     given = start.copy()
     for loop in every_loop(rig):
         state, rows = loop.run(start, settings, circle(0.05).table(), ticks)
-        assert rows.shape == (ticks, loop.vectors.log.size) and state.shape == start.shape
+        assert rows.shape == (ticks, loop.layouts.log.size) and state.shape == start.shape
         assert np.array_equal(start, given)
-        q = loop.vectors.log.unpack(rows)["q"]
+        q = loop.layouts.log.unpack(rows)["q"]
         assert ticks < 2 or not np.array_equal(q[0], q[-1])
         assert ticks > 0 or np.array_equal(state, start)
 
@@ -90,7 +90,7 @@ def test_many_robots_are_each_as_alone(rig: Rig, random_curve: Callable[[int], C
     for loop in every_loop(rig):
         for ticks in (BLOCK + 1, SHORT):  # the second releases the interpreter's lock
             states, rows = loop.run_many(starts, settings, tables, ticks)
-            assert rows.shape == (5, ticks, loop.vectors.log.size)
+            assert rows.shape == (5, ticks, loop.layouts.log.size)
             for i, inputs in enumerate(zip(starts, settings, tables, strict=True)):
                 state, own = loop.run(*inputs, ticks)
                 assert np.array_equal(states[i], state) and np.array_equal(rows[i], own)

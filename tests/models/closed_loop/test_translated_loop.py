@@ -16,7 +16,7 @@ import pytest
 
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loop_vectors import LoopVectors, loop_vectors
+from onpath.models.closed_loop.loop_vectors import LoopLayouts, loop_layouts
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of
 from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
@@ -54,13 +54,13 @@ def test_a_compiled_loop_keeps_the_layouts_and_not_the_graphs(name: str, stictio
     robot = ROBOTS[name].make(ROBOTS[name].lab)
     kind = Kind(NAMES[0], delay=stiction, noise=stiction, stiction=stiction)
     kernel = kernel_of(robot, kind)
-    vectors = translate_loop(kernel).vectors
-    assert type(vectors) is LoopVectors and vectors == loop_vectors(robot.system, kind)
+    layouts = translate_loop(kernel).layouts
+    assert type(layouts) is LoopLayouts and layouts == loop_layouts(robot.system, kind)
     inputs = [kernel.advance.numel_in(i) for i in range(2)]
     outputs = [kernel.advance.numel_out(i) for i in range(2)]
     assert (inputs, outputs) == (
-        [vectors.changed, vectors.settings.size],
-        [vectors.changed, vectors.log.size],
+        [layouts.changed, layouts.settings.size],
+        [layouts.changed, layouts.log.size],
     )
 
 

@@ -86,7 +86,7 @@ def test_the_compiled_loop_is_the_interpreted_one() -> None:
     experiment = experiments()["position"].along(curve)
     log = run(experiment.with_values({"duration": 0.2, "across": "level_set"}), "path_following")
     assert log.diverged_at is None
-    assert translate_loop(kernel_of(FIVE_BAR.make(parameters), kind)).vectors.changed > 0
+    assert translate_loop(kernel_of(FIVE_BAR.make(parameters), kind)).layouts.changed > 0
 
 
 def test_a_slanted_plane_has_it_too() -> None:
