@@ -1,6 +1,7 @@
 """The simulation thread: it owns all labs and advances them at 60 Hz, frame by frame.
 
-A frame that exceeds its budget slows simulated time, visibly; late frames never accumulate.
+When it is two frames late, it simulates the next two as one, which takes less than both. When that
+is not enough, simulated time slows down, visibly; late frames never accumulate.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ FRAMES = 60  # per second
 FRAME = 1 / FRAMES  # [s]
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
+BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
@@ -239,7 +241,7 @@ class SimulationThread:
     def run(self) -> None:
         """Run frames, each at its deadline, until stopped."""
         last, pace = self._clock(), DisplayRate()
-        count, deadline = 0, last + FRAME
+        count, due, deadline = 0, 0, last + FRAME
         while not self._stop.is_set():
             now = self._clock()
             self._sleep(max(deadline - now, PAUSE))
@@ -247,14 +249,25 @@ class SimulationThread:
             late = now - deadline
             self.frames.append(now, late)
             note_lateness(late > TOLERATED)
-            deadline = now + FRAME if late > LATEST else deadline + FRAME
-            busy, drawing = self._frame(now - last, late, count, pace.stride_when(late))
+            together = 2 if BEHIND < late <= LATEST else 1
+            deadline = now + FRAME if late > LATEST else deadline + together * FRAME
+            length, stride = frame_length(due, together), pace.stride_when(late)
+            busy, drawing = self._frame(now - last, late, count, stride, length)
             pace.note(busy, drawing, now - last)
-            last, count = now, count + 1
+            last, count, due = now, count + 1, due + together
         note_lateness(False)
 
-    def _frame(self, seconds: float, late: float, count: int, stride: float) -> tuple[float, float]:
+    def _frame(
+        self, seconds: float, late: float, count: int, stride: float, length: float
+    ) -> tuple[float, float]:
         """Run one frame: each step for all labs, which is faster than lab by lab.
+
+        Args:
+            seconds: since the last frame.
+            late: how late this one is, [s].
+            count: its number.
+            stride: frames per frame of display.
+            length: simulated time at the usual rate, see `frame_length`, [s].
 
         Returns:
             Time spent on all but slow updates, and of that on drawing, [s].
@@ -264,7 +277,7 @@ class SimulationThread:
             _answer(*self._calls.popleft())
         spare = FRAME - late - self._advancing - self._drawing
         apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
-        applied, length = self._clock(), frame_length(count)
+        applied = self._clock()
         advance_together([lab.frame(seconds, length) for lab in labs], log_error)
         ended = self._clock()
         self._advancing += FADING * (ended - applied - self._advancing)
@@ -279,12 +292,12 @@ class SimulationThread:
         return ended - begun + drawing, drawing
 
 
-def frame_length(count: int) -> float:
-    """Length of the frame with this number, in whole ticks, [s]; 60 frames are a second.
+def frame_length(number: int, together: int = 1) -> float:
+    """Length of some frames from this one on, in whole ticks, [s]; 60 frames are a second.
 
     Labs of the usual rate thus always need equally many ticks, so that they are advanced together.
     """
-    end, begin = ((number * round(1 / TICK)) // FRAMES for number in (count + 1, count))
+    end, begin = ((each * round(1 / TICK)) // FRAMES for each in (number + together, number))
     return (end - begin) * TICK
 
 
