@@ -1,4 +1,4 @@
-"""What this machine's processor has to offer meanwhile.
+"""How fast this machine's processor is while something is measured.
 
 The processor of a virtual machine may be half as fast at some times as at others, although its host
 reports no time as given to others. So a fixed loop of Python is timed again and again.
@@ -16,8 +16,8 @@ from threading import Event, Thread
 
 from msgspec import Struct
 
-STEPS = 20_000  # of the fixed loop: one or two milliseconds
-INTERVAL = 1.0  # [s] between loops, which thus take 0.1 or 0.2 % of a core
+STEPS = 20_000  # of the fixed loop: about a millisecond
+INTERVAL = 1.0  # [s] between loops, which thus take 0.1 % of a core
 TIMES = Path("/proc/stat")  # Linux only
 
 
