@@ -35,7 +35,7 @@ class Processor(Struct, frozen=True):
 
 @contextmanager
 def watched_processor() -> Iterator[Callable[[], Processor]]:
-    """A function that returns the processor since it was called last."""
+    """A function that tells how the processor was since its last call."""
     ended, timed, before = Event(), [step_ns()], _times()
 
     def work() -> None:
@@ -44,11 +44,11 @@ def watched_processor() -> Iterator[Callable[[], Processor]]:
 
     def since_last() -> Processor:
         nonlocal before
-        now = _times()
-        given, all_of_it = now[0] - before[0], now[1] - before[1]
-        before, took = now, median(timed)
+        now, step = _times(), median(timed)
+        stolen, total = now[0] - before[0], now[1] - before[1]
+        before = now
         del timed[:-1]
-        return Processor(given / max(all_of_it, 1.0), took)
+        return Processor(stolen / max(total, 1.0), step)
 
     thread = Thread(target=work, name="fixed loop", daemon=True)
     thread.start()

@@ -1,7 +1,7 @@
 """The simulation thread: it owns all labs and advances them at 60 Hz, frame by frame.
 
-When it is two frames late, it simulates the next two as one, which takes less than both. When that
-is not enough, simulated time slows down, visibly; late frames never accumulate.
+When it is two frames late, it simulates the next two as one, which takes less time. When that is
+not enough, simulated time slows down, visibly; late frames never accumulate.
 """
 
 from __future__ import annotations
@@ -21,14 +21,12 @@ from onpath.app.common.on_time import note_lateness
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import DisplayRate
+from onpath.app.simulation.frame_length import FRAME, frame_length
 from onpath.app.simulation.frame_times import FrameTimes
 from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
-from onpath.models.systems.parameters import TICK
 
 log = logging.getLogger(__name__)
 
-FRAMES = 60  # per second
-FRAME = 1 / FRAMES  # [s]
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
@@ -290,15 +288,6 @@ class SimulationThread:
         drawing = self._clock() - drawing
         self._drawing += FADING * (drawing - self._drawing)
         return ended - begun + drawing, drawing
-
-
-def frame_length(number: int, together: int = 1) -> float:
-    """Length of some frames from this one on, in whole ticks, [s]; 60 frames are a second.
-
-    Labs of the usual rate thus always need equally many ticks, so that they are advanced together.
-    """
-    end, begin = ((each * round(1 / TICK)) // FRAMES for each in (number + together, number))
-    return (end - begin) * TICK
 
 
 def apply_commands(labs: list[ScheduledLab], most: float) -> None:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from onpath.app.simulation.simulation_thread import FRAME, SimulationThread
+from onpath.app.simulation.frame_length import FRAME
+from onpath.app.simulation.simulation_thread import SimulationThread
 
 
 class FrameClock:

@@ -40,7 +40,7 @@ from onpath.app.bench.simulated_browser import Browser
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import in_turn
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.simulation_thread import FRAME
+from onpath.app.simulation.frame_length import FRAME
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting

@@ -16,6 +16,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import LATE, STRIDES, is_turn
+from onpath.app.simulation.frame_length import frame_length
 from onpath.app.simulation.simulation_thread import (
     ALL_COMMANDS,
     BEHIND,
@@ -25,7 +26,6 @@ from onpath.app.simulation.simulation_thread import (
     ScheduledLab,
     SimulationThread,
     apply_commands,
-    frame_length,
 )
 from onpath.models.systems.parameters import TICK
 from tests.support.lab import FRAME, new_lab
@@ -165,12 +165,13 @@ def test_frames_that_take_too_long_are_simulated_two_at_once(cost: float) -> Non
     assert len(view.shown) == pytest.approx(20.0 / (cost * FRAME + PAUSE), rel=0.01)
 
 
-def test_slower_frames_slow_simulated_time_visibly() -> None:
-    """Most of them are two at once, until the schedule restarts."""
-    thread, scheduled, _, _ = simulated(8.0, lambda _: 4.0 * FRAME)
-    assert 8.0 / 4.0 < scheduled.session.time <= 2 * 8.0 / 4.0
-    assert 1 / 4.0 < scheduled.achieved <= 2 / 4.0
-    assert max(thread.lateness) <= LATEST + 4.0 * FRAME  # it never piles up
+@pytest.mark.parametrize(("cost", "at_once"), [(4.0, 5 / 3), (8.0, 1.0)])
+def test_slower_frames_slow_simulated_time_visibly(cost: float, at_once: float) -> None:
+    """The schedule restarts with each that is over six frames late: every third, or every one."""
+    thread, scheduled, _, _ = simulated(24.0, lambda _: cost * FRAME)
+    assert scheduled.session.time == pytest.approx(24.0 * at_once / cost, rel=0.05)
+    assert scheduled.achieved == pytest.approx(at_once / cost, rel=0.05)
+    assert max(thread.lateness) <= LATEST + cost * FRAME  # it never piles up
 
 
 def test_after_a_stall_it_continues_at_its_pace() -> None:
