@@ -18,7 +18,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.control.laws.expressions import read
+from onpath.models.control.laws.expressions import read, syntax_tree
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.tube import curve_frames, offset, tube_width
@@ -31,7 +31,7 @@ SAMPLES, LINES = 240, 41
 LEAST = 0.02
 """Least slope of λ along the normal of the closest point; near the path it is 1."""
 _OF_POLYNOMIALS = (
-    *(ast.Expression, ast.BinOp, ast.UnaryOp, ast.Name, ast.Constant),
+    *(ast.BinOp, ast.UnaryOp, ast.Name, ast.Constant),
     *(ast.operator, ast.unaryop, ast.expr_context),
 )
 
@@ -111,7 +111,7 @@ def check_level(curve: Curve) -> None:
 
 def _is_polynomial(text: str) -> bool:
     """Whether s is one; the text is one that `level_function` has read, with constant exponents."""
-    parts = list(ast.walk(ast.parse(text.partition("=")[2].strip(), mode="eval")))
+    parts = list(ast.walk(syntax_tree(text.partition("=")[2].strip())))
     divisors = [p.right for p in parts if isinstance(p, ast.BinOp) and isinstance(p.op, ast.Div)]
     in_divisors = [part for each in divisors for part in ast.walk(each)]
     return all(isinstance(part, _OF_POLYNOMIALS) for part in parts) and not any(

@@ -12,6 +12,7 @@ import ast
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from functools import reduce
@@ -23,6 +24,7 @@ from onpath.models.errors import CodedError, Message
 LONGEST = 500  # [characters]
 MOST_NODES = 200  # names, numbers and operations
 DEEPEST = 60  # nesting of the syntax tree
+MOST_TRIES = 20  # to make a syntax tree while other threads make theirs
 LARGEST_EXPONENT = 4
 LARGEST_NUMBER = 1e12
 TOO_COMPLEX = Message("error.law_too_complex", {"most": MOST_NODES, "deepest": DEEPEST})
@@ -121,6 +123,21 @@ def read(text: str, known: Sequence[str], targets: Sequence[str]) -> Formulas:
     return Formulas(text, tuple(found), names, function)
 
 
+def syntax_tree(expression: str) -> ast.expr:
+    """The syntax tree of one expression.
+
+    Python 3.11.7 counts the depth of the trees of all threads together, and raises `SystemError` if
+    another thread makes one at the same moment: then the tree is made once more.
+
+    Raises:
+        SyntaxError, ValueError, MemoryError, RecursionError: as `ast.parse`.
+    """
+    for _ in range(MOST_TRIES):
+        with suppress(SystemError):
+            return ast.parse(expression, mode="eval").body
+    raise MemoryError
+
+
 def _lines(text: str) -> Iterator[tuple[int, str]]:
     """Where each line that is not blank begins in the text, and the line."""
     for line in re.finditer(r"[^\n;]+", text):
@@ -167,7 +184,7 @@ class _LineReader:
         expression = line[head.end() :].rstrip(" \t\r")
         self._check_tokens(expression, given=tuple(self._symbols))
         try:
-            return head["name"], ast.parse(expression, mode="eval").body
+            return head["name"], syntax_tree(expression)
         except SyntaxError as error:
             offset = min(max((error.offset or 1) - 1, 0), len(expression))
             raise self.error(offset, Message("error.law_unreadable")) from None

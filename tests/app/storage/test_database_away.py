@@ -99,7 +99,7 @@ def full(server: Server) -> Iterator[None]:
 @contextmanager
 def no_folder(server: Server) -> Iterator[None]:
     """Neither the file nor a place for it."""
-    shutil.rmtree(server.file.parent)
+    delete_folder(server.file)
     server.file.parent.write_text("a file where the folder was")
     yield
     server.file.parent.unlink()
@@ -216,7 +216,8 @@ def delete(file: Path) -> None:
 
 
 def delete_folder(file: Path) -> None:
-    shutil.rmtree(file.parent)
+    """Delete it at once: file by file, the writer could put another one there meanwhile."""
+    shutil.rmtree(file.parent.rename(file.parent.with_name("deleted")))
 
 
 def put_another(file: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import ast
+import gc
 import math
 import string
 import sys
@@ -260,6 +262,30 @@ def test_deep_nesting_is_refused_even_when_the_stack_is_nearly_full() -> None:
         thread.join()
     assert isinstance(found[0], Formulas)
     assert {type(each) for each in found} == {Formulas, CodedError}
+
+
+def test_a_law_is_read_while_another_thread_reads_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python 3.11.7 raises `SystemError` then, from `ast.parse`."""
+
+    def read_another(phase: str, _: object) -> None:
+        if phase == "start" and not meanwhile:
+            other = threading.Thread(target=lambda: meanwhile.append(outcome(VALID[0])))
+            other.start()
+            other.join()
+
+    def interrupted(text: str, mode: str) -> ast.AST:
+        monkeypatch.undo()
+        gc.callbacks.append(read_another)
+        gc.set_threshold(1)  # a collection, and with it the other thread, amid making the tree
+        try:
+            return ast.parse(text, mode=mode)
+        finally:
+            gc.set_threshold(*before)
+            gc.callbacks.remove(read_another)
+
+    meanwhile, before = list[object](), gc.get_threshold()
+    monkeypatch.setattr(ast, "parse", interrupted)
+    assert {type(each) for each in (outcome(VALID[1]), *meanwhile)} == {Formulas} and meanwhile
 
 
 # Fuzz: whatever the text is, there is a law or a refusal with a code.
