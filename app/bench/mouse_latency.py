@@ -14,7 +14,7 @@ from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
-from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.models.control.benches import BENCHES, RIGHT
 
 ARGUMENTS = (

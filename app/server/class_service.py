@@ -17,7 +17,7 @@ from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
-from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import Records
 from onpath.app.storage.write_behind import WriteBehind

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.page.teacher_context import TeacherChoices
-from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.lessons.words import Words
 
 

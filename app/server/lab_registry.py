@@ -18,7 +18,8 @@ from onpath.app.common.access_codes import new_code
 from onpath.app.common.throttle import Throttle
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.looking_back import forget_history
-from onpath.app.simulation.simulation_thread import ScheduledLab, SimulationThread
+from onpath.app.simulation.scheduled_lab import ScheduledLab
+from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.lab_state import LabState, StateObserver, put_back
 from onpath.app.storage.records import NotKept
 from onpath.app.storage.write_behind import WriteBehind

@@ -16,7 +16,7 @@ from typing import Protocol
 import viser
 from viser import _messages
 
-from onpath.app.simulation.simulation_thread import Display, ScheduledLab
+from onpath.app.simulation.scheduled_lab import Display, ScheduledLab
 
 QUESTION_INTERVAL = 2.0  # [s] between questions, while anything is sent to the browser
 PATIENCE = 4.0  # [s] to wait for the reply; a browser that draws in software may stall for two

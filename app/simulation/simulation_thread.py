@@ -1,7 +1,8 @@
 """The simulation thread: it owns all labs and advances them at 60 Hz, frame by frame.
 
-When it is two frames late, it simulates the next two as one, which takes less time. When that is
-not enough, simulated time slows down, visibly; late frames never accumulate.
+When it is busy, it simulates each lab in the frames in which the lab is drawn. When it is two
+frames late, it simulates the next two as one. When that is not enough, simulated time slows down,
+visibly; late frames never accumulate.
 """
 
 from __future__ import annotations
@@ -14,151 +15,31 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from onpath.app.common.error_log import log_error
 from onpath.app.common.on_time import note_lateness
-from onpath.app.lab.advance_together import Frame, advance_together
-from onpath.app.lab.lab import Lab
+from onpath.app.lab.advance_together import advance_together
 from onpath.app.simulation.display_rate import DisplayRate
 from onpath.app.simulation.frame_length import FRAME, frame_length
 from onpath.app.simulation.frame_times import FrameTimes
+from onpath.app.simulation.scheduled_lab import COMMANDS, ScheduledLab
 from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
 
 log = logging.getLogger(__name__)
 
-FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
-FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
+FADING = 1 / 60  # low-pass gain of computing times, per frame
 BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
 SELDOM = (10_000, 5, 1_000)  # allocations before a collection, which stops all threads for 20 ms
 HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
-COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
 ALL_COMMANDS, FEWEST = 4e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
-NEVER = -1_000_000  # number of a frame long ago
 ANSWER = 30.0  # [s] that another thread waits to be called at the beginning of a frame
 
 T = TypeVar("T")
-
-
-class Display(Protocol):
-    """Shows a lab; called by the simulation thread only."""
-
-    @property
-    def is_outdated(self) -> bool:
-        """Whether it needs a `refresh` now."""
-        ...
-
-    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
-        """Whether what moves is shown in this frame."""
-        ...
-
-    def show(self, lab: Lab, frame: int, stride: float) -> None:
-        """Show what moves, in every `stride`-th frame; `frame` is the number of the frame."""
-        ...
-
-    def refresh(self, lab: Lab, achieved: float) -> None:
-        """Show everything, also what changes slowly; see `SlowUpdates`."""
-        ...
-
-    def send(self) -> None:
-        """Send what has been shown, after all labs have been simulated."""
-        ...
-
-
-class ScheduledLab:
-    """A lab, its measured speed and its viewer.
-
-    Attributes:
-        lab: the lab.
-        session: its simulated part.
-        view: its viewer, or None.
-        used: computing time of its commands in about the last ten seconds, [s].
-        refreshed: see `Updated`.
-    """
-
-    def __init__(self, lab: Lab) -> None:
-        self.lab, self.session = lab, lab.session
-        self.view: Display | None = None
-        self.refreshed = NEVER
-        self._credit = self.used = 0.0
-        self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
-
-    @property
-    def is_seen(self) -> bool:
-        """Whether a browser draws it; otherwise simulated time is paused."""
-        return self.view is not None
-
-    @property
-    def achieved(self) -> float:
-        """Recent simulated seconds per second."""
-        return self._simulated / self._passed
-
-    def drain(self, share: float = COMMANDS, may_begin: bool = True) -> float:
-        """Apply commands, and do whatever else a lab does before a frame.
-
-        Args:
-            share: computing time per frame, [s]; a command that takes longer delays the next.
-            may_begin: whether commands may be applied in this frame.
-
-        Returns:
-            Computing time of the commands, [s].
-        """
-        self._credit = min(self._credit, 0.0) + share
-        taken = self.lab.drain(self._credit if may_begin else 0.0)
-        self._credit -= taken
-        self.used += taken - FORGETTING * self.used
-        return taken
-
-    def frame(self, seconds: float, length: float = FRAME) -> Frame:
-        """Simulate a frame; see `advance_together`.
-
-        Simulated time is paused while nobody looks.
-
-        Args:
-            seconds: that have passed since the last one, for the measured speed.
-            length: of the frame at the usual rate, see `frame_length`, [s].
-        """
-        session = self.session
-        if self.view is None:
-            return
-        before = session.time
-        yield from self.lab.frame(session.rate * length)
-        if session.running and not self.lab.frozen:
-            self._simulated += session.time - before - self._simulated * FADING
-            self._passed += seconds - self._passed * FADING
-
-    @property
-    def is_outdated(self) -> bool:
-        """See `Updated`."""
-        view = self.view  # another thread may remove it
-        return view is not None and view.is_outdated
-
-    def is_turn(self, frame: int, stride: float) -> bool:
-        """See `Updated`."""
-        view = self.view
-        return view is not None and view.is_turn(self.lab, frame, stride)
-
-    def refresh(self, frame: int) -> None:
-        """See `Updated`. An error is logged, and does not affect other labs."""
-        self.refreshed, view = frame, self.view
-        if view is not None:
-            _do(lambda lab: view.refresh(lab.lab, lab.achieved), [self])
-
-    def show(self, count: int, stride: float) -> None:
-        """Show its viewer what moves."""
-        view = self.view
-        if view is not None:
-            view.show(self.lab, count, stride)
-
-    def send(self) -> None:
-        """Send what has been shown."""
-        view = self.view
-        if view is not None:
-            view.send()
 
 
 class SimulationThread:
@@ -276,7 +157,8 @@ class SimulationThread:
         spare = FRAME - late - self._advancing - self._drawing
         apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
         applied = self._clock()
-        advance_together([lab.frame(seconds, length) for lab in labs], log_error)
+        frames = [lab.frame(seconds, length, count, stride) for lab in labs]
+        advance_together(frames, log_error)
         ended = self._clock()
         self._advancing += FADING * (ended - applied - self._advancing)
         left = min(SHARE * FRAME, MOST * FRAME - late - (ended - begun) - self._drawing)

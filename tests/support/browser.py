@@ -28,7 +28,7 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.frame_length import FRAME
-from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.models.systems.parameters import time_step
 from tests.support import waiting
 from tests.support.fingers import fingers

@@ -17,7 +17,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility
-from onpath.app.simulation.simulation_thread import ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from tests.support.frame_clock import FrameClock
 from tests.support.lab import new_lab
 from tests.support.student import Student

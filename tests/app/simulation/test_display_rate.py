@@ -30,14 +30,22 @@ def test_a_busy_thread_draws_less_often_step_by_step_and_recovers() -> None:
 
 
 @pytest.mark.parametrize("drawing", [0.0, 0.3, 0.67, 1.0])
-@pytest.mark.parametrize("work", [0.3, 0.6, 0.8, 1.0, 1.3, 1.9])
-def test_it_settles_where_there_is_time(work: float, drawing: float) -> None:
-    """`work`: share of the time at the first stride; `drawing`: share of the work."""
+@pytest.mark.parametrize("work", [0.3, 0.55, 0.6, 0.8, 1.0, 1.3, 1.9])
+@pytest.mark.parametrize("together", [1.0, 0.75])
+def test_it_settles_where_there_is_time(work: float, drawing: float, together: float) -> None:
+    """Also where simulating several frames together takes less time.
+
+    Args:
+        work: share of the time at the first stride.
+        drawing: share of the work.
+        together: time of the simulation at the other strides, as a share of that at the first.
+    """
     pace, found = DisplayRate(), list[float]()
 
     def shares() -> tuple[float, float]:
         drawn = drawing * work * STRIDES[0] / pace.stride
-        return (1 - drawing) * work + drawn, drawn
+        rest = (1 - drawing) * work * (1.0 if pace.stride == STRIDES[0] else together)
+        return rest + drawn, drawn
 
     for _ in range(1800):
         share, drawn = shares()

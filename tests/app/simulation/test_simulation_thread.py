@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Callable
 from math import ceil
+from typing import Any
 
 import pytest
 
@@ -17,13 +18,13 @@ from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import LATE, STRIDES, is_turn
 from onpath.app.simulation.frame_length import frame_length
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.simulation.simulation_thread import (
     ALL_COMMANDS,
     BEHIND,
     LATEST,
     PAUSE,
     TOLERATED,
-    ScheduledLab,
     SimulationThread,
     apply_commands,
 )
@@ -118,12 +119,12 @@ def drawn(
     labs = [ScheduledLab(new_lab()) for _ in range(count)]
     frames = itertools.count()
 
-    class Costly(Lab):
-        def frame(self, seconds: float) -> Frame:
-            yield from super().frame(seconds)
+    class Costly(ScheduledLab):
+        def frame(self, *args: Any, **named: Any) -> Frame:
+            yield from super().frame(*args, **named)
             clock.work(cost(next(frames)))
 
-    labs[0] = ScheduledLab(Costly(new_lab().session._store))
+    labs[0] = Costly(new_lab())
     screens = [Screen(clock, at, drawing / count) for at in range(count)]
     for scheduled, screen in zip(labs, screens, strict=True):
         scheduled.view = screen

@@ -1,0 +1,180 @@
+"""A lab in the simulation thread: when it is simulated, its measured speed, and its viewer."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from msgspec import Struct
+
+from onpath.app.common.error_log import log_error
+from onpath.app.lab.advance_together import Frame
+from onpath.app.lab.lab import Lab
+from onpath.app.simulation.display_rate import STRIDES
+from onpath.app.simulation.frame_length import FRAME
+
+FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
+FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
+COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
+LONGEST = 4  # maximum frames of the thread that are simulated together
+NEVER = -1_000_000  # number of a frame long ago
+
+
+class Elapsed(Struct, frozen=True):
+    """Frames that have not been simulated yet.
+
+    Attributes:
+        seconds: that have passed, [s].
+        length: simulated time of the frames at the usual rate, [s].
+        frames: their number.
+    """
+
+    seconds: float
+    length: float
+    frames: int
+
+    def and_frame(self, seconds: float, length: float) -> Elapsed:
+        """These and one more."""
+        return Elapsed(self.seconds + seconds, self.length + length, self.frames + 1)
+
+
+NOTHING = Elapsed(0.0, 0.0, 0)
+
+
+class Display(Protocol):
+    """Shows a lab; called by the simulation thread only."""
+
+    @property
+    def is_outdated(self) -> bool:
+        """Whether it needs a `refresh` now."""
+        ...
+
+    def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
+        """Whether what moves is shown in this frame."""
+        ...
+
+    def show(self, lab: Lab, frame: int, stride: float) -> None:
+        """Show what moves, in every `stride`-th frame; `frame` is the number of the frame."""
+        ...
+
+    def refresh(self, lab: Lab, achieved: float) -> None:
+        """Show everything, also what changes slowly; see `SlowUpdates`."""
+        ...
+
+    def send(self) -> None:
+        """Send what has been shown, after all labs have been simulated."""
+        ...
+
+
+class ScheduledLab:
+    """A lab, its measured speed and its viewer.
+
+    Attributes:
+        lab: the lab.
+        session: its simulated part.
+        view: its viewer, or None.
+        used: computing time of its commands in about the last ten seconds, [s].
+        refreshed: see `Updated`.
+    """
+
+    def __init__(self, lab: Lab) -> None:
+        self.lab, self.session = lab, lab.session
+        self.view: Display | None = None
+        self.refreshed = NEVER
+        self._credit = self.used = 0.0
+        self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
+        self._elapsed = NOTHING
+
+    @property
+    def is_seen(self) -> bool:
+        """Whether a browser draws it; otherwise simulated time is paused."""
+        return self.view is not None
+
+    @property
+    def achieved(self) -> float:
+        """Recent simulated seconds per second."""
+        return self._simulated / self._passed
+
+    def drain(self, share: float = COMMANDS, may_begin: bool = True) -> float:
+        """Apply commands, and do whatever else a lab does before a frame.
+
+        Args:
+            share: computing time per frame, [s]; a command that takes longer delays the next.
+            may_begin: whether commands may be applied in this frame.
+
+        Returns:
+            Computing time of the commands, [s].
+        """
+        self._credit = min(self._credit, 0.0) + share
+        taken = self.lab.drain(self._credit if may_begin else 0.0)
+        self._credit -= taken
+        self.used += taken - FORGETTING * self.used
+        return taken
+
+    def frame(
+        self, seconds: float, length: float = FRAME, count: int = 0, stride: float = STRIDES[0]
+    ) -> Frame:
+        """Simulate a frame, and those before it that have not been; see `advance_together`.
+
+        Simulated time is paused while nobody looks.
+
+        Args:
+            seconds: that have passed since the last one, for the measured speed.
+            length: of the frame at the usual rate, see `frame_length`, [s].
+            count: number of the frame.
+            stride: frames of simulation per frame of display.
+        """
+        if self.view is None:
+            self._elapsed = NOTHING
+            return
+        self._elapsed = elapsed = self._elapsed.and_frame(seconds, length)
+        if not self._is_due(count, stride):
+            return
+        self._elapsed = NOTHING
+        session = self.session
+        before = session.time
+        yield from self.lab.frame(session.rate * elapsed.length)
+        if session.running and not self.lab.frozen:
+            kept = (1 - FADING) ** elapsed.frames
+            self._simulated = kept * self._simulated + session.time - before
+            self._passed = kept * self._passed + elapsed.seconds
+
+    def _is_due(self, count: int, stride: float) -> bool:
+        """Whether the lab is simulated in a frame.
+
+        A thread that is busy simulates a lab when it is drawn, with all frames since the last time,
+        which takes little longer than one. A script has every frame.
+        """
+        at_ease = stride == STRIDES[0] or self.lab.script is not None
+        return at_ease or self._elapsed.frames >= LONGEST or self.is_turn(count, stride)
+
+    @property
+    def is_outdated(self) -> bool:
+        """See `Updated`."""
+        view = self.view  # another thread may remove it
+        return view is not None and view.is_outdated
+
+    def is_turn(self, frame: int, stride: float) -> bool:
+        """See `Updated`."""
+        view = self.view
+        return view is not None and view.is_turn(self.lab, frame, stride)
+
+    def refresh(self, frame: int) -> None:
+        """See `Updated`. An error is logged, and does not affect other labs."""
+        self.refreshed, view = frame, self.view
+        if view is not None:
+            try:
+                view.refresh(self.lab, self.achieved)
+            except Exception as error:  # one lab must not stop the others
+                log_error(error)
+
+    def show(self, count: int, stride: float) -> None:
+        """Show its viewer what moves."""
+        view = self.view
+        if view is not None:
+            view.show(self.lab, count, stride)
+
+    def send(self) -> None:
+        """Send what has been shown."""
+        view = self.view
+        if view is not None:
+            view.send()
