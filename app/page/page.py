@@ -107,7 +107,7 @@ class Page:
         self._framed = 0.0
 
     def send(self) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         self._channel.send()
 
     @property

@@ -14,13 +14,11 @@ from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
-from onpath.app.simulation.display_rate import STRIDES, is_turn
-
-AT_EASE = STRIDES[0]  # the stride of a thread that is not overloaded
+from onpath.app.simulation.display_rate import AT_EASE, is_turn
 
 
 class LabFeed:
-    """Shows a lab on a page; see `app.simulation.simulation_thread.Display`.
+    """Shows a lab on a page; see `app.simulation.scheduled_lab.Display`.
 
     Args:
         offset: spreads the pages over the frames.
@@ -44,17 +42,17 @@ class LabFeed:
 
     @property
     def is_outdated(self) -> bool:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         return self.page.is_outdated and self.page.is_ready
 
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         if stride == AT_EASE and self._source(lab, 1.0)[0].session.grips.grabbed:
             return True  # every frame of delay is felt while dragging
         return is_turn(frame + self._offset, stride)
 
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         if not self.is_turn(lab, frame, stride) or not self.page.is_ready:
             return
         lab, _, student = self._source(lab, 1.0)
@@ -63,7 +61,7 @@ class LabFeed:
             self.page.show(motion)
 
     def refresh(self, lab: Lab, achieved: float) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         lab, achieved, student = self._source(lab, achieved)
         if not self.page.is_ready:
             return
@@ -93,7 +91,7 @@ class LabFeed:
         return len(now) != len(shown) or not all(map(is_, now, shown))
 
     def send(self) -> None:
-        """See `app.simulation.simulation_thread.Display`."""
+        """See `app.simulation.scheduled_lab.Display`."""
         self.page.send()
 
     @property

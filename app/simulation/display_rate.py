@@ -9,7 +9,8 @@ from __future__ import annotations
 from math import inf
 
 STRIDES = (2.0, 2.5, 2.75)  # frames of simulation per frame of display
-ENOUGH = (0.35, 0.65)  # load below which the first, second is taken again; the first takes more
+AT_EASE = STRIDES[0]  # of a thread that is not busy; labs are then simulated in every frame
+ENOUGH = (0.35, 0.65)  # load below which the first, second stride is chosen again
 BUSY = (0.5, 0.8)  # load that is too much for the first, second
 FADING = 1 / 60  # low-pass gain of the measured load, per frame
 LATE = {1 / 20: 8.0, 1 / 30: 4.0}  # least stride from such a lateness on, [s]

@@ -9,7 +9,7 @@ from msgspec import Struct
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
-from onpath.app.simulation.display_rate import STRIDES
+from onpath.app.simulation.display_rate import AT_EASE
 from onpath.app.simulation.frame_length import FRAME
 
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
@@ -111,9 +111,9 @@ class ScheduledLab:
         return taken
 
     def frame(
-        self, seconds: float, length: float = FRAME, count: int = 0, stride: float = STRIDES[0]
+        self, seconds: float, length: float = FRAME, count: int = 0, stride: float = AT_EASE
     ) -> Frame:
-        """Simulate a frame, and those before it that have not been; see `advance_together`.
+        """Simulate a frame and those that wait for it, or let it wait; see `advance_together`.
 
         Simulated time is paused while nobody looks.
 
@@ -141,11 +141,12 @@ class ScheduledLab:
     def _is_due(self, count: int, stride: float) -> bool:
         """Whether the lab is simulated in a frame.
 
-        A thread that is busy simulates a lab when it is drawn, with all frames since the last time,
-        which takes little longer than one. A script has every frame.
+        A busy thread simulates a lab only when it is drawn: several frames together take little
+        longer than one. While a script is played, the lab is simulated in every frame, so that
+        the commands come at their times.
         """
-        at_ease = stride == STRIDES[0] or self.lab.script is not None
-        return at_ease or self._elapsed.frames >= LONGEST or self.is_turn(count, stride)
+        always = stride == AT_EASE or self.lab.script is not None
+        return always or self._elapsed.frames >= LONGEST or self.is_turn(count, stride)
 
     @property
     def is_outdated(self) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from math import ceil
 from typing import Protocol
 
-from onpath.app.simulation.display_rate import STRIDES
+from onpath.app.simulation.display_rate import AT_EASE
 
 INTERVALS = {10: 6, 40: 8}  # frames between updates of a page, while there are at most so many
 MANY, RARE = 12, 15  # the same with more pages, and under load
@@ -80,6 +80,6 @@ def interval(pages: int, stride: float) -> int:
         pages: number of pages.
         stride: frames of simulation per frame of display.
     """
-    if stride > STRIDES[0]:
+    if stride > AT_EASE:
         return RARE
     return next((frames for most, frames in INTERVALS.items() if pages <= most), MANY)

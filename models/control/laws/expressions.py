@@ -135,7 +135,7 @@ def syntax_tree(expression: str) -> ast.expr:
     for _ in range(MOST_TRIES):
         with suppress(SystemError):
             return ast.parse(expression, mode="eval").body
-    raise MemoryError
+    raise MemoryError  # refused as what Python has no memory for
 
 
 def _lines(text: str) -> Iterator[tuple[int, str]]:
