@@ -60,6 +60,12 @@ class Serve:
         if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
+        try:
+            self._serve()
+        finally:
+            gc.enable()
+
+    def _serve(self) -> None:
         from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention

@@ -11,6 +11,8 @@ from dataclasses import replace
 from importlib import import_module
 from threading import Thread
 
+import numpy as np
+
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.assets.messages import languages
@@ -38,6 +40,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
                 store.prepare(run.robot, replace(run.kind, free=free))
         for name in LATER:
             import_module(name)
+        _import_picture_formats()
         for language in languages():
             Words(language)("full.text", places=2)  # a plural, whose rules are imported with it
         mimetypes.init()  # the types of files, for downloads
@@ -45,3 +48,8 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()
     return thread
+
+
+def _import_picture_formats() -> None:
+    """Encode a picture as viser does for a board to sketch on, which imports all formats."""
+    import_module("imageio.v3").imwrite("<bytes>", np.zeros((1, 1, 3), np.uint8), extension=".png")

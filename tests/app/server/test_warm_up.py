@@ -24,3 +24,26 @@ def test_the_first_picture_needs_no_slow_module() -> None:
     run = subprocess.run([sys.executable, "-c", FIRST_PICTURE], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert run.stdout.split() == []
+
+
+SKETCH = """
+import sys
+import numpy as np
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.warm_up import warm_up
+from onpath.app.viser_adapter.secure_server import make_server
+from onpath.lessons.course import NO_LESSONS
+
+server = make_server(port=0)
+warm_up(LoopCache(), NO_LESSONS, rest=0.0).join()
+known = set(sys.modules)
+server.scene.add_image("/sheet", np.zeros((9, 16, 3), np.uint8), 1.0, 1.0, format="png")
+print("new:", *sorted(set(sys.modules) - known))
+"""
+
+
+def test_a_board_to_sketch_on_imports_nothing_after_the_start() -> None:
+    """All labs would wait for it."""
+    run = subprocess.run([sys.executable, "-c", SKETCH], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert "new:" in run.stdout.splitlines()
