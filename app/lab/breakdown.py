@@ -91,21 +91,18 @@ class Breakdown:
         session.reset()
         session.running = True
 
-    def begin(self, session: Session) -> None:
-        """Begin to show the last moments before a robot stopped.
-
-        Raises:
-            CodedError: none has.
-        """
+    def begin(self, session: Session) -> bool:
+        """Begin to show the last moments before a robot stopped; returns whether one has."""
         stopped = _stopped(session)
         if not stopped or not len(session.history):
-            raise CodedError("error.nothing_stopped")
+            return False
         self.interrupt(session)
         end = max(stopped)
         begin = max(end - SPAN, session.time - session.history.span())
         self._replay = _Replay(begin, end, session.exaggeration, session.running)
         session.running, session.viewing = False, begin
         session.exaggeration = max(session.exaggeration, LARGER)
+        return True
 
     def interrupt(self, session: Session) -> bool:
         """End a replay, and let time go on as before; returns whether there was one."""

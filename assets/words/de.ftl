@@ -1231,7 +1231,6 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
-error-nothing_stopped = kein Roboter ist stehen geblieben
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
 error-law = Zeile { $line }, Spalte { $column }: { $reason }

@@ -51,13 +51,16 @@ class Reset(Command):
 
 @dataclass(frozen=True, slots=True)
 class ReplayBreakdown(Command):
-    """Show the last moments before a robot stopped, slowly."""
+    """Show the last moments before a robot stopped, slowly.
+
+    Nothing if none has: the page asks for this by itself, and Reset may come before it.
+    """
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        lab.breakdown.begin(lab.session)
-        larger = f"{lab.session.exaggeration:g}"
-        lab.show_message(lab.fault_words("say.slowly", larger=larger), "replay")
+        if lab.breakdown.begin(lab.session):
+            larger = f"{lab.session.exaggeration:g}"
+            lab.show_message(lab.fault_words("say.slowly", larger=larger), "replay")
 
 
 @dataclass(frozen=True, slots=True)

@@ -115,11 +115,17 @@ def test_the_last_stable_settings_are_offered_and_applied(blown_up: Lab) -> None
     assert take_snapshot(blown_up, 1.0).remedy == {}
 
 
-def test_without_a_stopped_robot_both_are_refused() -> None:
+def test_without_a_stopped_robot_there_are_no_earlier_settings_to_go_back_to() -> None:
     lab = new_lab(0.1)
-    for command in (c.ReplayBreakdown(), c.UseEarlierSettings()):
-        do(lab, command)
-        assert lab.message and lab.message_level == "warning"
+    do(lab, c.UseEarlierSettings())
+    assert lab.message and lab.message_level == "warning"
+
+
+def test_a_replay_that_is_asked_for_after_a_reset_is_not_shown(blown_up: Lab) -> None:
+    """The page asks for it by itself, and may be late; nothing is said."""
+    do(blown_up, c.Reset(), c.ReplayBreakdown())
+    assert not blown_up.message and not blown_up.breakdown.replaying
+    assert blown_up.session.viewing is None
 
 
 def test_the_distance_of_a_stopped_robot_is_that_of_its_pose(blown_up: Lab) -> None:
