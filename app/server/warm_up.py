@@ -9,6 +9,7 @@ import mimetypes
 import time
 from dataclasses import replace
 from importlib import import_module
+from io import BytesIO
 from threading import Thread
 
 import numpy as np
@@ -52,4 +53,4 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
 
 def _import_picture_formats() -> None:
     """Encode a picture as viser does for a board to sketch on, which imports all formats."""
-    import_module("imageio.v3").imwrite("<bytes>", np.zeros((1, 1, 3), np.uint8), extension=".png")
+    import_module("imageio.v3").imwrite(BytesIO(), np.zeros((1, 1, 3), np.uint8), extension=".png")
