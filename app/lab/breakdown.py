@@ -92,7 +92,11 @@ class Breakdown:
         session.running = True
 
     def begin(self, session: Session) -> bool:
-        """Begin to show the last moments before a robot stopped; returns whether one has."""
+        """Begin to show the last moments before a robot stopped.
+
+        Returns:
+            Whether there is something to show: a robot has stopped, and its history is kept.
+        """
         stopped = _stopped(session)
         if not stopped or not len(session.history):
             return False

@@ -53,7 +53,8 @@ class Reset(Command):
 class ReplayBreakdown(Command):
     """Show the last moments before a robot stopped, slowly.
 
-    Nothing if none has: the page asks for this by itself, and Reset may come before it.
+    If no robot has stopped, this does nothing: the page sends it by itself, and it may arrive after
+    a reset.
     """
 
     def apply(self, lab: Lab) -> None:

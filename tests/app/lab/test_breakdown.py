@@ -122,7 +122,7 @@ def test_without_a_stopped_robot_there_are_no_earlier_settings_to_go_back_to() -
 
 
 def test_a_replay_that_is_asked_for_after_a_reset_is_not_shown(blown_up: Lab) -> None:
-    """The page asks for it by itself, and may be late; nothing is said."""
+    """The page sends it by itself, perhaps too late; the user sees no message."""
     do(blown_up, c.Reset(), c.ReplayBreakdown())
     assert not blown_up.message and not blown_up.breakdown.replaying
     assert blown_up.session.viewing is None

@@ -43,7 +43,7 @@ print("new:", *sorted(set(sys.modules) - known))
 
 
 def test_a_board_to_sketch_on_imports_nothing_after_the_start() -> None:
-    """All labs would wait for it."""
+    """All labs would wait for the imports."""
     run = subprocess.run([sys.executable, "-c", SKETCH], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert "new:" in run.stdout.splitlines()
