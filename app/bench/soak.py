@@ -20,6 +20,7 @@ QUIET = 70.0  # [s] after the attacks
 ROW = 60.0  # [s], longest row of the table
 PLACES = 24  # for labs of attackers
 LATEST = 100.0  # [ms], 99th percentile of the lateness of frames
+SLOWEST = 20.0  # [Hz], new poses that each honest browser is shown
 GROWN = 1.1  # largest memory after the attacks, relative to that before
 MOST_LOG = 1e6  # [B]
 OPTIONS = ("--classroom",)
@@ -132,8 +133,10 @@ def verdict(rows: Sequence[SoakRow], honest: int) -> list[str]:
     before, after = rows[attacked[0] - 1].memory_mb, rows[-1].memory_mb
     gone = [row for row in rows if row.honest < honest or row.slowest_hz == 0]
     late = [row for row in rows if row.attack and row.late_ms > LATEST]
+    slow = [row for row in rows if row.attack and 0 < row.slowest_hz < SLOWEST]
     broken = [f"{row.attack or 'nothing'}: an honest browser was not served" for row in gone]
     broken += [f"{row.attack}: frames {row.late_ms:.0f} ms late (p99)" for row in late]
+    broken += [f"{row.attack}: {row.slowest_hz:.1f} poses a second" for row in slow]
     if after > GROWN * before:
         broken.append(f"memory: {before:.0f} MB before, {after:.0f} MB after")
     if rows[-1].log_bytes > MOST_LOG:

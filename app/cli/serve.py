@@ -31,7 +31,7 @@ class Serve:
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
     """URL of the database for the labs; by default a file in your data folder. One with a password
-    is better given in the environment, ONPATH_DATABASE: other users see command lines."""
+    must be given in the environment, ONPATH_DATABASE: other users see command lines."""
     keep_days: int = 365
     """After this number of days without use, a lab is deleted."""
     most_labs: int = 100_000
@@ -46,7 +46,7 @@ class Serve:
     socket: Path | None = None
     """Listen on this Unix socket instead, for your own proxy, such as Jupyter's."""
     most_clients: int = 64
-    """Maximum number of browsers; further ones wait."""
+    """Maximum number of browsers, 15 of 16 of them from one network; further ones wait."""
     hang_seconds: float = 10.0
     """A process whose simulation or network hangs for this time answers 503 at /health, and ends
     after twice this time, so that whatever supervises it starts another; 0 for never."""

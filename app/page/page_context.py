@@ -35,7 +35,8 @@ class PageContext:
         code: session code of its lab.
         post: receives the commands for its lab.
         course: all lessons.
-        keeps: whether labs persist across server restarts.
+        keep_days: the lab is deleted when it has not been used for this number of days; 0 if it
+            lasts only as long as the server.
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
         dark: whether the browser asks for dark pages.
@@ -44,7 +45,7 @@ class PageContext:
     code: str
     post: Post
     course: Course
-    keeps: bool
+    keep_days: int
     enter: Callable[[str], None]
     seat: ClassSeat | None = None
     dark: bool = False

@@ -98,13 +98,13 @@ class LabServer:
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         self.server = make_server(host, port, label="OnPath", **well, **listening)
-        self._records = records
+        self._records, self._retention = records, retention or Retention()
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
         self._memory = Periodic("memory", INTERVAL, MemoryRelease(self.sessions.free_memory).look)
         self._keeper = self._expiry = None
         if records is not None:
             self._keeper = WriteBehind(records, lost=self._lost)
-            self._expiry = Expiry(records, retention or Retention(), self.sessions.held)
+            self._expiry = Expiry(records, self._retention, self.sessions.held)
             self.sessions.load, self.sessions.is_current = records.claim, records.is_current
             self.sessions.keeper = self._keeper
         self._classes = ClassDirectory(classrooms, self._class_service)
@@ -213,9 +213,9 @@ class LabServer:
             else self._classes.seat_elsewhere(place, code)
         )
         teaching = service.teaching(client, lab, reopen) if service else None
-        post, keeps = lab.post, self._records is not None and not self._records.warning
-        dark = number in self._dark
-        desk = PageContext(code, post, self._course, keeps, enter, seat, dark)
+        keeps = self._records is not None and not self._records.warning
+        days, dark = self._retention.days if keeps else 0, number in self._dark
+        desk = PageContext(code, lab.post, self._course, days, enter, seat, dark)
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
         first = self.simulation.call(take)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 
+from onpath.app.storage.engine import parsed
+
 DATABASE = "ONPATH_DATABASE"  # environment variable
 
 
@@ -11,6 +13,15 @@ def database_url(option: str | None) -> str | None:
     """The URL of the command line or else of the environment.
 
     Child processes do not inherit the variable: the URL may hold a password.
+
+    Raises:
+        ValueError: the URL of the command line is malformed, or has a password.
     """
     inherited = os.environ.pop(DATABASE, "")
+    if option:
+        url = parsed(option)
+        if url.password or "password" in url.query:
+            raise ValueError(
+                f"--database: all users of this machine see a password there; use {DATABASE}"
+            )
     return option or inherited or None

@@ -23,8 +23,9 @@ class KeepPanel:
     ) -> None:
         self._desk, self._words, self._code = desk, words, ""
         with gui.add_folder(words("keep.title"), expand_by_default=False):
-            if desk.keeps:
+            if desk.keep_days:
                 gui.add_html(_code(words("keep.yours"), shown(desk.code), words))
+                gui.add_html(note(words("keep.until", days=desk.keep_days), small=True))
                 self._typed = gui.add_text(words("keep.other"), "", hint=words("keep.other_hint"))
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
                 self._said = gui.add_html("")
@@ -34,7 +35,7 @@ class KeepPanel:
             pasted = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             use = gui.add_button(words("keep.use"), color="gray", icon=viser.Icon.DOWNLOAD)
             report = gui.add_button(words("keep.report"), color="gray", icon=viser.Icon.REPORT)
-            if desk.keeps:
+            if desk.keep_days:
                 self._with_code = gui.add_checkbox(words("keep.with_code"), initial_value=False)
                 gui.add_html(note(words("keep.with_code_means"), small=True))
         on_press(share, lambda: post(c.Share()))
@@ -49,7 +50,7 @@ class KeepPanel:
 
     def _code_in_report(self) -> str:
         """The session code if the user wants it in the report: whoever reads it can use it."""
-        return self._desk.code if self._desk.keeps and self._with_code.value else ""
+        return self._desk.code if self._desk.keep_days and self._with_code.value else ""
 
     def _enter(self) -> None:
         self._say(self._words("keep.moment"))

@@ -330,6 +330,18 @@ def test_the_database_may_be_given_in_the_environment(
     assert run_command(["forget"]) == 0 and "deleted: 1 labs" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    "url", ["postgresql+psycopg://me:secret@host/labs", "postgresql+psycopg:///?password=secret"]
+)
+@pytest.mark.parametrize("command", ["serve", "forget"])
+def test_a_password_on_the_command_line_is_refused(
+    command: str, url: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_command([command, "--database", url]) == 2
+    said = capsys.readouterr()
+    assert DATABASE in said.err and "secret" not in said.err + said.out
+
+
 def test_help_says_how_long_labs_are_kept() -> None:
     text = " ".join(onpath("serve", "--help").stdout.split())
     assert "--keep-days" in text and "(default: 365)" in text

@@ -1,4 +1,4 @@
-"""A report that is handed in has the session code only if its owner wants so."""
+"""Whose lab is kept reads for how long; a report has its code only if its owner wants so."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.storage.expiry import Retention
 from onpath.app.storage.records import Records, file_url
 from onpath.lessons.words import ENGLISH
 from tests.support.student import Student
@@ -19,7 +20,7 @@ from tests.support.student import Student
 def student(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Student]:
     """In a lab that has a code for its user, or none."""
     records = Records(file_url(tmp_path / "labs.db")) if request.param == "kept" else None
-    server = LabServer("127.0.0.1", 0, LoopCache(), records=records)
+    server = LabServer("127.0.0.1", 0, LoopCache(), records=records, retention=Retention(30))
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         yield student
@@ -44,3 +45,9 @@ def test_the_report_has_the_code_only_when_its_owner_says_so(
             student.set(button, True)
             student.read(lambda: len(codes) > 1 + (not chosen))
         assert codes == ["", student.code, ""]
+
+
+def test_the_page_says_after_how_many_days_the_lab_is_deleted(student: Student) -> None:
+    student.read(lambda: student.has_widget(ENGLISH("controls.help")))  # the last widget
+    kept = student.has_widget(ENGLISH("keep.other"))
+    assert student.sees(ENGLISH("keep.until", days=30)) == kept
