@@ -51,11 +51,11 @@ class Site:
         return found
 
 
-def _nginx(folder: Path, port: int, processes: Sequence[LabProcess]) -> list[str]:
+def _nginx(folder: Path, port: int, behind: Sequence[int]) -> list[str]:
     """The supplied file with other ports, and the command that starts nginx with it."""
     text = CONFIGURATION.read_text()
-    for given, process in zip(("8081", "8082"), processes, strict=True):
-        text = text.replace(f"127.0.0.1:{given}", f"127.0.0.1:{process.port}")
+    for given, process in zip(("8081", "8082"), behind, strict=True):
+        text = text.replace(f"127.0.0.1:{given}", f"127.0.0.1:{process}")
     text = re.sub(r"^(\s+listen) 80\b", rf"\1 127.0.0.1:{port}", text, flags=re.MULTILINE)
     (folder / "onpath.conf").write_text(text)
     kinds = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
@@ -73,6 +73,23 @@ def _answers(port: int) -> bool:
 
 
 @contextmanager
+def proxy(folder: Path, port: int, behind: Sequence[int]) -> Iterator[None]:
+    """nginx at a port.
+
+    Args:
+        behind: ports of two processes.
+    """
+    nginx = subprocess.Popen(_nginx(folder, port, behind), stderr=subprocess.DEVNULL)
+    try:
+        wait_for(lambda: _answers(port) or nginx.poll() is not None, 60.0)
+        assert nginx.poll() is None
+        yield
+    finally:
+        nginx.terminate()
+        nginx.wait()
+
+
+@contextmanager
 def site(
     folder: Path, database: str, options: Sequence[str] = (), **environment: str
 ) -> Iterator[Site]:
@@ -85,16 +102,12 @@ def site(
     *ports, port = free_ports(3)
     told = ["--origin", ORIGIN, "--log-level", "warning", *options]
     processes = [LabProcess(each, told, {DATABASE: database, **environment}) for each in ports]
-    nginx = subprocess.Popen(_nginx(folder, port, processes), stderr=subprocess.DEVNULL)
     try:
-        for process in processes:
-            process.wait_until_well()
-        wait_for(lambda: _answers(port) or nginx.poll() is not None, 60.0)
-        assert nginx.poll() is None
-        yield Site(port, processes)
+        with proxy(folder, port, ports):
+            for process in processes:
+                process.wait_until_well()
+            yield Site(port, processes)
     finally:
-        nginx.terminate()
-        nginx.wait()
         for process in processes:
             process.kill()
 

@@ -3,67 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
 from contextlib import ExitStack
-from typing import Any
 
 import pytest
-from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.exceptions import InvalidStatus
 
-from onpath.app.classroom.admission import class_code_of, class_id_of
-from onpath.app.classroom.class_opening import KEY
 from onpath.app.common.access_codes import new_code, shown
-from onpath.app.storage.records import Records
-from onpath.app.storage.schema import classes
 from tests.support.built_in import built_in_course
-from tests.support.lab_process import LabProcess
-from tests.support.site import (
-    ORIGIN,
-    Site,
-    needs_nginx,
-    needs_postgres,
-    postgres,
-    site,
-)
-from tests.support.student import Student
-from tests.support.waiting import wait_for
+from tests.support.site import ORIGIN, needs_nginx
+from tests.support.site_class import CODES, KEYS, Class, Running, quiet, return_to
 
 pytestmark = [pytest.mark.thorough, needs_nginx]
 
-KEYS = "k7mf2xqa9tzr", "k7mf2xqa9tzs"
-CODES = [class_code_of(key) for key in KEYS]
 NUMBERS = built_in_course()[0].numbers()
-
-
-class Running:
-    """A site, and what it keeps."""
-
-    def __init__(self, found: Site, database: str) -> None:
-        self.site, self.records = found, Records(database)
-
-    def has_kept(self, code: str, *words: str) -> bool:
-        state = str(self.records.load(code))
-        return all(word in state for word in words)
-
-    def kept_class(self) -> dict[str, Any]:
-        return self.records.load(class_id_of(KEYS[0]), classes) or {}
-
-
-@pytest.fixture(scope="module", params=["sqlite", pytest.param("postgres", marks=needs_postgres)])
-def running(
-    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
-) -> Iterator[Running]:
-    folder = tmp_path_factory.mktemp("site")
-    with ExitStack() as stack:
-        database = f"sqlite:///{folder / 'labs.db'}"
-        if request.param == "postgres":
-            database = stack.enter_context(postgres())
-        given: Any = {KEY: " ".join(KEYS)}
-        made = Running(
-            stack.enter_context(site(folder, database, ["--classroom"], **given)), database
-        )
-        yield made
-        made.records.close()
 
 
 def alone(running: Running) -> str:
@@ -72,25 +24,6 @@ def alone(running: Running) -> str:
     location = reply.getheader("Location") or ""
     assert reply.status == 302 and re.fullmatch("/l/[a-z0-9]{12}/", location)
     return location.strip("/")
-
-
-def quiet(running: Running) -> None:
-    """Wait until nobody is connected."""
-    wait_for(lambda: not any(p.connections() for p in running.site.processes), 60.0)
-
-
-def return_to(process: LabProcess, running: Running, place: str) -> None:
-    """Wait until nginx, which avoids a process for some seconds after a failure, uses it again."""
-
-    def is_back() -> bool:
-        with running.site.student(place) as student:
-            student.open()
-            student.read(lambda: student.code)
-            served = running.site.serving() is process
-        quiet(running)
-        return served
-
-    wait_for(is_back, 60.0)
 
 
 def test_who_belongs_together_is_served_by_one_process_and_places_are_spread(
@@ -157,65 +90,6 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         killed.start_again()
     quiet(running)
     return_to(killed, running, place)
-
-
-class Class:
-    """A teacher and two students of one class."""
-
-    def __init__(self, running: Running, stack: ExitStack) -> None:
-        self.running = running
-        place = f"c/{CODES[0]}"
-        self.all = [stack.enter_context(running.site.student(place)) for _ in range(3)]
-        self.teacher, self.ada, self.bob = self.all
-        self.names = {self.ada: "Ada", self.bob: "Bob"}
-        self.open: list[Student] = []
-
-    def until(self, condition: Callable[[], Any]) -> None:
-        """Wait for something while all read what they are sent, and connect again when cut off."""
-
-        def read() -> Any:
-            for each in self.open:
-                try:
-                    each.read_what_has_come()
-                except ConnectionClosed:  # as viser's page does
-                    each.reopen()
-            return condition()
-
-        wait_for(read, 120.0)
-
-    def come_in(self) -> None:
-        for each in [*self.names, self.teacher]:
-            each.open()
-            self.open.append(each)
-            self.until(lambda each=each: each.has_widget("Teacher's key"))
-        for student, name in self.names.items():
-            assert student.find("Class code")["value"] == CODES[0].upper()  # from the address
-            student.set("Nickname", name)
-            student.set("Join the class", True)
-            self.until(lambda student=student: student.sees("You are in the class as"))
-        self.teacher.set("Teacher's key", shown(KEYS[0]))
-        self.teacher.set("Open the teacher's page", True)
-        self.until(self.teacher_sees_both)
-
-    def teacher_sees_both(self) -> bool:
-        """Whether the teacher's page has both students, and they are there."""
-        teacher = self.teacher
-        both = teacher.has_widget("1. Ada") and teacher.has_widget("2. Bob")
-        return both and not teacher.sees(">away<")
-
-    def come_back(self) -> None:
-        """Everybody, as their pages do by themselves."""
-        for each in self.all:
-            each.wait_until_closed()
-        for each in self.all:
-            each.reopen()
-        self.until(self.is_back)
-
-    def is_back(self) -> bool:
-        """Whether everybody is in the class, at one process."""
-        students = [s.sees(name) and s.sees("You are in the") for s, name in self.names.items()]
-        served = [p for p in self.running.site.processes if p.connections()]
-        return self.teacher_sees_both() and all(students) and len(served) == 1
 
 
 def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_returns(
