@@ -140,11 +140,17 @@ class LabRegistry:
                 self._drop(entry)
                 entry = None
             if entry is None:
-                state = self.load(code)
+                state = self._load(code)
                 if state is None:
                     return None
                 entry = self._made(code, state)
             return self._give(client, entry)
+
+    def _load(self, code: str) -> LabState | None:
+        """See `load`; what this process has still to store of that lab is stored before."""
+        if self.keeper is not None and not self.keeper.flush(code):
+            raise NotKept("error.database_busy")
+        return self.load(code)
 
     @contextmanager
     def _alone(self, code: str) -> Iterator[None]:
@@ -223,7 +229,11 @@ class LabRegistry:
             return True
 
     def _drop(self, entry: RegisteredLab) -> None:
-        """Remove a lab that is outdated, and what was still to be stored of it."""
+        """Remove a lab that is outdated, and what was still to be stored of it.
+
+        Raises:
+            NotKept: it is still being stored; it is not removed.
+        """
         if self.keeper is not None:
             self.keeper.discard(entry.code)
         with self._lock:

@@ -245,7 +245,8 @@ class LabServer:
         """Store all labs, and close the connections of clients; their pages come back at once."""
         if self._keeper is not None:
             for code in self.sessions.held():
-                self._keeper.flush(code)
+                if not self._keeper.flush(code):
+                    break  # each of the others would wait as long, in vain
         disconnect(self.server, clients)
 
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:

@@ -20,6 +20,11 @@ from onpath.app.storage.migrations import HEAD, known_revisions, revision_of, up
 from onpath.app.storage.migrations.first_tables import strange_table
 from onpath.app.storage.private_files import JOURNALS, make_private_file
 from onpath.app.storage.schema import meta
+from onpath.app.storage.server_limits import (
+    connection_limits,
+    lift_statement_limit,
+    limit_transaction,
+)
 from onpath.models.errors import Coded
 
 log = logging.getLogger(__name__)
@@ -189,15 +194,14 @@ def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
 
 
 def _engine(url: sa.URL, patience: float) -> sa.Engine:
-    options: dict[str, Any] = {"pool_pre_ping": True}
+    options: dict[str, Any] = {"execution_options": {"patience": patience}}
     sqlite = url.get_backend_name() == "sqlite"
     if sqlite:
-        options = {
-            "connect_args": {"timeout": patience, "check_same_thread": False},
-            "execution_options": {"patience": patience},
-        }
+        options["connect_args"] = {"timeout": patience, "check_same_thread": False}
         if not url.database:
             options["poolclass"] = pool.StaticPool
+    else:
+        options |= {"pool_pre_ping": True, "connect_args": connection_limits(url)}
     try:
         engine = sa.create_engine(url, **options)
     except (exc.NoSuchModuleError, ImportError) as error:
@@ -205,6 +209,8 @@ def _engine(url: sa.URL, patience: float) -> sa.Engine:
     if sqlite:
         event.listen(engine, "connect", _connected)
         event.listen(engine, "begin", _begun)
+    elif engine.dialect.name == "postgresql":
+        event.listen(engine, "begin", limit_transaction)
     return engine
 
 
@@ -240,6 +246,8 @@ def _prepared(url: sa.URL, patience: float = PATIENCE) -> sa.Engine:
                 found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
                 if found != "ok":
                     raise _Broken(found)
+            elif engine.dialect.name == "postgresql":
+                lift_statement_limit(connection)  # a migration of many labs may take minutes
             _migrate(connection)
     except Exception as error:
         engine.dispose()

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import logging
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any, Protocol
 
 from onpath.app.common.error_log import log_error
@@ -15,6 +17,8 @@ log = logging.getLogger(__name__)
 INTERVAL = 2.0  # [s] between writes: the most that is lost if the process is killed
 BREATH = 0.01  # [s] between labs, in which the simulation thread can run
 FLUSH = 10.0  # [s] to wait for the last write
+TURN_WAIT = 2.0  # [s] to wait for the write that is under way, for which a user may be waiting
+HANGING = 5.0  # [s] after which a write that is under way counts as failed
 
 
 class Store(Protocol):
@@ -52,6 +56,7 @@ class WriteBehind:
         self._interval = interval
         self._pending: dict[str, Callable[[], dict[str, Any]]] = {}
         self._failed = set[str]()
+        self._current: tuple[str, float] | None = None  # the lab being written, and since when
         self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
         self.warning = ""
@@ -71,7 +76,14 @@ class WriteBehind:
 
     def fails(self, code: str) -> bool:
         """Whether the latest state of a lab could not be saved, or will not outlive the process."""
-        return code in self._failed or bool(self._records.warning)
+        return code in self._failed or bool(self._records.warning) or self._hangs(code)
+
+    def _hangs(self, code: str) -> bool:
+        """Whether a lab, or the one before which it has to wait, is being written for too long."""
+        with self._lock:
+            if self._current is None or code not in {self._current[0], *self._pending}:
+                return False
+            return time.monotonic() - self._current[1] > HANGING
 
     @property
     def generation(self) -> int:
@@ -79,24 +91,62 @@ class WriteBehind:
         return self._records.generation
 
     def forget(self, delete: Callable[[], int]) -> int:
-        """Discard pending states, call `delete`, and return its result."""
-        with self._writing:
+        """Call `delete`, discard the states that were pending before, and return its result.
+
+        Raises:
+            NotKept: another write takes too long, or `delete` failed; the states stay pending.
+        """
+        with self._turn():
             with self._lock:
-                self._pending.clear()
+                outdated = dict(self._pending)
+            count = delete()
+            with self._lock:
+                newer = {c: s for c, s in self._pending.items() if s is not outdated.get(c)}
+                self._pending = newer
                 self._failed.clear()
-            return delete()
+            return count
 
     def discard(self, code: str) -> None:
-        """Discard the pending state of a lab that is outdated."""
-        with self._writing, self._lock:
+        """Discard the pending state of a lab that is outdated; it is not being written on return.
+
+        Raises:
+            NotKept: another write takes too long; the state stays pending.
+        """
+        with self._turn(), self._lock:
             self._pending.pop(code, None)
             self._failed.discard(code)
 
-    def flush(self, code: str) -> None:
-        """Write the pending state of one lab in the caller's thread; it is saved on return."""
-        with self._writing:  # waits if this lab is being written
-            if self._write_waiting(code):
-                self._wanted.set()
+    def flush(self, code: str) -> bool:
+        """Write the pending state of one lab, if any, in the caller's thread.
+
+        Waits for the write that is under way, which may be of this lab, but not for long.
+
+        Returns:
+            Whether it is no longer pending. If it is, another write takes too long or the database
+            cannot be used, and the background thread will write it.
+        """
+        try:
+            with self._turn():
+                failed = self._write_waiting(code)
+        except NotKept:
+            return False
+        if failed:
+            self._wanted.set()
+        return not failed
+
+    @contextmanager
+    def _turn(self) -> Iterator[None]:
+        """Nothing is being written meanwhile by other threads.
+
+        Raises:
+            NotKept: the write that is under way takes too long.
+        """
+        if not self._writing.acquire(timeout=TURN_WAIT):
+            raise NotKept("error.database_busy")
+        try:
+            yield
+        finally:
+            self._writing.release()
 
     def close(self) -> None:
         """Write all pending states, and end the thread."""
@@ -130,7 +180,10 @@ class WriteBehind:
         """Write the pending state of one lab, if any; see `_write`."""
         with self._lock:
             make_state = self._pending.pop(code, None)
-        return "" if make_state is None else self._write(code, make_state)
+            if make_state is None:
+                return ""
+            self._current = code, time.monotonic()
+        return self._write(code, make_state)
 
     def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
         """Write a state. Returns why it failed and will be repeated, or ""."""
@@ -151,6 +204,7 @@ class WriteBehind:
             log_error(error)
         finally:
             with self._lock:
+                self._current = None
                 self._failed.discard(code)
                 self._failed |= failed
         return ""

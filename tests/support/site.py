@@ -6,6 +6,7 @@ import http.client
 import os
 import re
 import shutil
+import signal
 import socket
 import subprocess
 import tempfile
@@ -143,7 +144,7 @@ def postgres() -> Iterator[str]:
             assert server.poll() is None
             yield f"postgresql+psycopg://onpath@127.0.0.1:{port}/postgres"
         finally:
-            server.terminate()
+            server.send_signal(signal.SIGINT)  # SIGTERM would wait for a client that hangs
             server.wait()
 
 

@@ -57,8 +57,9 @@ class Held:
         self._hold("is_current", code)
         return True
 
-    def flush(self, code: str) -> None:
+    def flush(self, code: str) -> bool:
         self._hold("flush", code)
+        return True
 
     def load(self, code: str) -> LabState:
         self._hold("load", code)

@@ -29,6 +29,7 @@ from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage import records as database
+from onpath.app.storage import write_behind
 from onpath.app.storage.engine import opened_file, parsed
 from onpath.app.storage.records import LARGEST, NotKept, Records, default_file, file_url
 from onpath.app.storage.schema import labs, metadata
@@ -589,6 +590,78 @@ def test_a_lab_is_kept_when_it_is_let_go_though_its_turn_was_under_way() -> None
     flushing.join(5.0)
     assert kept == [[("a", 1)]]
     keeper.close()
+
+
+@pytest.fixture
+def hanging(monkeypatch: pytest.MonkeyPatch) -> Iterator[tuple[Memory, WriteBehind]]:
+    """A store that hangs with the first state of a lab, and its keeper; newer ones are pending."""
+    monkeypatch.setattr(write_behind, "TURN_WAIT", 0.01)
+    store = Memory()
+    store.gate.clear()
+    keeper = WriteBehind(store, interval=0.0)
+    keeper.submit("a", number(1))
+    until(lambda: not keeper._pending)  # it is being written
+    keeper.submit("a", number(2))
+    keeper.submit("b", number(3))
+    yield store, keeper
+    store.gate.set()
+    keeper.close()
+
+
+def test_nobody_waits_long_for_a_write_that_hangs_and_all_is_kept_when_it_goes_on(
+    hanging: tuple[Memory, WriteBehind],
+) -> None:
+    store, keeper = hanging
+    assert not keeper.flush("a") and not keeper.flush("b") and not store.saved
+    store.gate.set()
+    keeper.close()
+    assert store.saved == [("a", 1), ("a", 2), ("b", 3)]
+    assert keeper.flush("a") and len(store.saved) == 3
+
+
+def test_nothing_is_discarded_or_deleted_while_a_write_hangs(
+    hanging: tuple[Memory, WriteBehind],
+) -> None:
+    """The write would store again what was deleted, or overwrite what is read next."""
+    store, keeper = hanging
+    with pytest.raises(NotKept, match="busy"):
+        keeper.discard("a")
+    with pytest.raises(NotKept, match="busy"):
+        keeper.forget(lambda: store.saved.append(("deleted", 0)) or 0)
+    assert not store.saved
+    store.gate.set()
+    keeper.close()
+    assert store.saved == [("a", 1), ("a", 2), ("b", 3)]
+
+
+def test_while_a_write_hangs_its_lab_and_those_behind_it_count_as_not_kept(
+    hanging: tuple[Memory, WriteBehind], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, keeper = hanging
+    assert not keeper.fails("a")  # it may just be slow
+    monkeypatch.setattr(write_behind, "HANGING", 0.0)
+    until(lambda: keeper.fails("a") and keeper.fails("b"))
+    assert not keeper.fails("other")
+    monkeypatch.undo()
+    store.gate.set()
+    until(lambda: len(store.saved) == 3)
+    until(lambda: not keeper.fails("a") and not keeper.fails("b"))
+
+
+def test_what_could_not_be_deleted_is_still_written() -> None:
+    store = Memory()
+    keeper = WriteBehind(store, interval=60.0)
+    keeper.submit("a", number(1))
+    until(lambda: store.saved)
+    keeper.submit("a", number(2))
+
+    def refuse() -> int:
+        raise NotKept("error.database_busy")
+
+    with pytest.raises(NotKept):
+        keeper.forget(refuse)
+    keeper.close()
+    assert store.saved == [("a", 1), ("a", 2)]
 
 
 def test_a_failed_write_is_repeated_and_reported_once(caplog: Any) -> None:

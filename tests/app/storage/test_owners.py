@@ -166,6 +166,22 @@ def test_a_lab_that_waited_here_meanwhile_is_read_again_and_its_late_changes_are
     assert other.registry.join(1, code).code == code and other.gain(code) == 43
 
 
+def test_a_lab_that_is_dropped_before_it_could_be_stored_is_opened_as_it_was_left(
+    two: list[Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = two[0]
+    code = here.registry.join(1, None).code
+    here.set(code, 41)
+    here.keeper.flush(code)
+    here.set(code, 42)
+    with monkeypatch.context() as away:  # the database
+        away.setattr(here.records, "save", _refuse)
+        here.registry.leave(1)
+        here.registry.lose(code)
+        assert here.registry.join(1, code).stands_in  # not as it was stored before
+    assert here.registry.join(2, code).code == code and here.gain(code) == 42
+
+
 def test_an_error_while_a_lab_is_given_up_does_not_end_the_writes(two: list[Process]) -> None:
     one, other = (process.records for process in two)
     other.save(CODE, {})
