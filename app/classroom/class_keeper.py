@@ -21,6 +21,7 @@ from onpath.lessons.progress import Progress, read_progress
 
 KEEP_INTERVAL = 1.0  # [s] between writes: the most that is lost if the process is killed
 FRESH = 2.5  # [s] in which nobody who comes asks the database again
+OPENING_WAIT = 10.0  # [s] to wait while another thread asks the database
 
 
 class ClassKeeper:
@@ -44,15 +45,23 @@ class ClassKeeper:
 
     def open(self) -> None:
         """Take the class over, unless it is here and up to date. May wait for the database."""
-        with self._opening:
-            if self._asked is not None and self._class.clock() - self._asked < FRESH:
-                return
-            try:
-                if self._asked is None or not self._records.is_current(self._id, classes):
-                    self._claim()
-            except NotKept as error:
-                log_warning("the class is not read from the database: %s", error)
-            self._asked = self._class.clock()
+        if not self._opening.acquire(timeout=OPENING_WAIT):
+            log_warning("the class is not read from the database, which does not answer")
+            return
+        try:
+            if self._asked is None or self._class.clock() - self._asked >= FRESH:
+                self._ask()
+        finally:
+            self._opening.release()
+
+    def _ask(self) -> None:
+        """Ask the database whether the class is still here, and take it over if not."""
+        try:
+            if self._asked is None or not self._records.is_current(self._id, classes):
+                self._claim()
+        except NotKept as error:
+            log_warning("the class is not read from the database: %s", error)
+        self._asked = self._class.clock()
 
     def look(self) -> None:
         """Store the class if it has changed; give it up if another process has it."""

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event, Thread
 from typing import Any
 
 import pytest
 
+from onpath.app.classroom import class_keeper
 from onpath.app.classroom.class_keeper import FRESH, ClassKeeper
 from onpath.app.classroom.class_state import SETTLED, from_stored, to_stored
 from onpath.app.classroom.classroom import (
@@ -171,6 +173,27 @@ def test_who_comes_while_the_database_is_away_does_not_ask_it_each_time(
     one.now += FRESH
     one.keeper.open()
     assert len(asked) == 2
+
+
+def test_nobody_waits_for_ever_for_a_database_that_hangs_while_another_asks_it(
+    two: list[Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked, answers = Event(), Event()
+
+    def hang(*_: object) -> None:
+        asked.set()
+        answers.wait()
+
+    keeper = two[0].keeper
+    monkeypatch.setattr(class_keeper, "OPENING_WAIT", 0.01)
+    monkeypatch.setattr(two[0].records, "claim", hang)
+    first = Thread(target=keeper.open)
+    first.start()
+    asked.wait()
+    keeper.open()  # returns
+    assert first.is_alive()
+    answers.set()
+    first.join()
 
 
 def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Process]) -> None:
