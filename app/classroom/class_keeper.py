@@ -15,6 +15,7 @@ from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState
 from onpath.app.common.error_log import log_warning
 from onpath.app.common.periodic import Periodic
+from onpath.app.storage.engine import held
 from onpath.app.storage.records import HeldElsewhere, NotKept, Records
 from onpath.app.storage.schema import classes
 from onpath.lessons.progress import Progress, read_progress
@@ -45,14 +46,12 @@ class ClassKeeper:
 
     def open(self) -> None:
         """Take the class over, unless it is here and up to date. May wait for the database."""
-        if not self._opening.acquire(timeout=OPENING_WAIT):
-            log_warning("the class is not read from the database, which does not answer")
-            return
         try:
-            if self._asked is None or self._class.clock() - self._asked >= FRESH:
-                self._ask()
-        finally:
-            self._opening.release()
+            with held(self._opening, OPENING_WAIT):
+                if self._asked is None or self._class.clock() - self._asked >= FRESH:
+                    self._ask()
+        except NotKept as error:  # another thread has been asking for long
+            log_warning("the class is not read from the database: %s", error)
 
     def _ask(self) -> None:
         """Ask the database whether the class is still here, and take it over if not."""

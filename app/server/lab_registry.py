@@ -147,7 +147,7 @@ class LabRegistry:
             return self._give(client, entry)
 
     def _load(self, code: str) -> LabState | None:
-        """See `load`; what this process has still to store of that lab is stored before."""
+        """The stored state of a lab; what is still pending of it here is stored before."""
         if self.keeper is not None and not self.keeper.flush(code):
             raise NotKept("error.database_busy")
         return self.load(code)

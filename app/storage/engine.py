@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 import sqlite3
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -40,6 +41,21 @@ _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
 
 class NotKept(Coded, OSError):
     """The database cannot be used at present; the message says why."""
+
+
+@contextmanager
+def held(lock: threading.Lock, seconds: float) -> Iterator[None]:
+    """Hold a lock, and wait at most so many seconds for it.
+
+    Raises:
+        NotKept: other threads held it for all that time.
+    """
+    if not lock.acquire(timeout=seconds):
+        raise NotKept("error.database_busy")
+    try:
+        yield
+    finally:
+        lock.release()
 
 
 class _Broken(Exception):

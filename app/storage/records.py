@@ -31,6 +31,7 @@ from onpath.app.storage.engine import (
     NotKept,
     discard_journals,
     file_of,
+    held,
     identity,
     journals_of,
     opened_file,
@@ -235,19 +236,16 @@ class Records:
                 changed.
         """
         until = time.monotonic() + TRANSACTION_WAIT
-        if not self._lock.acquire(timeout=TRANSACTION_WAIT):
-            raise NotKept("error.database_busy")
-        try:
-            self._reopen_if_replaced(until)
-            connection = self._engine.connect().execution_options(patience=_left(until))
-            with connection, connection.begin():
-                yield connection
-        except exc.IntegrityError:
-            raise
-        except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
-            raise NotKept("error.database", reason=words(error)) from error
-        finally:
-            self._lock.release()
+        with held(self._lock, TRANSACTION_WAIT):
+            try:
+                self._reopen_if_replaced(until)
+                connection = self._engine.connect().execution_options(patience=_left(until))
+                with connection, connection.begin():
+                    yield connection
+            except exc.IntegrityError:
+                raise
+            except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
+                raise NotKept("error.database", reason=words(error)) from error
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":

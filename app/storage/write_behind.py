@@ -5,11 +5,11 @@ from __future__ import annotations
 import logging
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from typing import Any, Protocol
 
 from onpath.app.common.error_log import log_error
+from onpath.app.storage.engine import held
 from onpath.app.storage.records import HeldElsewhere, NotKept
 
 log = logging.getLogger(__name__)
@@ -79,11 +79,13 @@ class WriteBehind:
         return code in self._failed or bool(self._records.warning) or self._hangs(code)
 
     def _hangs(self, code: str) -> bool:
-        """Whether a lab, or the one before which it has to wait, is being written for too long."""
+        """Whether the write of this lab, or the one for which it has to wait, takes too long."""
         with self._lock:
-            if self._current is None or code not in {self._current[0], *self._pending}:
+            if self._current is None:
                 return False
-            return time.monotonic() - self._current[1] > HANGING
+            written, since = self._current
+            waits = code == written or code in self._pending
+            return waits and time.monotonic() - since > HANGING
 
     @property
     def generation(self) -> int:
@@ -96,7 +98,7 @@ class WriteBehind:
         Raises:
             NotKept: another write takes too long, or `delete` failed; the states stay pending.
         """
-        with self._turn():
+        with held(self._writing, TURN_WAIT):
             with self._lock:
                 outdated = dict(self._pending)
             count = delete()
@@ -112,7 +114,7 @@ class WriteBehind:
         Raises:
             NotKept: another write takes too long; the state stays pending.
         """
-        with self._turn(), self._lock:
+        with held(self._writing, TURN_WAIT), self._lock:
             self._pending.pop(code, None)
             self._failed.discard(code)
 
@@ -126,27 +128,13 @@ class WriteBehind:
             cannot be used, and the background thread will write it.
         """
         try:
-            with self._turn():
+            with held(self._writing, TURN_WAIT):
                 failed = self._write_waiting(code)
         except NotKept:
             return False
         if failed:
             self._wanted.set()
         return not failed
-
-    @contextmanager
-    def _turn(self) -> Iterator[None]:
-        """Nothing is being written meanwhile by other threads.
-
-        Raises:
-            NotKept: the write that is under way takes too long.
-        """
-        if not self._writing.acquire(timeout=TURN_WAIT):
-            raise NotKept("error.database_busy")
-        try:
-            yield
-        finally:
-            self._writing.release()
 
     def close(self) -> None:
         """Write all pending states, and end the thread."""

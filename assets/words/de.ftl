@@ -190,8 +190,8 @@ keep-title = Behalten und teilen
 keep-yours = Der Code deines Labors. Notiere ihn: Damit machst du anderswo weiter.
 keep-until =
     { $days ->
-        [one] Es wird gelöscht, wenn es einen Tag lang nicht benutzt wurde.
-       *[other] Es wird gelöscht, wenn es { $days } Tage lang nicht benutzt wurde.
+        [one] Dein Labor wird gelöscht, wenn es einen Tag lang nicht benutzt wurde.
+       *[other] Dein Labor wird gelöscht, wenn es { $days } Tage lang nicht benutzt wurde.
     }
 keep-other = Anderer Code
 keep-other_hint = Der Code eines Labors, das du anderswo begonnen hast

@@ -192,8 +192,8 @@ keep-title = Keep and share
 keep-yours = Your lab's code. Note it down: with it you can continue elsewhere.
 keep-until =
     { $days ->
-        [one] It is deleted when it has not been used for a day.
-       *[other] It is deleted when it has not been used for { $days } days.
+        [one] Your lab is deleted when it has not been used for a day.
+       *[other] Your lab is deleted when it has not been used for { $days } days.
     }
 keep-other = Another code
 keep-other_hint = The code of a lab that you began elsewhere

@@ -38,40 +38,40 @@ def come_in(running: Running, key: str) -> Iterator[Class]:
         return_to(ended, running, klass.place)
 
 
-def move(klass: Class, hand: Student, seconds: float) -> dict[float, float]:
+def move(klass: Class, who: Student, seconds: float) -> dict[float, float]:
     """Let somebody move a slider.
 
     Returns:
         When each value was sent, in the order of sending; each value is greater than the last.
     """
-    slider, end = hand.find("K2"), time.monotonic() + seconds
+    slider, end = who.find("K2"), time.monotonic() + seconds
     sent: dict[float, float] = {}
     while time.monotonic() < end:
         value = slider["min"] + (len(sent) + 1) * slider["step"]
         assert value <= slider["max"]
         sent[value] = time.monotonic()
-        hand.set("K2", value)
+        who.set("K2", value)
         klass.until(lambda: time.monotonic() > sent[value] + EVERY)
     return sent
 
 
-def lose_the_process(klass: Class, hand: Student, seconds: float = LOST) -> None:
+def lose_the_process(klass: Class, who: Student, seconds: float = LOST) -> None:
     """The process is killed when somebody moves a slider; all come back on the other one.
 
     Args:
-        hand: whose slider it is.
+        who: whose slider it is.
         seconds: how long it has been moved by then: what was done before is to be found again.
     """
-    site, people = klass.running.site, {hand, *klass.names}
-    klass.until(lambda: hand.has_widget("K2"))
-    sent = move(klass, hand, seconds)
+    site, people = klass.running.site, {who, *klass.names}
+    klass.until(lambda: who.has_widget("K2"))
+    sent = move(klass, who, seconds)
     killed, codes = site.serving(), [each.code for each in people]
     end = time.monotonic()
     killed.kill()
     klass.come_back()
     back = time.monotonic() - end
     assert site.serving() is not killed and [each.code for each in people] == codes
-    found = hand.find("K2")["value"]
+    found = who.find("K2")["value"]
     lost = min(
         (end - when for value, when in sent.items() if value == pytest.approx(found)), default=inf
     )
@@ -88,7 +88,7 @@ def stopped(klass: Class) -> list[bool]:
     return [each.sees("stopped all labs") for each in klass.names]
 
 
-def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_after_10_s(
+def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_within_10_s(
     running: Running,
 ) -> None:
     with come_in(running, KEYS[0]) as klass:
