@@ -80,6 +80,7 @@ typedef struct {
   Vec q, v, y;
   Real theta, theta_rate, speed, theta_ref, speed_ref, xi, xi_rate;
   Vec u, force;
+  Real far, integral_used;
 } Row;
 typedef struct { Vec sigma, first, second, third; } Local;
 typedef struct { Real c1, s1, c2, s2; } Angles;
@@ -92,6 +93,10 @@ static Real dot(Vec a, Vec b) { return a.x * b.x + a.y * b.y; }
 static Real larger(Real a, Real b) { return choose(a > b, a, b); }
 static Real clamp(Real x, Real low, Real high) {
   return choose(x < low, low, choose(x > high, high, x));
+}
+static Real risen(Real x) {
+  x = clamp(x, all(0), all(1));
+  return x * x * (3 - 2 * x);
 }
 static Real wrap(Real a) { return a - 2 * M_PI * whole(a / (2 * M_PI) + 0.5); }
 static Angles angles(Vec q) {
@@ -212,6 +217,12 @@ static Place place(Local at, Vec z, Vec z_rate) {
   return p;
 }
 
+/* The share of the return from far away in the command. */
+static Real far_from_path(const Settings *s, Place p, Real speed) {
+  Real turn = (magnitude(p.theta_rate) - magnitude(speed)) * s->dt * s->hold_ticks;
+  return larger(risen((0.5 - larger(p.bent, all(0.05))) / 0.3), risen((turn - 0.15) / 0.15));
+}
+
 /* Commanded y'' in the frame of the closest point: z = sigma + lambda N, differentiated twice. */
 static Vec command(const Settings *s, const State *x, Local at, Place p, Real theta, Real ahead) {
   Real g = p.length * p.bent, turn = p.curvature * p.length * p.theta_rate;
@@ -236,7 +247,10 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
   Real theta = x->theta + s->dt * x->theta_rate, theta_now = theta;
   Local predicted = curve_at(table, theta), at = project(predicted, z, &theta);
   Place there = place(at, z, tip_rate(&s->model, a, v));
-  Vec wanted = torques(&s->model, a, v, command(s, x, at, there, theta, ahead));
+  Vec near = command(s, x, at, there, theta, ahead), z_rate = tip_rate(&s->model, a, v);
+  Vec home = along(scaled(-s->K1, sub(z, at.sigma)), -s->K2, z_rate);
+  Real far = far_from_path(s, there, speed_ref(s, x) + ahead * speed_ref_rate(s, x));
+  Vec wanted = torques(&s->model, a, v, along(scaled(1 - far, near), far, home));
 
   a = angles(x->q), z = tip(&s->model, a);
   at = project(predicted, z, &theta_now);
@@ -255,13 +269,18 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
                  + u.y - s->coulomb * x->v.y / root(x->v.y * x->v.y + 0.0025)};
   row->q = x->q, row->v = x->v, row->y = y, row->theta_ref = x->theta_ref;
   row->speed_ref = speed_ref(s, x);
-  row->u = u, row->force = force;
+  row->u = u, row->force = force, row->far = far;
+
+  Real used = s->K3 * root(dot(x->integral, x->integral)) / (s->K1 * 0.01);
+  row->integral_used = choose(used < 1, used, all(1));
 
   integrate(&s->plant, &x->q, &x->v, tau, s->dt);
   Mask integrates = acts & not(saturated);
   Real more = choose(integrates, s->dt * s->hold_ticks * there.lambda, all(0));
   x->integral.x = choose(s->K3 == 0, all(0), x->integral.x + more);
   x->integral.y = choose(s->K3 == 0, all(0), x->integral.y);
+  Real most = s->K1 * 0.01, size = s->K3 * root(dot(x->integral, x->integral));
+  x->integral = scaled(choose(size > most, most / size, all(1)), x->integral);
   Real speed_rate = speed_ref_rate(s, x), speed = speed_ref(s, x) + s->dt / 2 * speed_rate;
   x->speed_ref = speed_ref(s, x) + s->dt * speed_rate;
   Real top = magnitude(speed), gap = wrap(s->target - x->theta_ref) / s->dt;

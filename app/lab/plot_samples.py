@@ -30,6 +30,8 @@ def sample_layout(robot: Robot) -> Layout:
             ("u", m),
             ("force", p),
             ("y", p),
+            ("far", 1),
+            ("integral_used", 1),
             *robot.extra_fields,
         )
     )

@@ -17,6 +17,8 @@ STILL, NEAR = 2e-3, 3e-3
 """Speed below which a robot rests [m/s], and distance from an end at which it is there [m]."""
 PULLED = 0.05
 """Force from which on a robot counts as pulled [N]."""
+RETURNS, FULL = 0.5, 0.99
+"""Shares from which on a law counts as returning from far away, and its integral as bounded."""
 
 
 class Captions:
@@ -76,11 +78,14 @@ def _kind(view: RobotView, is_held: bool, distance: float) -> str:
     by_clock, is_off = law_named(view.law).by_clock, distance >= OFF
     if is_held:
         return ("torn_off" if is_off else "held") if by_clock else "off" if is_off else "waits"
+    bounded = view.integral_used > FULL
     if hypot(*view.force.tolist()) > PULLED:
-        return "pulled"
+        return "pulled_far" if view.far > RETURNS else "pulled_bounded" if bounded else "pulled"
     if not is_off:
         return ""
-    return "chases" if by_clock else "off"
+    if view.far > RETURNS:
+        return "returns"
+    return "chases" if by_clock else "off_bounded" if bounded else "off"
 
 
 def spoken(captions: Mapping[str, str], titles: Mapping[str, str], words: Words) -> str:

@@ -46,6 +46,7 @@ from onpath.models.paths.projection import basis
 from onpath.models.systems import forces
 from onpath.models.systems.system import MechanicalSystem
 
+INTEGRAL_REACH = 0.01  # ρ, [m]
 DEFAULT_GRIP = forces.Grip()
 
 
@@ -174,10 +175,11 @@ def _advance(
     fresh, acts, saturated = held_torque(kind, state, settings, wanted)
     drive = driven(kind, state, settings, fresh, acts)
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
+    summed = _integral(kind, law, state, settings, acts, saturated, command)
     after = {
         **moved,
         **_next_places(kind, law, state, settings, view, command),
-        "integral": _integral(kind, law, state, settings, acts, saturated, command),
+        "integral": bounded(summed, settings, command),
         **remembered(kind, state, acts, reading, measured_v[: system.m]),
         **memory,
         **{n: ca.if_else(acts, command.memory[n], state[n]) for n, _ in law.memory},
@@ -187,6 +189,7 @@ def _advance(
     output = measured_output(system, plane, kind, state, settings, values[:, 0], measured)
     row = {**state, "speed_ref": wanted_speed(state, settings)[0], "y": tip}
     row |= {"u": drive.mean, "force": force} | logged(output)
+    row |= {"far": command.far, "integral_used": integral_used(state, settings, command)}
     later = kept_layout(system, kind, law.memory).join(after)
     outputs = [later, log_layout(system).join(row), bases(later, settings_symbol)]
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
@@ -255,6 +258,33 @@ def _integral(
     elif law.by_clock:
         on = on * settings["tracker_integral"]
     return on * (state["integral"] + weight * command.error)
+
+
+def bounded(integral: ca.SX, settings: Fields, command: ControlAction) -> ca.SX:
+    """The integral, shortened so that |K3 ∫e dt| <= K1 ρ: it moves the balance by ρ at most.
+
+    Held off its path by a hand, a robot would otherwise learn to push with the hand's force, and
+    that throws it to the other side when the hand lets go.
+    """
+    size, most = _size_of_integral(integral, settings), _most_of_integral(settings, command)
+    return integral * ca.if_else(size > most, most / size, 1)
+
+
+def integral_used(state: Fields, settings: Fields, command: ControlAction) -> ca.SX:
+    """The share of its bound that the integral takes, from 0 to 1; see `bounded`."""
+    size = _size_of_integral(state["integral"], settings)
+    most = _most_of_integral(settings, command)
+    return ca.if_else(most > 0, ca.fmin(size / most, 1), 0)
+
+
+def _size_of_integral(integral: ca.SX, settings: Fields) -> ca.SX:
+    """|K3 ∫e dt|, (1, 1), in units of e per s²."""
+    return settings["K3"] * ca.sqrt(ca.dot(integral, integral))
+
+
+def _most_of_integral(settings: Fields, command: ControlAction) -> ca.SX:
+    """K1 ρ, (1, 1), in units of e per s²."""
+    return settings["K1"] * INTEGRAL_REACH * command.error_per_metre
 
 
 def _next_places(

@@ -83,6 +83,13 @@ def interval(kind: Kind, settings: Fields) -> ca.SX:
     return settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"]
 
 
+def lag(kind: Kind, settings: Fields) -> ca.SX:
+    """How old the measurement is at most when its torque ends, [s]; see `View.lag`."""
+    filtered = settings["encoder_filter"] if kind.encoder or kind.noise else ca.SX(0)
+    late = settings["delay_ticks"] * settings["dt"] if kind.delay else ca.SX(0)
+    return interval(kind, settings) + filtered + late
+
+
 def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX) -> Clock:
     """The reference point at the beginning of the tick; its rate is that `ahead` [s] later."""
     task = task_at(state, settings, ahead)
@@ -138,4 +145,5 @@ def law_view(
         gains=Gains(*[settings[name] for name in GAINS]),
         own_gains={name: settings[name] for name in law.gains if name not in GAINS},
         integral=state["integral"],
+        lag=lag(kind, settings),
     )

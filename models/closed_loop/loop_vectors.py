@@ -141,5 +141,7 @@ def log_layout(system: MechanicalSystem) -> Layout:
             ("xi_rate", p - 1),
             ("u", m),
             ("force", p),
+            ("far", 1),  # share of the return from far away in the command, 0 to 1
+            ("integral_used", 1),  # share of its bound that the integral takes, 0 to 1
         )
     )

@@ -124,5 +124,8 @@ def space_output(
         inverse=ca.horzcat(per_theta * n.tangent + sideways, n.left, n.up),
         offset=offset,
         per_radian=n.length,
+        gap=gap,
+        spread=d / length2,
+        xi_per_metre=ca.SX(1),
         frame=frame,
     )

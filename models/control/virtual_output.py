@@ -67,6 +67,10 @@ class VirtualOutput:
         inverse: (d, d) with d = 2, or 3 for a space curve.
         offset: (θ'', λ'') at z'' = 0, (d, 1).
         per_radian: |σ'|, [m/rad].
+        gap: y - σ, from the closest point to the output, (p, 1), [m].
+        spread: 1 - λκ with the signed distance λ: 1 on the path and 0 at its centre of curvature,
+            where the closest point is not unique. Not below `LEAST_SLOPE`.
+        xi_per_metre: |∂ξ1/∂z|: 1 of a distance, |∇s| [m] of a level set.
         frame: how the plane of the path lies in the output space.
     """
 
@@ -77,6 +81,9 @@ class VirtualOutput:
     inverse: ca.SX
     offset: ca.SX
     per_radian: ca.SX
+    gap: ca.SX
+    spread: ca.SX
+    xi_per_metre: ca.SX
     frame: PlaneCoordinates
 
     def acceleration(self, tangential: ca.SX, transversal: ca.SX) -> ca.SX:
@@ -153,12 +160,12 @@ def virtual_output(
     theta_offset = rate * (2 * second_z_rate - third * rate) / d
     if level is None:
         xi, xi_rate = distance, across
-        offset = -second_n * rate * along / length
+        offset, xi_per_metre = -second_n * rate * along / length, ca.SX(1)
         inverse = ca.horzcat(per_theta * tangent, normal)
     else:
         xi, gradient = level.at(z)
         xi_rate = ca.dot(gradient, z_rate)
-        offset = level.bent(z, z_rate)
+        offset, xi_per_metre = level.bent(z, z_rate), ca.norm_2(gradient)
         inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,
@@ -168,5 +175,8 @@ def virtual_output(
         inverse=inverse,
         offset=ca.vertcat(theta_offset, offset),
         per_radian=length,
+        gap=frame.join(z - closest.sigma, zeta, rate=True),
+        spread=d / length2,
+        xi_per_metre=xi_per_metre,
         frame=frame,
     )

@@ -52,7 +52,8 @@ def robot_views(
     if traces is not None:
         trails = np.concatenate([robot.place(traces), points[None, :, END]])
     sample, slices = instant.sample, sample_layout(robot).slices
-    speeds, distances = (sample[:, slices[name].start].tolist() for name in ("speed", "distance"))
+    names = ("speed", "distance", "far", "integral_used")
+    speeds, distances, far, used = (sample[:, slices[name].start].tolist() for name in names)
     bent = slices.get("deflection")
     return {
         bench: RobotView(
@@ -65,6 +66,8 @@ def robot_views(
             max_distance=instant.max_distances[i],
             speed=speeds[i],
             torque=sample[i, slices["u"]],
+            far=far[i],
+            integral_used=used[i],
             deflection=np.nan if bent is None else float(sample[i, bent.start]),
         )
         for i, bench in enumerate(BENCHES)

@@ -88,6 +88,8 @@ class RobotView:
         max_distance: largest distance since reset, [m].
         speed: along the path, [m/s].
         torque: shape (m,), [N m].
+        far: share of its law's command that returns to the path from far away, 0 to 1.
+        integral_used: share of its bound that its law's integral takes, 0 to 1.
         deflection: of the end-point from its position with rigid links, [m]; NaN if they are rigid.
     """
 
@@ -100,6 +102,8 @@ class RobotView:
     max_distance: float
     speed: float
     torque: np.ndarray
+    far: float = 0.0
+    integral_used: float = 0.0
     deflection: float = float("nan")
 
     @property

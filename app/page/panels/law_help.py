@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from onpath.app.common.templates import render
 from onpath.lessons.benches import law_label, law_text
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.control.laws.expressions import FUNCTIONS, LARGEST_EXPONENT
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS, NamedValue
 from onpath.models.control.laws.registry import LAWS
@@ -35,6 +36,7 @@ def law_help(laws: Iterable[str], spatial: bool, own_first: bool, words: Words) 
         "panel/law_help.html",
         laws=told,
         own_first=own_first,
+        bounds=words("laws.bounds", reach=f"{1e3 * INTEGRAL_REACH:.0f}"),
         own=words("laws.own"),
         text=words("laws.own_text"),
         space=words("laws.own_space") if spatial else "",

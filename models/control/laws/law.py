@@ -22,6 +22,8 @@ from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
+ZERO, ONE = ca.SX(0), ca.SX(1)
+
 Memory = tuple[tuple[str, int], ...]
 """Names and sizes of the fields that a law keeps from tick to tick."""
 
@@ -102,6 +104,8 @@ class View:
         gains: K1 to K5.
         own_gains: the law's further gains, by the names of `Law.gains`.
         integral: integral of `ControlAction.error`, (p, 1).
+        lag: how old the measurement is at most when its torque ends, [s]: the control interval, the
+            time constant of the velocity filter, if there is one, and the computing delay.
     """
 
     system: MechanicalSystem
@@ -119,6 +123,7 @@ class View:
     gains: Gains
     own_gains: Fields
     integral: ca.SX
+    lag: ca.SX
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,6 +147,9 @@ class ControlAction:
         acceleration: y'', (p, 1), [m/s²]; None if the law commands torques.
         torque: u, (m, 1), [N m]; None if it commands an acceleration.
         error: what the integral of K3 sums, (p, 1), [m]; None: nothing.
+        error_per_metre: units of `error` per metre; 1, but for a level set.
+        far: share of the command, from 0 to 1, that returns to the path from far away, instead of
+            following the law's formula: see `path_following.far_from_path`.
         theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
         along: the part of `acceleration` along the path, if it may be reduced.
         memory: the law's own memory after the tick.
@@ -150,6 +158,8 @@ class ControlAction:
     acceleration: ca.SX | None = None
     torque: ca.SX | None = None
     error: ca.SX | None = None
+    error_per_metre: ca.SX = ONE
+    far: ca.SX = ZERO
     theta_ref: ca.SX | None = None
     along: Along | None = None
     memory: Fields = field(default_factory=dict[str, ca.SX])

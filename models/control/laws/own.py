@@ -14,13 +14,14 @@ A law's text is its name: every function that takes the name of a law takes a te
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache, reduce
 
 import casadi as ca
 
 from onpath.models.control.laws.expressions import LARGEST_NUMBER, Formulas, read
-from onpath.models.control.laws.law import Along, ControlAction, Law, View
+from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.path_following import followed
 from onpath.models.control.laws.references import (
     clock_ahead,
     clock_rate,
@@ -177,14 +178,9 @@ def _command(formulas: Formulas, view: View) -> ControlAction:
         torque = ca.vertcat(*(results[name] for name in sorted(results)))
         return ControlAction(torque=torque, error=error, theta_ref=theta_ref, memory=memory)
     across = ca.vertcat(results["across"], *_second_normal(view, values, results))
-    along = results["along"]
-    return ControlAction(
-        acceleration=view.output.acceleration(along, across),
-        error=error,
-        theta_ref=theta_ref,
-        along=Along(along, view.output.acceleration_per_along),
-        memory=memory,
-    )
+    direction = view.output.acceleration_per_along
+    action = followed(view, results["along"], across, direction)
+    return replace(action, theta_ref=theta_ref, memory=memory)
 
 
 def _second_normal(

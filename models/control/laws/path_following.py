@@ -8,6 +8,9 @@ from onpath.models.control.laws.law import Along, ControlAction, Law, View
 from onpath.models.control.laws.references import fading
 from onpath.models.paths.projection import wrap
 
+NEAR_SPREAD, FAR_SPREAD = 0.5, 0.2  # of 1 - λκ
+NEAR_TURN, FAR_TURN = 0.15, 0.3  # [rad], beyond the wanted turn in the time `View.lag`
+
 
 def path_following(view: View) -> ControlAction:
     """Commanded y'' of path following, (p, 1), [m/s²].
@@ -20,15 +23,67 @@ def path_following(view: View) -> ControlAction:
     `task.limit`; on an open curve it is reduced near the ends, without a feedforward.
     `VirtualOutput.acceleration` turns (v_par, v_perp) into y''.
 
+    That is the law as printed, and within two bounds it is this law: the integral of every law is
+    limited, |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm (`bounded` in models/closed_loop/kernel.py), and far
+    from the path the command becomes a straight return (`far_from_path`).
+
     Source: eqs. (16), (18), (19).
     """
-    output = view.output
     along = tangential(view)
+    return followed(view, along, transversal(view), direction=view.output.acceleration_per_along)
+
+
+def followed(
+    view: View, along: ca.SX, across: ca.SX, direction: ca.SX | None = None
+) -> ControlAction:
+    """The command for θ'' = v_par and λ'' = v_perp near the path, and for a return from far away.
+
+    Args:
+        along: v_par, (1, 1), [rad/s²].
+        across: v_perp, (p - 1, 1), [m/s²].
+        direction: dy''/dv_par, (p, 1), if a torque limit may reduce v_par.
+
+    Source: eq. (16) near the path.
+    """
+    output, far = view.output, far_from_path(view)
+    near = output.acceleration(along, across)
+    home = -view.gains.k1 * output.gap - view.gains.k2 * view.y_rate
     return ControlAction(
-        acceleration=output.acceleration(along, transversal(view)),
+        acceleration=(1 - far) * near + far * home,
         error=ca.vertcat(output.xi, 0),
-        along=Along(along, output.acceleration_per_along),
+        error_per_metre=output.xi_per_metre,
+        far=far,
+        along=None if direction is None else Along(along, (1 - far) * direction),
     )
+
+
+def far_from_path(view: View) -> ca.SX:
+    """The share s of the return to the path in the command, from 0 to 1.
+
+        y'' = (1 - s) y''_(16) + s (-K1 (y - σ) - K2 y')
+
+    (16) divides by 1 - λκ, which is 0 at the centre of curvature, where the closest point is not
+    unique; a hand that lets go may throw the arm there. And (16) cancels θ'² as it was up to a time
+    `lag` ago, in which θ must not turn far. So s goes smoothly from 0 to 1 while
+
+        1 - λκ                     falls from 0.5 to 0.2, or
+        (|θ'| - |ω_ref|) lag       rises from 0.15 to 0.3 rad.
+
+    Elsewhere s is 0 exactly. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
+    without a force from outside, whichever of several closest points is taken: |y - σ|² is the
+    smallest of the squared distances, and each of them is pulled at alike.
+    """
+    output = view.output
+    turn = (ca.fabs(output.theta_rate) - ca.fabs(view.task.speed)) * view.lag
+    inside = _risen((NEAR_SPREAD - output.spread) / (NEAR_SPREAD - FAR_SPREAD))
+    fast = _risen((turn - NEAR_TURN) / (FAR_TURN - NEAR_TURN))
+    return ca.fmax(inside, fast)
+
+
+def _risen(x: ca.SX) -> ca.SX:
+    """A smooth step from 0 at x <= 0 to 1 at x >= 1: 3 x² - 2 x³."""
+    x = ca.fmin(ca.fmax(x, 0), 1)
+    return x * x * (3 - 2 * x)
 
 
 def transversal(view: View) -> ca.SX:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 
 from onpath.models.control.laws.law import ControlAction, Law, View
-from onpath.models.control.laws.path_following import transversal
+from onpath.models.control.laws.path_following import followed, transversal
 from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel, Complex, channels
 from onpath.models.errors import Message
@@ -41,9 +43,7 @@ def virtual_constraint(view: View) -> ControlAction:
     resting = output.acceleration(ca.SX(0), transversal(view))
     force_there = mass @ (back @ (resting - turned)) + gyration
     free = -ca.dot(along_joints, force_there) / ca.dot(along_joints, mass @ along_joints)
-    return ControlAction(
-        resting + direction * free, error=ca.vertcat(output.xi, 0), theta_ref=output.theta
-    )
+    return replace(followed(view, free, transversal(view)), theta_ref=output.theta)
 
 
 def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channel]:
