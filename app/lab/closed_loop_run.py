@@ -12,6 +12,7 @@ from onpath.app.lab.loop_states import Place, single
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.faults import explained
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import loop_layouts, state_layout
 from onpath.models.closed_loop.loops import CompiledLoop, Loop
@@ -229,7 +230,10 @@ class ClosedLoopRun:
             curve: the path.
             time: of the fault, [s].
         """
-        self.diverged = Diverged(fault[1], time)
+        assert self._inputs is not None
+        before, parameters = rows[: fault[0]], self._inputs[0]
+        why = explained(fault[1], self.robot, self.log, self.law, before, parameters)
+        self.diverged = Diverged(why, time)
         good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
         if good.size:
             row = rows[good[-1]]

@@ -1,18 +1,23 @@
-"""Why and when a run has diverged."""
+"""Why and when a run has diverged, and what brought it there."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
 from onpath.models.errors import Message
-from onpath.models.layout import Layout
-from onpath.models.systems.parameters import Parameters
+from onpath.models.layout import Fields, Layout
+from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
 TYPED_LAW = Message("stop.typed_law", {"most": f"{LARGEST_NUMBER:g}"})
+BEFORE = 0.1  # [s] before a fault in which its cause is looked for
+OFTEN = 0.5  # share of that time in which the motors must be at their limit
+WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
+PULLED = 1.0  # [N]
 
 
 def not_finite(law: str) -> Message:
@@ -37,3 +42,52 @@ def fault_in(
     if bad.any() and (fault is None or bad.argmax() < fault[0]):
         return int(bad.argmax()), not_finite(law)
     return fault
+
+
+def explained(
+    reason: Message, robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
+) -> Message:
+    """Why a run has diverged, with the cause and what would help, if that can be told.
+
+    Args:
+        reason: of the fault, from `fault_in`.
+        log: layout of the rows.
+        law: name of the control law.
+        rows: of the log until the fault, shape (ticks, log.size); those of the last 0.1 s count.
+    """
+    causes = _causes(robot, log, law, rows, parameters)
+    if not causes or reason == TYPED_LAW:
+        return reason
+    return Message("stop.because", {"reason": reason, "causes": tuple(causes)})
+
+
+def _causes(
+    robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
+) -> list[Message]:
+    """What may have brought it there, the most certain first."""
+    causes = list[Message]()
+    channels = channels_of(law, parameters)
+    if not isinstance(channels, Message):
+        growing = [channel for channel in channels if not channel.stable]
+        causes += [Message(f"cause.poles_{channel.name}") for channel in growing]
+    last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
+    last = last[np.isfinite(last).all(1)]
+    if len(last):
+        causes += _seen(log.unpack(last), parameters)
+    plant, model = robot.plant(parameters), robot.model(parameters)
+    if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
+        causes.append(Message("cause.model"))
+    return causes
+
+
+def _seen(last: Fields, parameters: Parameters) -> list[Message]:
+    """Causes that show in the last rows before the fault."""
+    causes, limit = list[Message](), parameters.torque_limit
+    if limit > 0 and (np.abs(last["u"]).max(1) >= 0.999 * limit).mean() > OFTEN:
+        causes.append(Message("cause.limit", {"limit": f"{limit:g}"}))
+    if (force := np.linalg.norm(last["force"], axis=1).max()) > PULLED:
+        causes.append(Message("cause.force", {"force": f"{force:.0f}"}))
+    turned = np.abs(last["theta_rate"]).max() / parameters.control_rate
+    if last["far"].max() > 0:
+        causes.append(Message("cause.far", {"turned": f"{turned:.2g}"}))
+    return causes

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.faults import fault_in
+from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.simulation import (
     check_level_set,
@@ -236,7 +236,9 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     for rows, held in scheduled.parts():
         fault = fault_in(robot, kernel.log, controller, rows, experiment.parameters)
         if fault is not None:
-            rows = rows[: fault[0]]
+            tick, reason = fault
+            rows, told = rows[:tick], experiment.parameters
+            fault = tick, explained(reason, robot, kernel.log, controller, rows, told)
         segments.append((rows, curve, held))
         done += len(rows)
         if fault is not None:
