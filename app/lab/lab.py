@@ -91,6 +91,7 @@ class Lab:
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level = "", "info"
+        self._caution: Message | None = None
         self.law_refusals: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
@@ -251,6 +252,8 @@ class Lab:
         self.show_message("")
         if said := self.fault_words("say.stopped"):
             self.show_message(said, "error")
+        elif self._caution is not None:
+            self.show_message(self.words.sentence(self._caution), "warning")
 
     def remark(self, message: str) -> None:
         """Show a message, unless a robot is stopped, which is more important."""
@@ -261,6 +264,10 @@ class Lab:
     def show_faults(self) -> None:
         """Report robots that have just stopped, and typed laws that could not be used."""
         faults, refusals = self.session.faults, self.session.law_changes.refusals
+        caution = self.session.entry.caution(self.session.parameters)
+        if caution != self._caution:
+            self._caution = caution
+            self.clear_message()
         while refusals:
             self.show_message(self.words.sentence(refusals.pop(0)), "warning")
         if faults:

@@ -1185,6 +1185,7 @@ stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: 
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-because = { $reason }. Vermutlich, weil: { $causes }
+caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Roboter auch unberührt nicht stabil: Er wird nach wenigen Sekunden stehen bleiben. Wähle mindestens { $slowest } Hz
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
 cause-limit = die Motoren waren an ihrer Grenze von { $limit } N m (anheben oder langsamer fahren)

@@ -915,6 +915,7 @@ stop-bent = the link bends too far although its zero dynamics are stable: the pu
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong
 stop-because = { $reason }. Likely because: { $causes }
+caution-flexible = With { $rate } control actions a second, the flexible link is not even stable untouched: it will stop within seconds. Choose at least { $slowest } Hz
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
 cause-limit = the motors were at their limit of { $limit } N m (raise it, or lower the speed)

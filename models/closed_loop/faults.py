@@ -10,6 +10,7 @@ from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
 from onpath.models.errors import Message
 from onpath.models.layout import Fields, Layout
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
@@ -65,7 +66,9 @@ def _causes(
     robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> list[Message]:
     """What may have brought it there, the most certain first."""
-    causes = list[Message]()
+    causes, entry = list[Message](), ROBOTS.get(robot.name)
+    if entry is not None and (caution := entry.caution(parameters)) is not None:
+        causes.append(caution)
     channels = channels_of(law, parameters)
     if not isinstance(channels, Message):
         growing = [channel for channel in channels if not channel.stable]

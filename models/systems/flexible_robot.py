@@ -42,6 +42,9 @@ BENT_OR_UNSTABLE = Message("stop.bent_or_unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 _SOFT = SpringLimits(500.0, 4.0, 5.0)
 SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), _SOFT, _SOFT)
+SLOWEST = {"composite": (200, 500), "redefined": (500, 500)}
+"""Lowest control rates at which the robot runs along its circle with the default gains, [Hz]:
+with exact sensing, and with encoders or noise."""
 PIECES = 10  # straight bars by which the bent link is drawn
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 DRAWING = Drawing(
@@ -303,6 +306,16 @@ def critical_alpha(parameters: Parameters, joints: Array) -> float:
     return zero.critical_alpha(q, robot.plant(parameters), highest=1.0)
 
 
+def caution(parameters: Parameters) -> Message | None:
+    """See `RobotEntry.caution`: the control may be too slow for the link's vibration."""
+    own = own_parameters(FlexibleParameters, parameters)
+    exact, measured = SLOWEST[own.law]
+    slowest = measured if own.encoder_counts > 0 or own.sensor_noise > 0 else exact
+    if own.control_rate >= slowest:
+        return None
+    return Message("caution.flexible", {"rate": own.control_rate, "slowest": slowest})
+
+
 ROBOT = RobotEntry(
     name="flexible",
     label="Five-bar with a flexible link",
@@ -312,6 +325,7 @@ ROBOT = RobotEntry(
     lab=FlexibleParameters(law="composite"),  # the only law that is stable under every pull
     make=robot_for,
     goes_on=("payload",),
+    caution=caution,
     flexible_link=FlexibleLink(
         joints=RIGID,
         beam=("plant", "modes", "rho", "frequency", "zeta"),

@@ -249,6 +249,8 @@ class RobotEntry:
         picture: name of an asset; if empty, the bars are sketched.
         goes_on: parameters that may select another instance with the same states and kinematics, so
             that a run goes on from the present state.
+        caution: why the robot would not even run untouched with these parameters; None if nothing
+            is known against it.
         flexible_link: of a robot with parameters `law` and `alpha` and an extra field "deflection";
             None: all links are rigid.
     """
@@ -262,6 +264,7 @@ class RobotEntry:
     picture: str = ""
     flexible_link: FlexibleLink | None = None
     goes_on: tuple[str, ...] = ()
+    caution: Callable[[Parameters], Message | None] = lambda _: None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether the robots of two sets of parameters differ at most by those in `goes_on`."""

@@ -1,0 +1,122 @@
+"""Nothing stops the follower: pulled, braked or walled in at random, it comes back."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.control.laws.path_following import far_from_path
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.pulls import parameters_of, runs_untouched, troubled
+
+FOLLOWER = "path_following"
+RATES, COUNTS, NOISES = (100, 250, 1000), (0.0, 2000.0), (0.0, 1e-4)
+NEAR = 0.005  # [m], within which it must be 1.5 s after its release
+
+
+def check(robot: str, rate: int, counts: float, noise: float, seed: int, pulls: int) -> None:
+    parameters = parameters_of(robot, control_rate=rate, encoder_counts=counts, sensor_noise=noise)
+    assume(runs_untouched(robot, parameters, FOLLOWER))
+    for number, each in enumerate(troubled(robot, parameters, FOLLOWER, seed, pulls)):
+        assert each.fault is None, (number, each.trouble, each.fault)
+        assert each.late < NEAR, (number, each.trouble, each.late)
+
+
+@settings(max_examples=5)
+@given(
+    st.sampled_from(sorted(ROBOTS)),
+    st.sampled_from(RATES),
+    st.sampled_from(COUNTS),
+    st.sampled_from(NOISES),
+    st.integers(0, 2**32 - 1),
+)
+def test_nothing_stops_the_follower(
+    robot: str, rate: int, counts: float, noise: float, seed: int
+) -> None:
+    check(robot, rate, counts, noise, seed, pulls=6)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("noise", NOISES)
+@pytest.mark.parametrize("counts", COUNTS)
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("robot", sorted(ROBOTS))
+def test_no_pull_of_many_stops_the_follower(
+    robot: str, rate: int, counts: float, noise: float
+) -> None:
+    parameters = parameters_of(robot, control_rate=rate, encoder_counts=counts, sensor_noise=noise)
+    if not runs_untouched(robot, parameters, FOLLOWER):
+        assert ROBOTS[robot].caution(parameters) is not None  # said before the run
+        return
+    assert ROBOTS[robot].caution(parameters) is None
+    check(robot, rate, counts, noise, seed=2026, pulls=15 if robot == "flexible" else 60)
+
+
+@given(
+    st.floats(0.05, 3),
+    st.floats(-500, 500),
+    st.floats(-20, 20),
+    st.sampled_from([1e-3, 4e-3, 1e-2, 2.5e-2]),
+)
+def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
+    spread: float, rate: float, wanted: float, lag: float
+) -> None:
+    output = SimpleNamespace(spread=ca.SX(spread), theta_rate=ca.SX(rate))
+    task = SimpleNamespace(speed=ca.SX(wanted))
+    view = SimpleNamespace(output=output, task=task, lag=ca.SX(lag))
+    share = float(far_from_path(view))  # type: ignore[arg-type]
+    turn = (abs(rate) - abs(wanted)) * lag
+    assert 0 <= share <= 1
+    if spread >= 0.5 and turn <= 0.15:
+        assert share == 0  # the law as printed, bit by bit
+    if spread <= 0.2 or turn >= 0.3:
+        assert share == pytest.approx(1, abs=1e-9)
+
+
+@settings(max_examples=12)
+@given(st.sampled_from(["circle", "clover", "ellipse"]), st.integers(0, 2**32 - 1))
+def test_on_the_return_energy_never_rises_whichever_closest_point_is_taken(
+    path: str, seed: int
+) -> None:
+    curve, rng, dt = presets()[path].curve, np.random.default_rng(seed), 3e-4
+    y, rate = rng.uniform(-0.08, 0.08, 2), rng.uniform(-2, 2, 2)
+    before = np.inf
+    for _ in range(60):
+        theta, distance = curve.nearest(y[None])
+        energy = (400 * distance[0] ** 2 + rate @ rate) / 2
+        assert energy <= before + 1e-4 * max(1.0, energy)  # explicit steps
+        before = energy
+        sigma = curve.at(theta)[0]
+        acceleration = -400 * (y - sigma) - 40 * rate
+        y, rate = y + dt * rate + dt**2 / 2 * acceleration, rate + dt * acceleration
+
+
+@pytest.mark.parametrize("law", ["path_following", "trajectory_tracking", "waiting_clock"])
+def test_no_integral_moves_the_balance_by_more_than_its_bound(law: str) -> None:
+    from onpath.models.closed_loop.simulation import kind_of
+    from tests.support import pulls
+
+    parameters = parameters_of("five_bar", tracker_integral="on")
+    robot, curve = ROBOTS["five_bar"].make(parameters), presets()["circle"].curve
+    loop = pulls._loop(robot, kind_of(law, parameters, curve))
+    rng, layouts = np.random.default_rng(5), loop.layouts
+    begin = pulls._begin(robot, curve, 0.3)
+    state = pulls.first_state(robot, layouts, curve, begin)
+    own = pulls.settings_vector(robot, layouts, parameters, curve, pulls.FREE)
+    full = False
+    for _ in range(20):
+        push = pulls.Push(rng.uniform(-0.2, 0.2, 2))
+        state, rows = loop.run(state, pulls.pushed(layouts, own, push), curve.table(), 200)
+        integral = np.linalg.norm(layouts.state.unpack(state)["integral"])
+        assert parameters.K3 * integral <= parameters.K1 * INTEGRAL_REACH * (1 + 1e-9)
+        used = layouts.log.unpack(rows)["integral_used"]
+        assert used.min() >= 0 and used.max() <= 1
+        full |= bool((used > 0.999).any())
+    assert full
