@@ -1,6 +1,6 @@
 // The page of a lesson: one step at a time, with its figure.
 
-import { made } from "../standalone/controls"
+import { made, refused } from "../standalone/controls"
 import { ask, ordered } from "./asked"
 import { said, type PageData } from "./data"
 import { keep, notesOf, thinned, type Notes } from "./notes"
@@ -87,7 +87,14 @@ export class LessonPage {
         const figure = page.figures[step.figure]
         if (!figure) return this.shown() // only the lab shows it
         const into = section.querySelector<HTMLElement>(".stage")!
-        const stage = await Stage.open(figure, step.values, into)
+        let stage: Stage
+        try {
+            stage = await Stage.open(figure, step.values, into)
+        } catch (error) {
+            if (turn !== this.turn) return
+            into.replaceChildren(refused(figure, error))
+            return this.shown()
+        }
         if (turn !== this.turn) return stage.close()
         this.stage = stage
         if (step.kind === "predict" || !step.running) stage.run(false)
@@ -200,7 +207,7 @@ export class LessonPage {
         const told = section.querySelector<HTMLElement>(".play")
         const button = told?.querySelector<HTMLButtonElement>("button.main")
         if (button) {
-            button.disabled = waits
+            button.disabled = waits || !this.stage
             button.textContent = said(page, this.notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
@@ -208,6 +215,7 @@ export class LessonPage {
         const read = section.dataset["read"] === "yes"
         const open = !waits && (this.happened(index) || read)
         section.classList.toggle("veiled", !open)
+        if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !this.stage)
         section.querySelector(".read")?.remove()
         if (!open && !waits) {
             const button = made("button", "read", said(page, "lesson.read"))

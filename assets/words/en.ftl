@@ -1046,7 +1046,9 @@ standalone-late = Simulated time runs late: this device is too slow to draw in r
 standalone-coincide = two control points would coincide
 standalone-selected = Control point { $number } of { $all } is selected: move it with the arrow keys.
 standalone-drag_hint = Drag the points of the path, or press N to select the next one and move it with the arrow keys.
-standalone-no_script = This figure needs JavaScript.
+standalone-no_script = This figure needs JavaScript, which is switched off here or forbidden by the Content-Security-Policy of the server.
+standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
+standalone-description = A simulation that runs in this page: { $laws }
 
 ## The course as a static site: assets/site, app/exports/site
 
