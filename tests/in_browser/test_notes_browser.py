@@ -45,6 +45,18 @@ def page(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     page.close()
 
 
+def test_a_browser_that_keeps_nothing_says_so_in_a_lesson(browser: Browser, page: Page) -> None:
+    context = browser.new_context()
+    other = context.new_page()
+    other.add_init_script("Storage.prototype.setItem = () => { throw new Error('full') }")
+    other.goto(page.url)
+    notice = other.locator("#notice")
+    wait_for(lambda: "keeps nothing for this page" in notice.inner_text(), WAIT)
+    other.locator("#next").click()
+    assert notice.locator("p").count() == 1 and page.locator("#notice p").count() == 0
+    context.close()
+
+
 # Notes as a short text.
 
 
