@@ -57,10 +57,12 @@ export function ask(
             const chosen = element.querySelector<HTMLInputElement>("input:checked")
             if (!chosen) return
             notes.quiz[key] = Number(chosen.value)
+            notes.first[key] ??= notes.quiz[key]
         } else if (block.kind === "number") {
             const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
             if (!Number.isFinite(given)) return void (told.textContent = said(page, "lesson.no_number"))
             notes.numbers[key] = given
+            notes.first[key] ??= given
         } else if (input.value.trim()) notes.written[key] = input.value.trim().slice(0, 1000)
         else return
         show()

@@ -1,11 +1,12 @@
 // The page of a lesson: one step at a time, with its figure.
 
-import { made } from "../standalone/controls"
+import { made, refused } from "../standalone/controls"
 import { ask, ordered } from "./asked"
 import { said, type PageData } from "./data"
-import { keep, notesOf, thinned, type Notes } from "./notes"
+import { gradeOf } from "./grade"
+import { given, keep, notesOf, thinned, type Notes } from "./notes"
 import { showOwn } from "./own"
-import { Comparison, elementOf, given, predict, predictionAt, type Prediction } from "./predictions"
+import { Comparison, elementOf, predict, predictionAt, type Prediction } from "./predictions"
 import type { Progress } from "./progress"
 import { Stage } from "./stage"
 import { Task } from "./tasks"
@@ -87,7 +88,14 @@ export class LessonPage {
         const figure = page.figures[step.figure]
         if (!figure) return this.shown() // only the lab shows it
         const into = section.querySelector<HTMLElement>(".stage")!
-        const stage = await Stage.open(figure, step.values, into)
+        let stage: Stage
+        try {
+            stage = await Stage.open(figure, step.values, into)
+        } catch (error) {
+            if (turn !== this.turn) return
+            into.replaceChildren(refused(figure, error))
+            return this.shown()
+        }
         if (turn !== this.turn) return stage.close()
         this.stage = stage
         if (step.kind === "predict" || !step.running) stage.run(false)
@@ -200,7 +208,7 @@ export class LessonPage {
         const told = section.querySelector<HTMLElement>(".play")
         const button = told?.querySelector<HTMLButtonElement>("button.main")
         if (button) {
-            button.disabled = waits
+            button.disabled = waits || !this.stage
             button.textContent = said(page, this.notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
@@ -208,6 +216,7 @@ export class LessonPage {
         const read = section.dataset["read"] === "yes"
         const open = !waits && (this.happened(index) || read)
         section.classList.toggle("veiled", !open)
+        if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !this.stage)
         section.querySelector(".read")?.remove()
         if (!open && !waits) {
             const button = made("button", "read", said(page, "lesson.read"))
@@ -231,12 +240,7 @@ export class LessonPage {
         const { page, notes, progress } = this
         keep(progress, page.lesson, notes)
         showOwn(page, notes)
-        const required = page.steps.filter(step => !step.optional)
-        const tasks = required.flatMap(step => step.blocks).flatMap(block => (block.kind === "task" && block.checks ? [block.id] : []))
-        const done = tasks.filter(id => id in notes.tasks).length
-        const last = page.steps.findLastIndex(step => !step.optional) + 1
-        progress.score(done + Math.min(notes.seen, last), tasks.length + last)
-        if (done === tasks.length && notes.seen >= last) progress.completed()
+        progress.grade(gradeOf(page.steps, notes))
     }
 
     /** Where the student is. */
@@ -267,10 +271,12 @@ export class LessonPage {
             const answer = notes.answers[String(i)]
             const truth = notes.truths[String(i)]
             const comparison = new Comparison(page, found, notes)
-            const skipped = answer && given(answer) ? [] : [made("p", "", said(page, "lesson.skipped"))]
-            const shown = truth ? comparison.elements : [made("p", "", said(page, "report.not_happened"))]
+            const run = page.steps[i]!.kind === "run" ? i : i + 1
+            const happened = truth !== undefined || notes.played[String(run)]
+            const skipped = given(answer) ? [] : [made("p", "", said(page, "lesson.skipped"))]
+            const shown = happened ? comparison.elements : [made("p", "", said(page, "report.not_happened"))]
             words.append(made("div", "compared op-box", made("p", "", made("b", "", question)), ...skipped, ...shown))
-            if (truth) comparison.draw(truth)
+            if (happened) comparison.draw(truth)
         })
     }
 }

@@ -27,6 +27,8 @@ export interface Notes {
     played: Record<string, boolean>
     tasks: Record<string, number>
     quiz: Record<string, number>
+    /** First answers to quizzes and questions for numbers; after them the page shows the right ones. */
+    first: Record<string, number>
     numbers: Record<string, number>
     written: Record<string, string>
 }
@@ -36,7 +38,7 @@ const MOST_POINTS = 200
 
 export function notesOf(progress: Progress, lesson: string): Notes {
     const none: Notes = {
-        step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, numbers: {}, written: {},
+        step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {},
     }
     const kept = parsed(progress.get(key(lesson)) ?? "{}")
     return isNotes(kept) ? { ...none, ...kept } : none
@@ -44,6 +46,11 @@ export function notesOf(progress: Progress, lesson: string): Notes {
 
 export function keep(progress: Progress, lesson: string, notes: Notes): void {
     progress.set(key(lesson), JSON.stringify(notes))
+}
+
+/** Whether a prediction was committed; a skipped one is an empty answer. */
+export function given(answer: Answer | undefined): boolean {
+    return answer?.option !== undefined || answer?.times !== undefined
 }
 
 /** All notes of a course as a file. */
@@ -111,6 +118,6 @@ function isNotes(read: unknown): read is Partial<Notes> {
     const curves = fields({ times: numbers, tracker: numbers, follower: numbers })
     return fields({
         step: place, seen: place, answers: every(answer), truths: every(curves), played: every(flag),
-        tasks: every(number), quiz: every(place), numbers: every(number), written: every(text),
+        tasks: every(number), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
     })(read)
 }

@@ -1,8 +1,9 @@
 // Predictions: a choice or a curve, to which a student commits before it happens.
 
+import { made } from "../standalone/controls"
 import { judged } from "./asked"
 import { said, type BlockData, type PageData, type SketchData, type StepData } from "./data"
-import type { Answer, Notes } from "./notes"
+import { given, type Answer, type Notes } from "./notes"
 import { Board, Chart } from "./sketch"
 
 export interface Prediction {
@@ -26,7 +27,7 @@ export function elementOf(prediction: Prediction): HTMLElement {
     return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
 }
 
-/** Make it answerable; it cannot be changed once it is answered. */
+/** Make it answerable. It cannot be changed once it is committed; one that was skipped can still be made. */
 export function predict(page: PageData, prediction: Prediction, notes: Notes, changed: () => void): void {
     const element = elementOf(prediction)
     const key = String(prediction.step)
@@ -44,9 +45,9 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
             told.textContent = said(page, answer.times ? "lesson.drawn" : "lesson.draw_first")
         })
         asked.before(board.element)
-        board.draw(notes.answers[key], undefined)
-        addEventListener("resize", () => board.draw(notes.answers[key] ?? answer, undefined))
-        if (notes.answers[key]) board.element.inert = true
+        const draw = () => board.draw(given(notes.answers[key]) ? notes.answers[key] : answer, undefined)
+        draw()
+        addEventListener("resize", draw)
     } else
         element.addEventListener("change", event => {
             const input = event.target as HTMLInputElement
@@ -57,8 +58,9 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
     const show = () => {
         const kept = notes.answers[key]
         if (!kept) return
+        told.textContent = said(page, given(kept) ? "lesson.committed" : "site.skipped")
+        if (!given(kept)) return
         asked.hidden = true
-        told.textContent = said(page, given(kept) ? "lesson.committed" : "lesson.skipped")
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
         element.querySelectorAll<HTMLElement>(".board").forEach(board => (board.parentElement!.inert = true))
         if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
@@ -74,24 +76,24 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
     show()
 }
 
-export function given(answer: Answer): boolean {
-    return answer.option !== undefined || answer.times !== undefined
-}
-
 /** How a prediction compares with what happened. */
 export class Comparison {
     readonly elements: HTMLElement[] = []
     private readonly chart: Chart | null = null
+    private readonly again: HTMLElement
 
     constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
         const { data } = prediction
+        this.again = made("p", "", said(page, "site.again"))
         if (data.kind === "sketch") {
             this.chart = new Chart(page, data)
-            this.elements.push(this.chart.canvas)
+            this.elements.push(this.chart.canvas, this.again)
         } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
     }
 
+    /** Where the truth is not kept, the page says how it is seen again. */
     draw(truth: Notes["truths"][string] | undefined): void {
+        this.again.hidden = truth !== undefined
         this.chart?.draw(this.answer, truth)
     }
 

@@ -1,13 +1,15 @@
 // Where a student's progress is kept. A page in a learning platform has another place for it.
 
-/** Texts by key, and what is told of the whole. */
+import type { Grade } from "./grade"
+
+/** Says something about what is kept, in words of the page. */
+export type Tell = (key: string, values?: Record<string, string>) => void
+
+/** Texts by key, and what is told of a lesson. */
 export interface Progress {
     get(key: string): string | null
     set(key: string, value: string): void
-    /** So much of the whole is done. */
-    score(part: number, whole: number): void
-    /** All is done that is not optional. */
-    completed(): void
+    grade(grade: Grade): void
 }
 
 const PREFIX = "onpath."
@@ -16,6 +18,8 @@ const PREFIX = "onpath."
 export class LocalProgress implements Progress {
     private readonly memory = new Map<string, string>()
     lost = false // whether nothing could be kept
+
+    constructor(private readonly tell: Tell) {}
 
     get(key: string): string | null {
         try {
@@ -31,10 +35,9 @@ export class LocalProgress implements Progress {
         } catch {
             this.lost = true
             this.memory.set(key, value)
+            this.tell("site.not_kept")
         }
     }
 
-    score(): void {}
-
-    completed(): void {}
+    grade(): void {}
 }

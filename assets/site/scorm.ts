@@ -1,31 +1,47 @@
 // Progress in a learning platform, by the run-time of SCORM 1.2 or of SCORM 2004.
 
+import type { Grade } from "./grade"
 import { parsed } from "./notes"
-import type { Progress } from "./progress"
-type Api = Record<string, (...values: string[]) => string>
+import { packed, unpacked } from "./packed"
+import type { Progress, Tell } from "./progress"
+
+type Api = Record<string, ((...values: string[]) => unknown) | undefined>
 const DATA = "cmi.suspend_data"
-const MEASURES = ["cmi.score.scaled", "cmi.progress_measure"]
 const NAMES = {
-    "1.2": { api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", status: "cmi.core.lesson_status", most: 4096, measures: [] as string[] },
-    "2004": { api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", status: "cmi.completion_status", most: 64000, measures: MEASURES },
+    "1.2": {
+        api: "API", verb: "LMS", end: "Finish", core: "cmi.core.", mode: "cmi.core.lesson_mode", room: 4096,
+        status: "cmi.core.lesson_status", scaled: "", progress: "",
+    },
+    "2004": {
+        api: "API_1484_11", verb: "", end: "Terminate", core: "cmi.", mode: "cmi.mode", room: 64000,
+        status: "cmi.completion_status", scaled: "cmi.score.scaled", progress: "cmi.progress_measure",
+    },
 }
-/** What is left out where there is no room for it: a run can be seen again, a curve drawn again. */
-const LEFT_OUT = [[], ["truths"], ["truths", "times", "values"], ["truths", "times", "values", "why", "written"]]
+export type Version = keyof typeof NAMES
 
 export class ScormProgress implements Progress {
-    private kept: Record<string, unknown>
-    private readonly call = (verb: string, ...values: string[]): string => this.api[this.names.verb + verb]!(...values)
-    private constructor(private readonly names: (typeof NAMES)[keyof typeof NAMES], private readonly api: Api) {
-        this.call("Initialize", "")
-        this.kept = { ...(parsed(this.call("GetValue", DATA)) as object | null) }
-        this.call("SetValue", `${this.names.core}exit`, "suspend") // a lesson may be left, and gone on with
-        if (this.call("GetValue", this.names.status) !== "completed") this.call("SetValue", this.names.status, "incomplete")
-        addEventListener("pagehide", () => this.call(names.end, ""), { once: true })
+    private kept: Record<string, unknown> = {}
+    private open = false // whether there is a session
+    private records = false // whether it is no review
+    private credit = false // whether a score is wanted
+
+    private constructor(private readonly names: (typeof NAMES)[Version], private readonly api: Api, private readonly tell: Tell) {
+        this.begin()
+        this.kept = { ...(unpacked(this.value(DATA)) as object | undefined) }
+        addEventListener("pagehide", () => this.end())
+        addEventListener("pageshow", event => {
+            if (!event.persisted) return // it comes back from the browser's cache, after its session has ended
+            this.begin()
+            this.keep()
+        })
     }
 
-    static found(version: keyof typeof NAMES): ScormProgress | null {
-        const found = apiOf(window, NAMES[version].api) ?? apiOf(window.opener as Window | null, NAMES[version].api)
-        return found && new ScormProgress(NAMES[version], found)
+    /** Null if there is no platform around this page. */
+    static found(version: Version, tell: Tell): ScormProgress | null {
+        const { api } = NAMES[version]
+        const found = apiOf(window, api) ?? apiOf(window.opener as Window | null, api)
+        if (!found) tell("site.no_platform")
+        return found && new ScormProgress(NAMES[version], found, tell)
     }
 
     get(key: string): string | null {
@@ -35,23 +51,73 @@ export class ScormProgress implements Progress {
 
     set(key: string, value: string): void {
         this.kept[key] = parsed(value) ?? value
-        const texts = LEFT_OUT.map(names => JSON.stringify(this.kept, (name, own) => (names.includes(name) ? undefined : own)))
-        const text = texts.find(each => each.length <= this.names.most)
-        if (text) this.call("SetValue", DATA, text)
-        this.call("Commit", "")
+        this.keep()
     }
 
-    score(part: number, whole: number): void {
-        const share = whole ? part / whole : 0
-        const points = Object.entries({ min: 0, max: 100, raw: Math.round(100 * share) })
-        for (const [name, value] of points) this.call("SetValue", `${this.names.core}score.${name}`, String(value))
-        for (const name of this.names.measures) this.call("SetValue", name, share.toFixed(4))
-        this.call("Commit", "")
+    /** A score never becomes less, and what is passed or completed remains so. */
+    grade({ progress, score }: Grade): void {
+        const { names } = this
+        if (this.credit) {
+            const points = Math.round(100 * (score ?? NaN))
+            if (this.raises(`${names.core}score.raw`, points)) {
+                this.ask("SetValue", `${names.core}score.min`, "0") // a platform need not take these two
+                this.ask("SetValue", `${names.core}score.max`, "100")
+                this.put(`${names.core}score.raw`, String(points))
+                if (names.scaled) this.put(names.scaled, (points / 100).toFixed(2))
+            }
+            if (names.progress && this.raises(names.progress, progress)) this.put(names.progress, progress.toFixed(4))
+            if (progress === 1) this.status("completed", ["passed", "completed"])
+        }
+        this.checked("Commit", "")
     }
 
-    completed(): void {
-        this.call("SetValue", this.names.status, "completed")
-        this.call("Commit", "")
+    private begin(): void {
+        this.open = true
+        this.open = this.checked("Initialize", "")
+        this.records = this.open && !["review", "browse"].includes(this.value(this.names.mode))
+        this.credit = this.records && this.value(`${this.names.core}credit`) !== "no-credit"
+        if (this.open && !this.records) this.tell("site.review")
+        if (this.records) this.put(`${this.names.core}exit`, "suspend") // a lesson may be left, and gone on with
+        if (this.credit) this.status("incomplete", ["passed", "completed", "failed"])
+    }
+
+    private end(): void {
+        this.ask(this.names.end, "")
+        this.open = this.records = this.credit = false
+    }
+
+    private keep(): void {
+        if (!this.records) return
+        const found = packed(this.kept, this.names.room)
+        if (!found) return this.tell("site.no_room")
+        if (found.cut) this.tell("site.cut", { most: String(this.names.room) })
+        this.put(DATA, found.text)
+    }
+
+    private status(status: string, unless: string[]): void {
+        if (!unless.includes(this.value(this.names.status))) this.put(this.names.status, status)
+    }
+
+    private readonly value = (name: string): string => this.ask("GetValue", name)
+    private readonly put = (name: string, value: string): boolean => this.checked("SetValue", name, value)
+    private readonly raises = (name: string, value: number): boolean => value >= Number(this.value(name))
+    /** Whether it is done; if the platform refuses, its reason is told. */
+    private checked(verb: string, ...values: string[]): boolean {
+        if (!this.open) return false
+        if (this.ask(verb, ...values) !== "false") return true
+        const code = this.ask("GetLastError")
+        this.tell("site.refused", { reason: `${this.ask("GetErrorString", code)} (${code})` })
+        return false
+    }
+
+    /** What the platform answers; empty without a session, "false" if it fails. */
+    private ask(verb: string, ...values: string[]): string {
+        try {
+            return this.open ? String(this.api[this.names.verb + verb]!(...values)) : ""
+        } catch (error) {
+            console.error(error)
+            return "false"
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 // The live figure of a step: its kernels are a script that pages share.
 
+import { isTyped } from "../standalone/controls"
 import { Figure } from "../standalone/figure"
 import { Kernels } from "../standalone/kernels"
 import type { Act, Script, SiteFigure, StepData } from "./data"
@@ -20,7 +21,7 @@ export async function kernelsOf(name: string): Promise<Kernels> {
         script.src = `site/kernels/${name}.js`
         await new Promise((done, failed) => {
             script.addEventListener("load", done)
-            script.addEventListener("error", failed)
+            script.addEventListener("error", () => failed(new Error(`${script.src} was not loaded`)))
             document.head.append(script)
         })
     }
@@ -63,7 +64,7 @@ export class Stage {
         for (const act of acts) {
             if (act.run !== undefined) this.run(act.run)
             else this.simulation.act(act)
-            if (act.reset || act.path !== undefined) this.figure.forget()
+            if (act.reset || act.path !== undefined) this.figure.changed()
         }
         this.sliders()
         this.figure.controls.show()
@@ -75,7 +76,7 @@ export class Stage {
         const waiting = [...script.do].sort((a, b) => a[0] - b[0])
         let before = 0 // simulated time before the last reset, [s]
         simulation.setUp()
-        figure.forget()
+        figure.changed()
         this.sliders()
         let { run } = simulation.record()
         simulation.before = time => {
@@ -125,8 +126,7 @@ export class Stage {
         const options = { capture: true, signal: this.stop.signal }
         const own = (event: KeyboardEvent) => {
             const key = event.key.toLowerCase()
-            const typing = (event.target as HTMLElement).closest?.("textarea, input:not([type=range]), select")
-            return typing || event.ctrlKey || event.metaKey || event.altKey || !(key in ways || key === "x") ? "" : key
+            return isTyped(event) || !(key in ways || key === "x") ? "" : key
         }
         addEventListener("keydown", event => {
             const key = own(event)

@@ -1,5 +1,6 @@
 // The start page: the free lab, and how far the student is.
 
+import { refused } from "../standalone/controls"
 import { Figure } from "../standalone/figure"
 import { Simulation } from "../standalone/simulation"
 import { said, type PageData } from "./data"
@@ -28,8 +29,13 @@ export class StartPage {
 
     private async begin(): Promise<void> {
         const data = this.page.figures[0]!
-        const simulation = new Simulation(data, await kernelsOf(data.module))
-        this.figure = new Figure(simulation, document.querySelector<HTMLElement>(".stage")!)
+        const place = document.querySelector<HTMLElement>(".stage")!
+        try {
+            const simulation = new Simulation(data, await kernelsOf(data.module))
+            this.figure = new Figure(simulation, place)
+        } catch (error) {
+            place.replaceChildren(refused(data, error))
+        }
     }
 
     private readonly button = (name: string, act: () => void) => document.getElementById(name)!.addEventListener("click", act)

@@ -1,6 +1,6 @@
 // Buttons, the choice of a path, and sliders.
 
-import { said, significant, type Point, type SliderData } from "./data"
+import { said, significant, type FigureData, type Point, type SliderData } from "./data"
 import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
 
@@ -15,6 +15,25 @@ export function made<T extends keyof HTMLElementTagNameMap>(
     if (name) element.className = name
     element.append(...inside)
     return element
+}
+
+/** What has not changed is not announced again. */
+export function written(element: HTMLElement, text: string): void {
+    if (element.textContent !== text) element.textContent = text
+}
+
+/** Whether a key is the browser's, or that of the focused field. */
+export function isTyped({ ctrlKey, metaKey, altKey, target }: KeyboardEvent): boolean {
+    const field = (target as Partial<HTMLElement>).closest?.("textarea, select, input:not([type=range])")
+    return ctrlKey || metaKey || altKey || Boolean(field)
+}
+
+/** Why a figure does not run, in its place. */
+export function refused(data: FigureData, error: unknown): HTMLElement {
+    console.error(error)
+    const line = made("p", "note", said(data, "standalone.refused", { reason: String(error) }))
+    line.setAttribute("role", "alert")
+    return line
 }
 
 export class Controls {
@@ -44,9 +63,9 @@ export class Controls {
     show(): void {
         const { data, held } = this.simulation
         const both = data.benches.length > 1 ? "_both" : ""
-        this.held.textContent = said(data, held ? `run.let${both}_go` : `run.hold${both}`)
-        this.held.setAttribute("aria-pressed", String(held))
-        this.run.textContent = said(data, this.page.running ? "run.pause" : "run.run")
+        written(this.held, said(data, held ? `run.let${both}_go` : `run.hold${both}`))
+        this.held.ariaPressed = String(held)
+        written(this.run, said(data, this.page.running ? "run.pause" : "run.run"))
     }
 
     toggleHold(): void {
@@ -70,7 +89,7 @@ export class Controls {
     }
 
     private begun(): void {
-        this.page.forget()
+        this.page.changed()
         this.show()
     }
 
@@ -132,7 +151,7 @@ export class Controls {
     /** The lab's keys, unless the focused control takes them. */
     private key(event: KeyboardEvent): void {
         const target = event.target as HTMLElement
-        if (event.ctrlKey || event.metaKey || event.altKey || target.closest("select, input")) return
+        if (isTyped(event) || target.closest("input")) return
         if (event.key === " " && target.closest("button")) return
         const { simulation } = this
         const { selected, followed } = simulation

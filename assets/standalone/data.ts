@@ -30,7 +30,7 @@ export interface PathData extends Texts<"label" | "kind" | "fit"> {
 
 export type SliderData = Texts<"label" | "unit" | "help"> & Numbers<"low" | "high" | "step" | "value" | "place">
 
-export interface FigureData extends Texts<"language" | "title" | "module"> {
+export interface FigureData extends Texts<"language" | "module"> {
     words: Record<string, string>
     dt: number
     sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">

@@ -1,7 +1,7 @@
 // Builds a figure in a page, and lets time run.
 
 import { caption, notes, spoken } from "./captions"
-import { Controls, made } from "./controls"
+import { Controls, isTyped, made, written } from "./controls"
 import { said, written as number, type Point } from "./data"
 import { Plot } from "./plot"
 import type { Simulation } from "./simulation"
@@ -13,13 +13,9 @@ const SILENCE = 3000 // [ms], at least, between two lines of the same kind
 const LATE = 0.15 // [s], lost lately, from which on it is said that time runs late
 const DARK = matchMedia("(prefers-color-scheme: dark)")
 DARK.addEventListener("change", () => dispatchEvent(new Event("resize"))) // all is drawn anew
+const TRACE = 4 // [s], of the tips' ways
 const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
-
-/** What has not changed is not announced again. */
-function written(element: HTMLElement, text: string): void {
-    if (element.textContent !== text) element.textContent = text
-}
 
 export class Figure {
     running = !matchMedia("(prefers-reduced-motion: reduce)").matches
@@ -39,6 +35,7 @@ export class Figure {
     private due = 0
     private lost = 0 // of simulated time, lately, [s]
     private stale = true
+    private shown = 0 // simulated time in the picture, in ticks
     private kind = ""
     private said = 0
 
@@ -53,20 +50,12 @@ export class Figure {
         for (const view of this.views) this.grabs(view)
         if (this.data.controls.includes("pull")) this.keys()
         addEventListener("resize", () => (this.stale = true), { signal: ended })
-        this.forget()
+        this.changed()
         requestAnimationFrame(() => this.frame())
     }
 
     private readonly drag = () => [this.pending?.(), (this.pending = null)]
     readonly step = () => this.advance(Math.round(FRAME / this.data.dt))
-    /** What was drawn belongs to an earlier run. */
-    forget(): void {
-        this.plot.clear()
-        for (const view of this.views) view.clear()
-        this.changed()
-        this.follow()
-    }
-
     /** Something else is to be drawn and said. */
     changed(): void {
         const { simulation, data } = this
@@ -81,10 +70,7 @@ export class Figure {
     }
 
     /** Advance by so many ticks, apart from the clock. */
-    advance(ticks: number): void {
-        this.simulation.advance(ticks)
-        this.follow()
-    }
+    readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
     private parts(): HTMLElement[] {
         const { data } = this
@@ -98,7 +84,6 @@ export class Figure {
         canvas.setAttribute("role", "img")
         canvas.setAttribute("aria-label", plotted)
         return [
-            ...(data.title ? [made("h1", "", data.title)] : []),
             made("div", "robots", ...robots),
             this.note,
             this.controls.element,
@@ -121,22 +106,22 @@ export class Figure {
         this.due -= ticks * this.data.dt
         if (this.running && ticks > 0) this.advance(ticks)
         else if (this.simulation.followed.advance(passed)) this.stale = true
-        if (this.stale) this.draw()
+        this.controls.show()
+        if (this.stale || this.shown !== this.simulation.ticks) this.draw()
         requestAnimationFrame(() => this.frame())
-    }
-
-    private follow(): void {
-        this.stale = true
-        for (const view of this.views) view.follow()
-        this.plot.follow()
     }
 
     private draw(): void {
         const { simulation, data } = this
         this.stale = false
+        this.shown = simulation.ticks
+        const moments = [...simulation.recent, simulation.moment()]
+        const traced = moments.filter(moment => moment.time > simulation.time - TRACE)
         data.colours = data.tones[DARK.matches ? "dark" : "light"]
-        for (const view of this.views) view.draw(simulation.followed, simulation.selected)
-        this.plot.draw()
+        this.views.forEach((view, i) => {
+            view.draw(simulation.followed, simulation.selected, traced.map(moment => moment.tips[i]!))
+        })
+        this.plot.draw(moments)
         const captions = simulation.benches.map(bench => caption(bench, data))
         this.captions.forEach((element, i) => written(element, captions[i]!))
         const now = simulation.benches.map((bench, i) => `${simulation.title(i)} ${number(data, 1e3 * bench.distance, 1)}`)
@@ -187,6 +172,7 @@ export class Figure {
             const by = view.metres(event.clientX - grabbed.from.clientX, event.clientY - grabbed.from.clientY)
             this.pending = () => act(by)
         })
+        canvas.addEventListener("pointerleave", () => canvas.classList.remove("near"))
         for (const end of ["pointerup", "pointercancel"] as const)
             canvas.addEventListener(end, event => {
                 if (event.pointerId !== grabbed?.from.pointerId) return
@@ -198,11 +184,14 @@ export class Figure {
 
     private keys(): void {
         const { ended: signal } = this
-        const way = ({ ctrlKey, metaKey, altKey, key }: KeyboardEvent) =>
-            ctrlKey || metaKey || altKey ? undefined : PULLS[key.toLowerCase()]
-        const pull = (event: KeyboardEvent) => way(event) && !event.repeat && this.simulation.pull(way(event)!)
-        addEventListener("keydown", pull, { signal })
-        addEventListener("keyup", event => way(event) && this.simulation.pull(null), { signal })
+        let pulling = "" // the key that does
+        addEventListener("keydown", event => {
+            const key = event.key.toLowerCase()
+            if (!PULLS[key] || event.repeat || isTyped(event)) return
+            pulling = key
+            this.simulation.pull(PULLS[key])
+        }, { signal })
+        addEventListener("keyup", event => event.key.toLowerCase() === pulling && this.simulation.pull(null), { signal })
         addEventListener("blur", () => this.simulation.pull(null), { signal })
     }
 }

@@ -1,5 +1,6 @@
 // The page of a figure: see app/exports/standalone/figure_page.py.
 
+import { refused } from "./controls"
 import type { FigureData } from "./data"
 import { Figure } from "./figure"
 import { Kernels } from "./kernels"
@@ -7,9 +8,15 @@ import { Simulation } from "./simulation"
 
 async function begin(): Promise<void> {
     const data = JSON.parse(document.getElementById("data")!.textContent!) as FigureData
-    const simulation = new Simulation(data, await Kernels.from(data.module))
-    // For a page around it, and for tests: advance(ticks), simulation.hold(true) and so on.
-    Object.assign(window, { onpath: new Figure(simulation, document.getElementById("figure")!) })
+    const place = document.getElementById("figure")!
+    place.replaceChildren() // what is said where no script runs
+    try {
+        const simulation = new Simulation(data, await Kernels.from(data.module))
+        // For a page around it, and for tests: advance(ticks), simulation.hold(true) and so on.
+        Object.assign(window, { onpath: new Figure(simulation, place) })
+    } catch (error) {
+        place.replaceChildren(refused(data, error))
+    }
 }
 
 void begin()

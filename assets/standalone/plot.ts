@@ -1,10 +1,9 @@
 // The distance of all robots to the path over time.
 
 import { written, type Point } from "./data"
-import type { Simulation } from "./simulation"
+import { SECONDS, type Moment, type Simulation } from "./simulation"
 import { inkOf, stroke } from "./view"
 
-const SECONDS = 8
 const MARGIN = { left: 44, right: 10, top: 10, bottom: 24 }
 const DASHES = [[], [7, 4]] // colour is not the only sign
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] // [mm]
@@ -13,35 +12,27 @@ type Scale = (value: number) => number
 
 export class Plot {
     readonly canvas = document.createElement("canvas")
-    private samples: { time: number; held: boolean; millimetres: number[] }[] = []
 
     constructor(private readonly simulation: Simulation) {}
 
-    readonly clear = () => (this.samples = [])
-    follow(): void {
-        const { time, held, benches } = this.simulation
-        this.samples.push({ time, held, millimetres: benches.map(bench => 1e3 * bench.distance) })
-        while (this.samples[0]!.time < time - SECONDS) this.samples.shift()
-    }
-
-    draw(): void {
+    draw(moments: Moment[]): void {
         const { canvas, simulation } = this
         const { clientWidth: width, clientHeight: height } = canvas
         const ink = inkOf(canvas)
         if (!ink) return
-        const top = 1.1 * Math.max(4, ...this.samples.flatMap(sample => sample.millimetres))
+        const top = 1.1 * Math.max(4, ...moments.flatMap(moment => moment.millimetres))
         const begin = Math.max(0, simulation.time - SECONDS)
         const x = (time: number) => MARGIN.left + ((time - begin) / SECONDS) * (width - MARGIN.left - MARGIN.right)
         const y = (value: number) => height - MARGIN.bottom - (value / top) * (height - MARGIN.top - MARGIN.bottom)
         ink.fillStyle = simulation.data.colours.held
-        this.samples.forEach(({ time, held }, i) => {
-            const next = x(this.samples[i + 1]?.time ?? time)
+        moments.forEach(({ time, held }, i) => {
+            const next = x(moments[i + 1]?.time ?? time)
             if (held) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
         })
         this.axes(ink, x, y, top, begin)
         simulation.benches.forEach((bench, i) => {
             ink.setLineDash(DASHES[i % DASHES.length]!)
-            const way = this.samples.map(({ time, millimetres }): Point => [x(time), y(millimetres[i]!)])
+            const way = moments.map(({ time, millimetres }): Point => [x(time), y(millimetres[i]!)])
             stroke(ink, way, bench.data.colour, 2)
         })
         ink.setLineDash([])

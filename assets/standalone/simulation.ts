@@ -6,6 +6,17 @@ import type { Kernels } from "./kernels"
 import { Path } from "./path"
 import { Poles } from "./poles"
 
+export const SECONDS = 8 // that are remembered
+const PERIOD = 1 / 60 // [s], between two moments, however seldom a picture is drawn
+
+/** What a picture shows of a moment: the tips, in the picture, and their distances to the path. */
+export interface Moment {
+    time: number
+    held: boolean
+    tips: Point[]
+    millimetres: number[]
+}
+
 export class Simulation {
     ticks = 0
     held = false
@@ -16,6 +27,9 @@ export class Simulation {
     readonly benches = this.data.benches.map(each => new Bench(each, this.data, this.kernels, this.paths[0]!))
     readonly values = this.data.sliders.map(slider => slider.value)
     private readonly poles = new Poles(this.data, this.kernels)
+    private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
+    /** The last seconds of this run. */
+    recent: Moment[] = [this.moment()]
 
     constructor(readonly data: FigureData, private readonly kernels: Kernels) {}
 
@@ -37,11 +51,27 @@ export class Simulation {
         return bench ? this.poles.lines(bench.settings) : []
     }
 
+    /** What is seen now. */
+    moment(): Moment {
+        const { time, held, benches } = this
+        return { time, held, tips: benches.map(bench => bench.tip()), millimetres: benches.map(bench => 1e3 * bench.distance) }
+    }
+
     advance(ticks: number): void {
+        const { period } = this
         this.followed.advance(ticks * this.data.dt)
-        for (let left = ticks; left > 0; left -= MOST_TICKS)
-            for (const bench of this.benches) bench.advance(Math.min(left, MOST_TICKS))
-        this.ticks += ticks
+        for (let left = ticks; left > 0; ) {
+            const part = Math.min(left, period - (this.ticks % period))
+            for (const bench of this.benches) bench.advance(part)
+            this.ticks += part
+            left -= part
+            if (this.ticks % period === 0) this.remember()
+        }
+    }
+
+    private remember(): void {
+        this.recent.push(this.moment())
+        while (this.recent[0]!.time < this.time - SECONDS) this.recent.shift()
     }
 
     hold(on: boolean): void {
@@ -62,6 +92,7 @@ export class Simulation {
         this.followed.settle()
         for (const bench of this.benches) bench.begin(this.followed)
         this.values.forEach((value, i) => this.set(i, value))
+        this.recent = [this.moment()]
     }
 
     /** Begin anew on another path. */

@@ -4,7 +4,7 @@ import type { Bench } from "./bench"
 import type { FigureData, Point } from "./data"
 import type { Path } from "./path"
 
-const [TRACE, FAINT] = [240, "66"] // frames; and how opaque the trace is, of "ff"
+const FAINT = "66" // how opaque the trace is, of "ff"
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
 const TIE = 8 // [px], by which a point must be nearer than the tip, unless it is selected
 
@@ -20,19 +20,11 @@ export function inkOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | nul
 
 export class View {
     readonly canvas = document.createElement("canvas")
-    private trace: Point[] = []
     private scale = 1
     private left = 0
     private top = 0
 
     constructor(private readonly bench: Bench, private readonly data: FigureData) {}
-
-    readonly clear = () => (this.trace = [])
-    /** Note where the tip is now. */
-    follow(): void {
-        this.trace.push(this.bench.tip())
-        if (this.trace.length > TRACE) this.trace.shift()
-    }
 
     /** Metres of the picture that a way of so many pixels is. */
     readonly metres = (dx: number, dy: number): Point => [dx / this.scale, -dy / this.scale]
@@ -49,7 +41,7 @@ export class View {
         return tip < REACH ? "tip" : null
     }
 
-    draw(path: Path, selected: number | null): void {
+    draw(path: Path, selected: number | null, trace: Point[]): void {
         const ink = inkOf(this.canvas)
         if (!ink) return
         this.fill()
@@ -58,7 +50,7 @@ export class View {
         const spots = controls.includes("drag") ? path.spots() : []
         if (selected !== null) this.disc(ink, spots[selected]!, 9, colours.selected)
         for (const spot of spots) this.disc(ink, spot, 6, colours.point)
-        this.line(ink, this.trace, this.bench.data.colour + FAINT, 3)
+        this.line(ink, trace, this.bench.data.colour + FAINT, 3)
         for (const mark of path.fault?.marks ?? []) this.disc(ink, mark, 4, colours.warning)
         this.robot(ink)
         this.marker(ink)

@@ -1337,7 +1337,9 @@ standalone-late = Die simulierte Zeit hinkt nach: Dieses Gerät ist zu langsam, 
 standalone-coincide = zwei Kontrollpunkte würden zusammenfallen
 standalone-selected = Kontrollpunkt { $number } von { $all } ist gewählt: Mit den Pfeiltasten wird er bewegt.
 standalone-drag_hint = Die Punkte der Bahn lassen sich ziehen; die Taste N wählt den nächsten, und die Pfeiltasten bewegen ihn.
-standalone-no_script = Diese Abbildung braucht JavaScript.
+standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschaltet oder von der Content-Security-Policy des Servers verboten ist.
+standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
+standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
 ## Der Kurs als statische Seiten: assets/site, app/exports/site
 
@@ -1364,6 +1366,13 @@ site-forgotten = Gelöscht.
 site-read_done = Gelesen.
 site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
+site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
+site-again = Die Kurven dieses Laufs sind nicht gespeichert: Lass ihn noch einmal geschehen, um sie zu sehen.
+site-no_platform = Um diese Seite wurde keine Lernplattform gefunden. Dein Fortschritt wird nur in diesem Browser gespeichert.
+site-refused = Die Lernplattform hat deinen Fortschritt nicht angenommen: { $reason }. Was nicht gespeichert ist, geht verloren, wenn du diese Seite schließt.
+site-no_room = Die Lernplattform hat keinen Platz für mehr von deinem Fortschritt: Was du jetzt tust, geht verloren, wenn du diese Seite schließt.
+site-cut = Die Lernplattform speichert höchstens { $most } Zeichen einer Lektion: von deinen längsten Texten nur den Anfang. Sichere eine Kopie, wenn du sie ganz brauchst.
+site-review = Die Lernplattform hat diese Lektion zum Ansehen geöffnet: Nichts von dem, was du jetzt tust, wird gespeichert.
 site-sketch = Tafel zum Zeichnen: { $quantity } [{ $unit }] von 0 bis { $seconds } s. Mit der Maus oder dem Finger, von links nach rechts; oder mit den Zahlen darunter.
 site-done = { $done } von { $all } Schritten gesehen, { $tasks } Aufgaben gelöst
 site-next_lesson = Nächste Lektion: { $title }

@@ -1059,7 +1059,9 @@ standalone-late = Simulated time runs late: this device is too slow to draw in r
 standalone-coincide = two control points would coincide
 standalone-selected = Control point { $number } of { $all } is selected: move it with the arrow keys.
 standalone-drag_hint = Drag the points of the path, or press N to select the next one and move it with the arrow keys.
-standalone-no_script = This figure needs JavaScript.
+standalone-no_script = This figure needs JavaScript, which is switched off here or forbidden by the Content-Security-Policy of the server.
+standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
+standalone-description = A simulation that runs in this page: { $laws }
 
 ## The course as a static site: assets/site, app/exports/site
 
@@ -1086,6 +1088,13 @@ site-forgotten = Deleted.
 site-read_done = Read.
 site-no_progress = This file contains no progress in this course.
 site-not_kept = This browser keeps nothing for this page. Your progress lasts until you close it.
+site-skipped = You skipped the prediction. You can still make it here.
+site-again = The curves of this run are not kept: let it happen again to see them.
+site-no_platform = No learning platform was found around this page. Your progress is kept in this browser only.
+site-refused = The learning platform did not take your progress: { $reason }. What is not kept is lost when you close this page.
+site-no_room = The learning platform has no room for more of your progress: what you do now is lost when you close this page.
+site-cut = The learning platform keeps at most { $most } characters of a lesson: of your longest texts, only the beginning. Keep a copy if you need them whole.
+site-review = The learning platform opened this lesson for review: nothing of what you do now is kept.
 site-sketch = Board to draw on: { $quantity } [{ $unit }] from 0 to { $seconds } s. With a mouse or a finger, from left to right; or with the numbers below.
 site-done = { $done } of { $all } steps seen, { $tasks } tasks passed
 site-next_lesson = Next lesson: { $title }

@@ -19,6 +19,7 @@ import onpath
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.arrays import Array
 from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
@@ -88,6 +89,24 @@ TABLE = """(() => {
     return [...onpath.simulation.kernels.numbers.subarray(table, table + data.table.length)]
 })()"""
 OTHERS = ("waiting_clock", "set_point")
+STROKES = """async () => {
+    const {prototype} = CanvasRenderingContext2D
+    const {beginPath, lineTo, stroke} = prototype
+    const found = []
+    let way = []
+    prototype.beginPath = function () { way = []; beginPath.call(this) }
+    prototype.lineTo = function (...at) { way.push(at); lineTo.apply(this, at) }
+    prototype.stroke = function () {
+        const canvas = [...document.querySelectorAll("canvas")].indexOf(this.canvas)
+        found.push([canvas, this.strokeStyle, way])
+        stroke.call(this)
+    }
+    onpath.stale = true
+    await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))
+    Object.assign(prototype, {beginPath, lineTo, stroke})
+    return found
+}"""
+"""What is drawn next: number of the canvas, colour, and points of each line, [px]."""
 
 
 def choice(robot: str = "five_bar") -> FigureChoice:
@@ -245,6 +264,88 @@ def test_every_robot_follows(browser: Browser, tmp_path: Path, robot: str) -> No
     np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=CLOSE)
     assert max(opened.number(DISTANCES)) < 1e-3 and opened.complaints == []
     opened.page.close()
+
+
+def drawn(opened: Opened) -> tuple[list[Array], list[Array]]:
+    """The traces of both robots, and their lines in the plot, [px]."""
+    strokes = opened.page.evaluate(STROKES)
+    colours = opened.number("onpath.data.benches.map(bench => bench.colour.toLowerCase())")
+    traces = [np.array(way) for canvas, ink, way in strokes if canvas < 2 and ink[:4] == "rgba"]
+    curves = [np.array(way) for canvas, ink, way in strokes if canvas == 2 and ink in colours]
+    return traces, curves
+
+
+@pytest.mark.parametrize("frames", [1, 3, 40])
+def test_lines_are_as_fine_at_every_frame_rate(opened: Opened, frames: int) -> None:
+    opened.do(("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]))
+    for _ in range(frames):
+        opened.do(("advance", 6000 // frames))
+    opened.page.evaluate(THREE_FRAMES)
+    traces, curves = drawn(opened)
+    assert len(traces) == len(curves) == 2
+    scale = opened.number("onpath.views[0].scale")
+    for trace in traces:
+        chords = np.linalg.norm(np.diff(trace, axis=0), axis=1) / scale
+        assert len(trace) > 200 and chords.max() < 0.01  # at 2 rad/s and a radius below 0.1 m
+    width = opened.number("document.querySelector('.plot canvas').clientWidth")
+    for curve in curves:
+        assert np.diff(curve[:, 0]).max() < 1.5 * width / 8 / 60
+
+
+def test_a_reset_by_the_page_around_begins_the_picture_anew(opened: Opened) -> None:
+    opened.do(("choose", 0), ("advance", 3000), ("hold", True))
+    opened.page.evaluate(THREE_FRAMES)
+    opened.do(("reset", None))
+    opened.page.evaluate(THREE_FRAMES)
+    assert opened.page.get_by_role("button", name="Hold both back").is_visible()
+    opened.do(("advance", 500))
+    traces, curves = drawn(opened)
+    assert len(curves) == 2 and max(map(len, (*traces, *curves))) < 40
+    assert all((np.diff(curve[:, 0]) >= 0).all() for curve in curves)
+
+
+def test_letters_for_a_choice_do_not_pull(opened: Opened) -> None:
+    page = opened.page
+    page.get_by_role("combobox", name="Path").focus()
+    page.keyboard.down("w")
+    assert not opened.number(IS_PULLED)
+    page.keyboard.up("w")
+    page.get_by_role("slider").first.focus()  # it has no use for letters
+    page.keyboard.down("w")
+    assert opened.number(IS_PULLED)
+    page.get_by_role("combobox", name="Path").focus()
+    page.keyboard.up("w")
+    assert not opened.number(IS_PULLED)
+    opened.do(("choose", 0))
+
+
+def test_a_pen_drags_a_tip_and_scrolls_elsewhere(opened: Opened) -> None:
+    """A pen hovers before it touches, and fires no touch events."""
+    opened.do(("choose", 0), ("advance", 100))
+    page = opened.page
+    page.evaluate("scrollTo(0, 0)")
+    page.evaluate(THREE_FRAMES)
+    session = page.context.new_cdp_session(page)
+
+    def tell(kind: str, x: float, y: float, pressed: int = 0) -> str:
+        button = {"button": "left", "buttons": pressed, "clickCount": 1}
+        event = {"type": kind, "x": x, "y": y, "pointerType": "pen", **button}
+        session.send("Input.dispatchMouseEvent", event)
+        return page.evaluate("getComputedStyle(document.querySelector('canvas')).touchAction")
+
+    x, y = tip_on(page)
+    box = page.locator("canvas").first.bounding_box()
+    assert box
+    aside = box["x"] + 5, box["y"] + 5
+    assert [tell("mouseMoved", *aside), tell("mouseMoved", x + 9, y)] == ["auto", "none"]
+    tell("mousePressed", x + 9, y, pressed=1)
+    tell("mouseMoved", x + 9, y - 30, pressed=1)
+    page.evaluate(THREE_FRAMES)
+    assert opened.number(IS_PULLED)
+    tell("mouseReleased", x + 9, y - 30)
+    assert not opened.number(IS_PULLED)
+    assert tell("mouseMoved", 1, box["y"] + box["height"] + 60) == "auto"
+    session.detach()
 
 
 def test_a_tip_is_dragged_with_the_mouse(opened: Opened) -> None:

@@ -25,7 +25,8 @@ SAID = (
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
-    "lesson.read",
+    *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
+    "site.review",
 )
 
 
@@ -65,7 +66,8 @@ def start_page(
         for entry in entries
     }
     data = {"words": _said(words), "lesson": "", "figures": [figure], "lessons": lessons}
-    return _page("start", words, words("site.title"), data, around, entries=entries)
+    shown = {"description": words("site.intro"), "entries": entries}
+    return _page("start", words, words("site.title"), data, around, **shown)
 
 
 def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> LessonEntry:
@@ -113,7 +115,8 @@ def lesson_page(
     }
     title = f"{number}. {lesson.front.title} · OnPath"
     shown = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
-    return _page("lesson", words, title, data, around, next=following, **shown)
+    shown |= {"description": lesson.front.summary, "next": following}
+    return _page("lesson", words, title, data, around, **shown)
 
 
 def site_style() -> str:
@@ -134,6 +137,8 @@ def _said(words: Words) -> dict[str, str]:
     said["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
     said["lesson.at"] = words("lesson.at", time="{time}", unit="{unit}")
     said["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
+    said["site.refused"] = words("site.refused", reason="{reason}")
+    said["site.cut"] = words("site.cut", most="{most}")
     drawn = {name: f"{{{name}}}" for name in ("quantity", "unit", "seconds")}
     said["site.sketch"] = words("site.sketch", **drawn)
     return said | {"point": words("report.point")}

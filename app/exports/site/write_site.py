@@ -70,7 +70,7 @@ def _write_shared(folder: Path) -> None:
     shared = folder / SHARED
     (shared / "kernels").mkdir(parents=True)
     (shared / "pictures").mkdir()
-    for name in ("on.js", "site.js"):
+    for name in ("on.js", "site.js", "icon.svg"):
         shutil.copy(asset_path(f"site/{name}"), shared)
     (shared / "site.css").write_text(site_style(), "utf-8")
 

@@ -42,18 +42,13 @@ from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.systems.parameters import specs, time_step
 
 
-def figure_data(figure: FigureChoice, words: Words, title: str = "") -> dict[str, Any]:
-    """The data of a figure for JSON: numbers, texts, and the module as Base64.
-
-    Args:
-        title: above the figure; may be empty.
-    """
+def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
+    """The data of a figure for JSON: numbers, texts, and the module as Base64."""
     robot, curves = figure.machine, figure.paths
     first = next(iter(curves.values()))
     kernel = figure.kernel(figure.laws[0], first)
     return {
         "language": words.language,
-        "title": title,
         "words": figure_words(words),
         "dt": time_step(figure.parameters),
         "sizes": _sizes(figure, kernel),

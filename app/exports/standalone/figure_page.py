@@ -31,11 +31,13 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     return render(
         "standalone/figure.html",
         language=words.language,
-        title=title or f"OnPath: {names}",
+        heading=title or f"OnPath: {names}",
+        titled=bool(title),
+        description=words("standalone.description", laws=names),
         policy=POLICY.format(script=_hash(script), style=_hash(style)),
         style=style,
         no_script=words("standalone.no_script"),
-        data=json_block(figure_data(figure, words, title)),
+        data=json_block(figure_data(figure, words)),
         script=script,
     )
 

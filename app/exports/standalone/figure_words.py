@@ -28,6 +28,7 @@ _FILLED = {
     **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped")},
     "caption.spoken": ("robot", "caption"),
     "standalone.scene": ("law",),
+    "standalone.refused": ("reason",),
     "standalone.selected": ("number", "all"),
     "bench.title": ("law", "side"),
     "say.no_further": ("reasons",),

@@ -84,6 +84,7 @@ def texts(block: Block) -> list[str]:
 @pytest.mark.usefixtures("computed_once")
 def test_the_guide_has_every_question_once_with_its_answer(language: str) -> None:
     page = guide(course(), BUILT_IN, course().lessons, Words(language))
+    assert page.count("<main>") == page.count("<h1>") == 1
     articles = ARTICLE.findall(page)
     every = {key: block for name in course().lessons for key, block in asked(name, language)}
     every |= {f"test.{i}": block for i, block in enumerate(concept_questions(language))}
@@ -116,6 +117,7 @@ def test_a_worksheet_has_every_question_once_and_only_its_key_the_answers(
     name: str, language: str
 ) -> None:
     page, key = worksheet(course(), BUILT_IN, name, Words(language))
+    assert all(each.count("<main>") == each.count("<h1>") == 1 for each in (page, key))
     every = dict(asked(name, language))
     sheet, answers = dict(ARTICLE.findall(page)), dict(ARTICLE.findall(key))
     assert sorted(k for k, _ in ARTICLE.findall(page)) == sorted(every) == sorted(answers)

@@ -1,0 +1,116 @@
+// Notes as a text for which a learning platform has room: 4,096 characters in SCORM 1.2. Pure functions.
+
+/** What a text may do without: curves of runs, which can be seen again; points of a drawn curve, which keeps its
+ * ends and its extremes; and the ends of long texts, which is to be told. */
+interface Size {
+    truths: boolean
+    points: number
+    letters: number
+}
+
+export interface Packed {
+    text: string
+    /** Whether texts of the student are cut. */
+    cut: boolean
+}
+
+type Curve = [begin: number, end: number, low: number, high: number, letters: string]
+const LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
+const FINE = LETTERS.length ** 2 - 1 // parts of the length and of the height of a curve, of two letters
+const SIZES: Size[] = [
+    { truths: true, points: Infinity, letters: Infinity },
+    ...[Infinity, 80, 40, 20, 10].map(points => ({ truths: false, points, letters: Infinity })),
+    ...Array.from({ length: 47 }, (_, i) => ({ truths: false, points: 10, letters: 980 - 20 * i })),
+]
+
+/** The text that leaves out least of those with at most `room` characters; null if there is none. */
+export function packed(kept: unknown, room: number): Packed | null {
+    for (const size of SIZES) {
+        const text = JSON.stringify(kept, (name, own: unknown) => reduced(name, own, size))
+        if (text.length <= room) return { text, cut: size.letters < Infinity }
+    }
+    return null
+}
+
+/** What was packed; undefined if the text is none of ours. */
+export function unpacked(text: string): unknown {
+    try {
+        return JSON.parse(text, (_, own) => {
+            if (!isCurve(own?.curve)) return own
+            const { curve, ...rest } = own
+            return { ...rest, ...drawn(curve) }
+        })
+    } catch {
+        return undefined
+    }
+}
+
+function reduced(name: string, own: unknown, size: Size): unknown {
+    if (name === "truths" && !size.truths) return undefined
+    if (typeof own === "string") return shortened(own, size.letters)
+    const { times, values, ...rest } = { ...(own as { times?: unknown; values?: unknown } | null) }
+    if (!isLine(times) || !isLine(values) || times.length !== values.length || times.length < 2) return own
+    return { ...rest, curve: curveOf(times, values, size.points) }
+}
+
+function shortened(text: string, letters: number): string {
+    const all = [...text] // an emoji is not cut in two
+    return all.length <= letters ? text : `${all.slice(0, letters - 1).join("")}…`
+}
+
+function curveOf(times: number[], values: number[], points: number): Curve {
+    const box = [times[0]!, times[times.length - 1]!, Math.min(...values), Math.max(...values)] as const
+    const [begin, end, low, high] = box
+    const letters = fewest(times, values, points).map(i => pair(times[i]!, begin, end) + pair(values[i]!, low, high))
+    return [...box, letters.join("")]
+}
+
+function drawn([begin, end, low, high, letters]: Curve): { times: number[]; values: number[] } {
+    const places = Array.from({ length: letters.length / 2 }, (_, i) => {
+        const [one, other] = [letters[2 * i]!, letters[2 * i + 1]!].map(letter => LETTERS.indexOf(letter)) as [number, number]
+        return (LETTERS.length * one + other) / FINE
+    })
+    const between = (from: number, to: number, share: number) => from * (1 - share) + to * share
+    return {
+        times: places.filter((_, i) => i % 2 === 0).map(share => between(begin, end, share)),
+        values: places.filter((_, i) => i % 2 === 1).map(share => between(low, high, share)),
+    }
+}
+
+function pair(value: number, from: number, to: number): string {
+    const part = to > from ? Math.round((FINE * (value - from)) / (to - from)) : 0
+    return LETTERS[Math.floor(part / LETTERS.length)]! + LETTERS[part % LETTERS.length]!
+}
+
+/** Places of at most so many points: ends, extremes, and then always the point that is farthest from the line
+ * through those that are kept. */
+function fewest(times: number[], values: number[], most: number): number[] {
+    if (times.length <= most) return [...times.keys()]
+    const extremes = [Math.min(...values), Math.max(...values)].map(value => values.indexOf(value))
+    let places = [...new Set([0, ...extremes, times.length - 1])].sort((a, b) => a - b)
+    while (places.length < most) {
+        const away = times.map((time, i) => Math.abs(values[i]! - height(time, i)))
+        const farthest = Math.max(...away)
+        if (!(farthest > 0)) break // all are on the line
+        places = [...places, away.indexOf(farthest)].sort((a, b) => a - b)
+    }
+    return places
+
+    /** Of the line through the kept points on both sides of point i. */
+    function height(time: number, i: number): number {
+        const next = places.find(place => place >= i)!
+        const last = places.findLast(place => place <= i)!
+        if (next === last) return values[i]!
+        const share = (time - times[last]!) / (times[next]! - times[last]!)
+        return values[last]! * (1 - share) + values[next]! * share
+    }
+}
+
+function isLine(own: unknown): own is number[] {
+    return Array.isArray(own) && own.every(Number.isFinite)
+}
+
+function isCurve(own: unknown): own is Curve {
+    const letters = Array.isArray(own) && own.length === 5 && isLine(own.slice(0, 4)) ? own[4] : null
+    return typeof letters === "string" && /^([\w-]{4})+$/.test(letters)
+}
