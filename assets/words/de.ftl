@@ -1235,6 +1235,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
+error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal

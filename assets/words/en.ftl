@@ -957,6 +957,7 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 ## Refusals: a law that is typed (models/control/laws)
 
+error-no_translation = { $owner } uses CasADi's operation { $operation }, which cannot be translated to { $target }
 error-law_cannot_run = a law of one's own is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
