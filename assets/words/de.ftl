@@ -1277,6 +1277,27 @@ error-not_identifiable = { $name } lässt sich aus dieser Bewegung nicht bestimm
 error-sketch_direction = zeichne eine Kurve von links nach rechts
 error-sketch_without_points = eine Zeichnung braucht Punkte
 
+## Ablehnungen: Tabellen in Dateien
+
+error-table_long_line = Zeile { $line } ist länger als { $most } Zeichen
+error-table_long = eine Tabelle hat höchstens { $most } Zeilen
+error-table_separator = Zeile { $line }: { $text } trennt keine Spalten: das tun Komma, Semikolon oder Tabulator
+error-table_quotes = Zeile { $line }: ein Anführungszeichen fehlt oder steht am falschen Ort
+error-table_no_column = Zeile { $line }: es gibt keine Spalte { $name }
+error-table_column_twice = Zeile { $line }: es gibt mehrere Spalten { $name }
+error-table_cells = Zeile { $line }: erwartet sind { $wanted } Zellen, nicht { $count }
+error-table_empty = Zeile { $line }: nach den Namen der Spalten kommen keine Zeilen
+error-table_not_a_number = Zeile { $line }, Spalte { $column }: { $text } ist keine Zahl
+error-table_large_number = Zeile { $line }, Spalte { $column }: { $text } ist außerhalb des Bereichs
+error-table_decimal_sign =
+    Zeile { $line }, Spalte { $column }: { $text } passt nicht zu den Zahlen davor, die { $other ->
+        [comma] ein Dezimalkomma
+       *[point] einen Dezimalpunkt
+    } haben; Ziffern lassen sich nicht gruppieren
+error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
+error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
+error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
+
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren
 
 error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.

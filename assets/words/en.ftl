@@ -999,6 +999,27 @@ error-not_identifiable = { $name } cannot be told from this motion ({ $value } Â
 error-sketch_direction = draw a curve from left to right
 error-sketch_without_points = a sketch needs points
 
+## Refusals: tables in files
+
+error-table_long_line = line { $line } is longer than { $most } characters
+error-table_long = a table has at most { $most } lines
+error-table_separator = line { $line }: { $text } separates no columns: a comma, a semicolon or a tab does
+error-table_quotes = line { $line }: a quotation mark is missing or out of place
+error-table_no_column = line { $line }: there is no column { $name }
+error-table_column_twice = line { $line }: there are several columns { $name }
+error-table_cells = line { $line }: expected { $wanted } cells, got { $count }
+error-table_empty = line { $line }: there are no rows after the names of the columns
+error-table_not_a_number = line { $line }, column { $column }: { $text } is not a number
+error-table_large_number = line { $line }, column { $column }: { $text } is out of range
+error-table_decimal_sign =
+    line { $line }, column { $column }: { $text } differs from the numbers before it, which have a decimal { $other ->
+        [comma] comma
+       *[point] point
+    }; digits cannot be grouped
+error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
+error-record_of_one_row = line { $line }: a single row of a law is no motion
+error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
+
 ## Refusals: share codes and session codes
 
 error-share_too_long = This text is much too long: a share code has a few hundred characters.

@@ -14,11 +14,11 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
-from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.laws.registry import LAWS, NAMES
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import specs
 from tests.support.checkout import ROOT
+from tests.support.csv_columns import read_csv
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
 

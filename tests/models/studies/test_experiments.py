@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.models.closed_loop.trajectory import Trajectory, header, read_csv, write_csv
+from onpath.models.closed_loop.trajectory import Trajectory, header, write_csv
 from onpath.models.control.laws.registry import NAMES
 from onpath.models.studies.experiments import experiments, run, summary
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import specs
+from tests.support.csv_columns import read_csv
 
 KEYS = {
     "max_distance_m",
@@ -183,25 +184,6 @@ def test_csv_has_a_row_per_millisecond_and_controller_and_comes_back(
         if name == "path_following":  # on a circle, r θ' is how fast the end-point goes
             turned = np.abs(columns["theta_rate_rad_s"]).sum() * 1e-3
             assert RADIUS * turned == pytest.approx(moved, rel=1e-2)
-
-
-def test_files_of_earlier_versions_are_read() -> None:
-    old = "t_s,controller,y1_m\n0,path_following,1\n0.001,path_following,2\n"
-    assert read_csv(io.StringIO(old))["path_following"]["y1_m"].tolist() == [1, 2]
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("", "line 1"),
-        ("a,b\n1,2\n", "line 1"),
-        ("t_s,controller,y1_m\n0,p,1\n0.1,p,x\n", "line 3: expected numbers"),
-        ("t_s,controller,y1_m\n0,p,1\n0.1,p,1,2\n", "line 3: expected 3 cells, got 4"),
-    ],
-)
-def test_bad_csv_is_refused_with_its_line(text: str, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        read_csv(io.StringIO(text))
 
 
 @pytest.mark.parametrize("rate", [50, 2000])
