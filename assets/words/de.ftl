@@ -426,6 +426,7 @@ page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige
 number-none = „{ $typed }“ ist keine Zahl. Der Wert ist noch { $value }; 0,5 und 1e9 sind Zahlen.
 number-changed = „{ $typed }“ ist hier nicht möglich: Jetzt ist es { $value }.
+number-grouped = „{ $typed }“ ist als { $value } gelesen worden: Tausend ist 1000, ohne Zeichen zwischen den Ziffern.
 number-empty = Ein leeres Feld behält seinen Wert: { $value }.
 
 spoken-running = Läuft.
@@ -816,6 +817,7 @@ help-text =
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
 say-begun_anew = Mit dieser Änderung haben beide Roboter neu begonnen, am Start.
@@ -1215,6 +1217,7 @@ error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
 error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }
 error-value_not_a_number = { $name }: { $value } ist keine Zahl
+error-decimal_comma = { $name }: schreibe { $point } statt { $value }
 error-value_not_an_option = { $name }: { $value } ist keiner der Werte { $options }
 error-unknown_name =
     { $kind ->
@@ -1243,6 +1246,9 @@ error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
+error-path_named = Bahn { $name }: { $reason }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws() oder ein Text wie „across = -K1*xi - K2*dxi; along = 0“, aber kein { $kind }
+error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }
 error-law_unknown_name = { $name } gibt es nicht: { $hint }
