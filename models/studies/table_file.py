@@ -31,12 +31,12 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import MINUS
 
 LONGEST_LINE = 10_000  # [characters]
 MOST_LINES = 1_000_000
 LARGEST = 1e9  # of any number, in absolute value
 SEPARATORS = "\t;,"
-MINUS = "\N{MINUS SIGN}"
 _NUMBER = re.compile(
     rf"[-+{MINUS}]?(?=[.,]?\d)\d*(?P<sign>[.,]?)\d*(?:[eE][-+{MINUS}]?\d+)?", re.ASCII
 )
