@@ -126,8 +126,16 @@ def build_kernel(
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
     own = loop_layouts(system, kind)
-    layouts = own.state, own.settings, own.log, own.changed, own.table_shape
-    return Kernel(*layouts, bases, advance, law.name)
+    return Kernel(
+        state=own.state,
+        settings=own.settings,
+        log=own.log,
+        changed=own.changed,
+        table_shape=own.table_shape,
+        basis=bases,
+        advance=advance,
+        law=law.name,
+    )
 
 
 def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:

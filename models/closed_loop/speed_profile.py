@@ -101,9 +101,12 @@ def profile_from(value: str | Iterable[Iterable[float]]) -> SpeedProfile:
         ValueError: not of this form; see also `SpeedProfile`.
     """
     try:
-        if isinstance(value, str):
-            value = [one.split(":") for one in value.replace(MINUS, "-").split(",")]
-        points = [(float(time), float(speed)) for time, speed in value]
+        pairs = _pairs(value) if isinstance(value, str) else value
+        points = [(float(time), float(speed)) for time, speed in pairs]
     except (TypeError, ValueError):
         raise ValueError(f"profile: expected {FORM}, got {str(value)[:60]!r}") from None
     return SpeedProfile(tuple(t for t, _ in points), tuple(w for _, w in points))
+
+
+def _pairs(text: str) -> list[list[str]]:
+    return [one.split(":") for one in text.replace(MINUS, "-").split(",")]

@@ -71,7 +71,7 @@ def with_deviation(curve: Curve, points: Array) -> Curve:
     s = _arc_length(line)
     even = _even(0, s[-1], DENSE)
     corners = line[:: len(line) // DENSE + 1]
-    lines = np.vstack([np.column_stack([np.interp(even, s, z) for z in line.T]), corners])
+    lines = np.vstack([np.stack([np.interp(even, s, line[:, i]) for i in (0, 1)], axis=1), corners])
     seen = curve.at(_even(-np.pi, np.pi, DENSE))
     distances = KDTree(lines).query(seen)[0], KDTree(seen).query(lines)[0]
     return replace(curve, deviation=float(np.concatenate(distances).max()))

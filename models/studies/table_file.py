@@ -40,6 +40,7 @@ SEPARATORS = "\t;,"
 _NUMBER = re.compile(
     rf"[-+{MINUS}]?(?=[.,]?\d)\d*(?P<sign>[.,]?)\d*(?:[eE][-+{MINUS}]?\d+)?", re.ASCII
 )
+_COMMENT = re.compile(rf'[ "]*#(?![A-ZÄÖÜ][A-ZÄÖÜ/]|#*"?[{SEPARATORS}])')  # not a cell, as #N/A
 _DECLARED = re.compile(r'"?sep=(?P<separator>.)"?[\t;,]*\s*', re.IGNORECASE)
 
 
@@ -92,7 +93,7 @@ def _lines(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
             raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
         if number > MOST_LINES:
             raise CodedError("error.table_long", most=str(MOST_LINES))
-        if line.strip(f'{SEPARATORS}" \r\n') and not line.lstrip(' "').startswith("#"):
+        if line.strip(f'{SEPARATORS}" \r\n') and not _COMMENT.match(line):
             yield number, line.rstrip("\n")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,18 +24,17 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, finish, run
 
-OPERATIONS = {"sliding": ca.sign, "erring": ca.erf}
+OPERATIONS = {"sliding": ca.OP_SIGN, "erring": ca.OP_ERF}
 
 
 @pytest.fixture(params=OPERATIONS)
 def law(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
     """A law of the registry that cannot be compiled."""
-    operation: Callable[[ca.SX], ca.SX] = OPERATIONS[request.param]
 
     def command(view: View) -> ControlAction:
         action = PATH_FOLLOWING.command(view)
         assert action.acceleration is not None and action.error is not None
-        added = 1e-3 * operation(action.error[0])
+        added = 1e-3 * ca.SX.unary(OPERATIONS[request.param], action.error[0])
         return replace(action, acceleration=action.acceleration + added)
 
     own = replace(PATH_FOLLOWING, name=request.param, label="Of the test", command=command)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -184,6 +185,16 @@ def test_csv_has_a_row_per_millisecond_and_controller_and_comes_back(
         if name == "path_following":  # on a circle, r θ' is how fast the end-point goes
             turned = np.abs(columns["theta_rate_rad_s"]).sum() * 1e-3
             assert RADIUS * turned == pytest.approx(moved, rel=1e-2)
+
+
+def test_times_in_the_file_are_even_hours_after_the_start(
+    obstruction: dict[str, Trajectory],
+) -> None:
+    run = obstruction[NAMES[0]]
+    file, late = io.StringIO(), replace(run, t=run.t + 12_345.0)
+    write_csv(file, experiments()["obstruction"].robot(), [late])
+    file.seek(0)
+    assert np.diff(read_csv(file)[NAMES[0]]["t_s"]) == pytest.approx(1e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize("rate", [50, 2000])
