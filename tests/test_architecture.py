@@ -197,6 +197,31 @@ def test_only_the_command_line_prints() -> None:
     assert offenders(prints) == []
 
 
+TEXTS = {"read_text": 1, "write_text": 2, "open": 9}
+"""Which argument is the encoding, if it has no name."""
+
+
+def without_encoding(tree: ast.AST) -> list[int]:
+    """Lines where a text is read or written in the encoding of the machine."""
+    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+    return [call.lineno for call in calls if _guesses_encoding(call)]
+
+
+def _guesses_encoding(call: ast.Call) -> bool:
+    name = getattr(call.func, "attr", getattr(call.func, "id", ""))
+    named = {keyword.arg for keyword in call.keywords}
+    if name not in TEXTS or "encoding" in named or len(call.args) >= TEXTS[name]:
+        return False
+    given = [arg.value for arg in call.args if isinstance(arg, ast.Constant)]
+    modes = [mode for mode in given if mode in ("r", "w", "a", "x", "rt", "wt", "r+", "w+")]
+    is_function = isinstance(call.func, ast.Name)
+    return name != "open" or is_function or bool(modes) or "newline" in named
+
+
+def test_texts_are_in_the_same_encoding_on_every_machine() -> None:
+    assert offenders(lambda file: without_encoding(parse(file))) == []
+
+
 def lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
     """Lines of a function without its docstring."""
     assert function.end_lineno is not None
@@ -239,5 +264,8 @@ def test_rules_would_notice() -> None:
     assert folder_of("onpath.models.arrays.Array") == "models"
     long = ast.parse("def f():\n    '''a\n    b'''\n" + "    x = 1\n" * 50).body[0]
     assert isinstance(long, ast.FunctionDef) and lines(long) == 51
+    guessing = "a.read_text()\nb.write_text(x)\nc.open('w', newline='')\nopen(d)\n"
+    knowing = "a.read_text('utf-8')\nb.write_text(x, encoding='utf-8')\nc.open('rb')\nlab.open()"
+    assert without_encoding(ast.parse(guessing + knowing)) == [1, 2, 3, 4]
     first = sources()[0].relative_to(ROOT)
     assert offenders(lambda file: file == sources()[0] and "bad") == [f"{first}: bad"]

@@ -70,7 +70,7 @@ def step_ns() -> float:
 def _times() -> tuple[float, float]:
     """Time that the host gave to others, and total time, of all cores since boot, [ticks]."""
     try:
-        spent = [float(word) for word in TIMES.read_text().split()[1:9]]
+        spent = [float(word) for word in TIMES.read_text("ascii").split()[1:9]]
     except OSError:
         return nan, nan
     return spent[7], sum(spent)

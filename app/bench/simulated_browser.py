@@ -270,7 +270,7 @@ def stand_back() -> None:
         os.nice(LAST)
     if os.name == "posix" and os.getsid(0) == os.getpid():
         with suppress(OSError):
-            TOGETHER.write_text(str(LAST))
+            TOGETHER.write_text(str(LAST), "ascii")
 
 
 if __name__ == "__main__":

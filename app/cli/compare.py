@@ -53,7 +53,7 @@ class CompareCommand:
         contest = self._contest()
         results = self._results(contest)
         if self.csv:
-            with whole_file(self.csv) as path, path.open("w", newline="") as file:
+            with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
                 rows = [dataclasses.asdict(o) for each in results.values() for o in each]
                 writer = csv.DictWriter(file, list(rows[0]))
                 writer.writeheader()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -64,7 +65,7 @@ class ExperimentCommand:
         runs = [run(chosen, name) for name in laws_named(self.law)]
         result = summary(chosen, runs)
         if self.csv:
-            with whole_file(self.csv) as path, path.open("w", newline="") as file:
+            with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
                 write_csv(file, chosen.robot(), runs)
         if self.plot:
             with whole_file(self.plot) as path:
@@ -121,21 +122,34 @@ def laws_named(text: str) -> list[str]:
 
 
 def read_path(text: str) -> Curve:
-    """The path that `--path` describes, or the file that it names.
+    """The path that `--path` describes, or the file that it names; a remark goes to stderr.
 
     Raises:
         ValueError: not a path, or the file cannot be read.
     """
-    from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text
+    from onpath.models.paths.curve_fit import deviation_remark
+    from onpath.models.studies.path_text import curve_from_text
 
-    if not text.startswith("@"):
-        return curve_from_text(text)
+    curve = _path_in(Path(text[1:])) if text.startswith("@") else curve_from_text(text)
+    if remark := deviation_remark(curve):
+        print(f"onpath: {remark}", file=sys.stderr)
+    return curve
+
+
+def _path_in(file: Path) -> Curve:
+    from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_table
+
     try:
-        with Path(text[1:]).open(encoding="utf-8") as file:
-            return curve_from_text(file.read(LONGEST_TEXT + 1))
+        with file.open(encoding="utf-8-sig") as opened:
+            text = opened.read(LONGEST_TEXT + 1)
     except (OSError, UnicodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "not a text"
-        raise ValueError(f"--path {text}: {reason}") from None
+        raise ValueError(f"--path @{file}: {reason}") from None
+    try:
+        return curve_from_text(text)
+    except ValueError as error:
+        use = "this is a table of points: in Python, onpath.through(points) makes a path of them"
+        raise ValueError(f"--path @{file}: {use if is_table(text) else error}") from None
 
 
 def assignments(pairs: tuple[str, ...]) -> dict[str, str]:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import tyro
 
-from onpath.app.cli.experiment import assignments
+from onpath.app.cli.experiment import assignments, read_path
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
 
@@ -24,7 +24,8 @@ class ExportFigure:
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A control law; give it twice for two robots. By default tracking beside path following."""
     path: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A path, such as circle or "ellipse 0.07 0.04"; repeat for more to choose from."""
+    """A path, such as circle or "ellipse 0.07 0.04", or @FILE with such a text; repeat for more to
+    choose from."""
     slider: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A parameter that readers may change; repeat for more. By default the speed and gains."""
     control: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -48,7 +49,7 @@ class ExportFigure:
             self.file,
             self.robot,
             self.law or tuple(DEFAULT_LAWS.values()),
-            self.path or PATHS,
+            {_name(each): read_path(each) for each in self.path} or PATHS,
             sliders=self.slider or None,
             controls=self.control or None,
             choices=self.choice,
@@ -57,6 +58,11 @@ class ExportFigure:
             **dict(assignments(self.set)),
         )
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
+
+
+def _name(path: str) -> str:
+    """What readers see in the list of paths."""
+    return Path(path[1:]).stem if path.startswith("@") else path
 
 
 ExportAction = (

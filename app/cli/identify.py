@@ -18,7 +18,8 @@ class IdentifyCommand:
     """Estimate a robot's parameters from a CSV file that an experiment or the lab wrote."""
 
     file: Annotated[Path, tyro.conf.Positional]
-    """CSV file of `onpath experiment --csv` or of the lab's export."""
+    """CSV file of `onpath experiment --csv` or of the lab's export. A spreadsheet may have saved it
+    again, with other separators, decimal commas or another encoding."""
     robot: str = "five_bar"
     """Name of the robot."""
     law: str = ""
@@ -28,6 +29,7 @@ class IdentifyCommand:
 
     def run(self) -> None:
         """Read, estimate and print."""
+        from onpath.models.errors import CodedError
         from onpath.models.studies.linear_model import estimate, linear_model
         from onpath.models.studies.record_file import read_records
         from onpath.models.systems.catalogue import ROBOTS
@@ -38,10 +40,16 @@ class IdentifyCommand:
         entry = ROBOTS[self.robot]
         robot = entry.make(entry.parameters())
         linear_model(robot.system)  # refuse an unsuitable robot before reading
-        records = read_records(self.file, robot)
-        laws = list(dict.fromkeys(law for law, _ in records if self.law in ("", law)))
+        try:
+            records = read_records(self.file, robot)
+        except CodedError as error:
+            raise ValueError(f"{self.file}: {error}") from None
+        known = list(dict.fromkeys(law for law, _ in records))
+        if self.law and known == [""]:
+            raise ValueError(f"--law {self.law}: {self.file} has no column law")
+        laws = [law for law in known if self.law in ("", law)]
         if not laws:
-            raise unknown_name(self.law, list({law: None for law, _ in records}), "law")
+            raise unknown_name(self.law, known, "law")
         used = [each for law, each in records if law in laws]
         geometry = robot.plant(entry.parameters())
         result = estimate(robot.system, used, geometry)
@@ -55,7 +63,7 @@ class IdentifyCommand:
 def _data(robot: str, laws: list[str], seconds: float, result: Estimate) -> dict[str, Any]:
     return {
         "robot": robot,
-        "laws": laws,
+        "laws": [law for law in laws if law],
         "seconds": round(seconds, 6),
         "parameters": [_entry(each) for each in result.found],
         "not_excited": list(result.unexcited),
@@ -74,7 +82,8 @@ def _entry(each: BaseParameter) -> dict[str, Any]:
 
 def _table(robot: str, laws: list[str], seconds: float, result: Estimate) -> str:
     """The result as text."""
-    lines = [f"{robot}: {seconds:.1f} s under {', '.join(laws)}"]
+    under = f" under {', '.join(laws)}" if any(laws) else ""
+    lines = [f"{robot}: {seconds:.1f} s{under}"]
     lines += [
         f"  {each.label():24s} {each.value:12.6g}  ± {each.error:.2g}" for each in result.found
     ]

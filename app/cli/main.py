@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import re
 import sys
 from dataclasses import dataclass
@@ -114,7 +115,16 @@ COMMANDS: dict[str, type[Subcommand]] = {
 
 def main() -> None:
     """Entry point of `onpath`."""
+    _print_any_text()
     sys.exit(run_command(sys.argv[1:]))
+
+
+def _print_any_text() -> None:
+    """Let the output have all letters; a file into which Windows redirects it would have 256."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            chosen = stream.isatty() or "PYTHONIOENCODING" in os.environ
+            stream.reconfigure(encoding=None if chosen else "utf-8", errors="replace")
 
 
 def run_command(arguments: list[str]) -> int:

@@ -41,12 +41,22 @@ def check_writable(path: Path) -> None:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[Path]:
-    """Open a temporary file that is renamed to `path` once it is complete."""
-    handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
-    os.close(handle)
+    """Open a temporary file that is renamed to `path` once it is complete.
+
+    Raises:
+        OSError: it cannot be written; the error names `path`.
+    """
+    scratch = ""
     try:
+        handle, scratch = tempfile.mkstemp(dir=path.parent, suffix=path.suffix)
+        os.close(handle)
         yield Path(scratch)
         os.chmod(scratch, 0o644)
         os.replace(scratch, path)
+    except OSError as error:
+        if error.errno is None or (scratch and error.filename not in (None, scratch)):
+            raise  # of another file
+        raise OSError(error.errno, error.strerror, str(path)) from None
     finally:
-        Path(scratch).unlink(missing_ok=True)
+        if scratch:
+            Path(scratch).unlink(missing_ok=True)

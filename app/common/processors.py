@@ -27,7 +27,7 @@ def times(thread: int) -> Times:
     Raises:
         OSError: there is no such thread, or the system does not say.
     """
-    run, waited, *_ = map(int, (TASKS / str(thread) / "schedstat").read_text().split())
+    run, waited, *_ = map(int, (TASKS / str(thread) / "schedstat").read_text("ascii").split())
     if not run:
         raise OSError("this kernel does not measure how long threads wait")
     return Times(1e-9 * run, 1e-9 * waited)
@@ -39,7 +39,7 @@ def processor(thread: int) -> int:
     Raises:
         OSError: there is no such thread.
     """
-    return int((TASKS / str(thread) / "stat").read_text().rpartition(")")[2].split()[LATEST])
+    return int((TASKS / str(thread) / "stat").read_text("ascii").rpartition(")")[2].split()[LATEST])
 
 
 def run_anywhere(thread: int = 0) -> None:

@@ -12,10 +12,10 @@ import numpy as np
 from onpath.app.lab.segments import Segment
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import InterpretedLoop, Loop
+from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.trajectory import Trajectory, join, record
-from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.closed_loop.translated_loop import fastest_loop
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -84,11 +84,7 @@ def _of_one_unit(parts: list[Trajectory]) -> list[Trajectory]:
 @lru_cache(maxsize=8)
 def _fast_loop(robot: Robot, kind: Kind) -> Loop:
     """The compiled loop if available; it computes a minute in less than a second."""
-    kernel = kernel_of(robot, kind)
-    try:
-        return translate_loop(kernel)
-    except (NotImplementedError, RuntimeError):
-        return InterpretedLoop(kernel)
+    return fastest_loop(kernel_of(robot, kind))
 
 
 def _rows(loop: Loop, bench: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve
+from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.robots import Robot
 
 POSITIVE = "positive finite numbers, [m]"
@@ -64,6 +65,19 @@ def start_point(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
     if y.shape not in ((2,), (p,)) or not np.isfinite(y).all():
         raise ValueError(f"start: expected {form}, got {start!r}")
     return y if y.shape == (p,) else robot.frame.lift(y)
+
+
+def curve_of(name: str, path: Any) -> Curve:
+    """A path: a curve itself, or that which a text describes.
+
+    Raises:
+        ValueError: neither; or the text describes no path.
+    """
+    if isinstance(path, Curve):
+        return path
+    if not isinstance(path, str):
+        raise ValueError(f"{name}: onpath.through(points) makes a path of points")
+    return curve_from_text(path)
 
 
 def lengths(name: str, *values: Any) -> tuple[float, ...]:

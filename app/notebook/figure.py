@@ -9,12 +9,11 @@ from typing import Any
 from onpath.app.common.atomic_file import check_writable, whole_file
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
+from onpath.app.notebook.arguments import curve_of
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.path_design import presets
-from onpath.models.studies.path_text import curve_from_text
 
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
@@ -23,7 +22,7 @@ def figure(
     file: str | Path,
     robot: str = "five_bar",
     laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
-    paths: Sequence[str] | Mapping[str, Curve | str] = PATHS,
+    paths: Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
     *,
     sliders: Sequence[str] | None = None,
     controls: Sequence[str] | None = None,
@@ -41,8 +40,8 @@ def figure(
         file: to write, such as "figure.html".
         robot: one of `onpath.robots()`.
         laws: one or two of `onpath.laws()`, or laws of one's own.
-        paths: to choose from, the first one at the beginning: names of `onpath.paths()` or texts as
-            `onpath.simulate` takes them, or a name for each path.
+        paths: to choose from, the first one at the beginning: names of `onpath.paths()`, texts or
+            curves as `onpath.simulate` takes them, or a name for each path.
         sliders: names of `onpath.parameters(robot)` that readers may change; None: the speed and
             the gains of the laws.
         controls: what else they may do or see: some of hold, pull, drag (points of the path), run,
@@ -74,16 +73,9 @@ def figure(
         paths = [paths]
     if isinstance(choices, str):
         choices = [choices]
-    named = paths if isinstance(paths, Mapping) else {name: name for name in paths}
-    curves = {name: _curve(each) for name, each in named.items()}
+    named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
+    curves = {name: curve_of("paths", each) for name, each in named.items()}
     choice = chosen(robot, laws, curves, parameters, sliders, controls, choices)
     with whole_file(path) as scratch:
         scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
     return path
-
-
-def _curve(path: Curve | str) -> Curve:
-    if isinstance(path, Curve):
-        return path
-    known = presets()
-    return known[path].curve if path in known else curve_from_text(path)

@@ -160,7 +160,7 @@ class Run:
         path = Path(file)
         check_writable(path)
         trajectories = self._with(others)
-        with whole_file(path) as scratch, scratch.open("w", newline="") as opened:
+        with whole_file(path) as scratch, scratch.open("w", encoding="utf-8", newline="") as opened:
             write_csv(opened, self.experiment.robot(), trajectories)
 
     def _with(self, others: tuple[Run, ...]) -> list[Trajectory]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from inspect import signature
 from typing import Any
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from onpath.app.notebook.arguments import (
     array_of,
+    curve_of,
     lengths,
     numbers,
     plane_point,
@@ -19,13 +21,13 @@ from onpath.app.notebook.arguments import (
 )
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
+from onpath.models.errors import CodedError
 from onpath.models.paths import curves
-from onpath.models.paths.curve_fit import closed_through, open_through
+from onpath.models.paths.curve_fit import deviation_remark, fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
-from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec, unknown_name
 from onpath.models.systems.parameters import specs
@@ -112,7 +114,7 @@ def simulate(
     """
     entry = _entry(robot)
     law = _law(law)
-    curve = _curve(path)
+    curve = curve_of("path", path)
     chosen = Experiment(
         name="simulate",
         title=entry.label,
@@ -225,11 +227,17 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
 def through(points: ArrayLike, closed: bool = True) -> Curve:
     """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
 
+    It rounds corners and swings out between points that are far apart: its `deviation` is how far
+    it is from the straight lines between the points, [m]. A warning says so beyond 4 mm.
+
     Raises:
         ValueError: too few points, non-finite numbers, or all points coincide.
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
-    return closed_through(given) if closed else open_through(given)
+    curve = fitted(given, closed)
+    if remark := deviation_remark(curve):
+        warnings.warn(str(remark), stacklevel=2)
+    return curve
 
 
 def _entry(robot: str) -> RobotEntry:
@@ -239,7 +247,7 @@ def _entry(robot: str) -> RobotEntry:
 
 def _law(law: str) -> str:
     if not isinstance(law, str):
-        raise unknown_name(str(law), list(LAWS), "law")
+        raise CodedError("error.law_no_text", kind=type(law).__name__)
     return law_name(law)
 
 
@@ -260,13 +268,6 @@ def _by_own_names(parameters: Mapping[str, Any], entry: RobotEntry) -> dict[str,
         if name not in names:
             raise unknown_name(name, [*names, *arguments])
     return {names[name]: value for name, value in parameters.items()}
-
-
-def _curve(path: Curve | str) -> Curve:
-    if isinstance(path, Curve):
-        return path
-    _check_name(path, [path] if isinstance(path, str) else presets(), "path")
-    return curve_from_text(path)
 
 
 def _described(spec: Spec, default: Any) -> str:

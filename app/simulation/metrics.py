@@ -86,7 +86,7 @@ def _quantile_ms(ordered: list[float], part: float) -> float:
 
 def _resident() -> float | None:
     try:
-        pages = int(MEMORY.read_text().split()[1])
+        pages = int(MEMORY.read_text("ascii").split()[1])
     except OSError:
         return None
     return round(pages * os.sysconf("SC_PAGE_SIZE") / 1e6, 2)

@@ -30,6 +30,12 @@
     return plain === "" ? NaN : Number(plain);
   }
 
+  // Whether a text looks like a whole number with its thousands apart, as the page's language has them.
+  function grouped(text) {
+    const german = document.querySelector("[data-page]")?.dataset.language === "de";
+    return (german ? /^[-\u2212]?[1-9]\d{0,2}\.\d{3}$/ : /^[-\u2212]?[1-9]\d{0,2},\d{3}$/).test(text.trim());
+  }
+
   function place() {
     const over = (field.hidden ? marked : box)?.getBoundingClientRect();
     if (!over) return;
@@ -76,6 +82,8 @@
         say(words("empty", { value: left.value }), left);
       } else if (read(text) !== read(left.value)) {
         say(words("changed", { typed: text, value: left.value }), left);
+      } else if (grouped(text)) {
+        say(words("grouped", { typed: text, value: left.value }), left);
       }
     }, SOON);
   }

@@ -426,6 +426,7 @@ page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige
 number-none = „{ $typed }“ ist keine Zahl. Der Wert ist noch { $value }; 0,5 und 1e9 sind Zahlen.
 number-changed = „{ $typed }“ ist hier nicht möglich: Jetzt ist es { $value }.
+number-grouped = „{ $typed }“ ist als { $value } gelesen worden: Tausend ist 1000, ohne Zeichen zwischen den Ziffern.
 number-empty = Ein leeres Feld behält seinen Wert: { $value }.
 
 spoken-running = Läuft.
@@ -821,6 +822,7 @@ help-text =
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
 say-begun_anew = Mit dieser Änderung haben beide Roboter neu begonnen, am Start.
@@ -1228,6 +1230,7 @@ error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
 error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }
 error-value_not_a_number = { $name }: { $value } ist keine Zahl
+error-decimal_comma = { $name }: schreibe { $point } statt { $value }
 error-value_not_an_option = { $name }: { $value } ist keiner der Werte { $options }
 error-unknown_name =
     { $kind ->
@@ -1248,6 +1251,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
+error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
@@ -1255,6 +1259,9 @@ error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
+error-path_named = Bahn { $name }: { $reason }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws() oder ein Text wie „across = -K1*xi - K2*dxi; along = 0“, aber kein { $kind }
+error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }
 error-law_unknown_name = { $name } gibt es nicht: { $hint }
@@ -1288,6 +1295,27 @@ error-not_identifiable = { $name } lässt sich aus dieser Bewegung nicht bestimm
 
 error-sketch_direction = zeichne eine Kurve von links nach rechts
 error-sketch_without_points = eine Zeichnung braucht Punkte
+
+## Ablehnungen: Tabellen in Dateien
+
+error-table_long_line = Zeile { $line } ist länger als { $most } Zeichen
+error-table_long = eine Tabelle hat höchstens { $most } Zeilen
+error-table_separator = Zeile { $line }: { $text } trennt keine Spalten: das tun Komma, Semikolon oder Tabulator
+error-table_quotes = Zeile { $line }: ein Anführungszeichen fehlt oder steht am falschen Ort
+error-table_no_column = Zeile { $line }: es gibt keine Spalte { $name }
+error-table_column_twice = Zeile { $line }: es gibt mehrere Spalten { $name }
+error-table_cells = Zeile { $line }: erwartet sind { $wanted } Zellen, nicht { $count }
+error-table_empty = Zeile { $line }: nach den Namen der Spalten kommen keine Zeilen
+error-table_not_a_number = Zeile { $line }, Spalte { $column }: { $text } ist keine Zahl
+error-table_large_number = Zeile { $line }, Spalte { $column }: { $text } ist außerhalb des Bereichs
+error-table_decimal_sign =
+    Zeile { $line }, Spalte { $column }: { $text } passt nicht zu den Zahlen davor, die { $other ->
+        [comma] ein Dezimalkomma
+       *[point] einen Dezimalpunkt
+    } haben; Ziffern lassen sich nicht gruppieren
+error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
+error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
+error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
 
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren
 

@@ -374,6 +374,7 @@ page-keys = All commands
 page-viewer = Settings of the viewer
 number-none = “{ $typed }” is not a number. The value is still { $value }; 0.5 and 1e9 are numbers.
 number-changed = “{ $typed }” is not possible here: it is { $value } now.
+number-grouped = “{ $typed }” has been read as { $value }: a thousand is 1000, without a mark between its digits.
 number-empty = An empty box keeps its value: { $value }.
 
 spoken-running = Running.
@@ -824,6 +825,7 @@ worksheet-learnt = What I thought before, and think now:
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the run again.
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-deviates = The path is smooth: in places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
 say-begun_anew = With this change, both robots have begun anew, at the start.
@@ -958,6 +960,7 @@ error-not_a_number = that is not a number
 error-not_a_point = that is not a point
 error-value_out_of_range = { $name }: { $value } is not between { $low } and { $high }
 error-value_not_a_number = { $name }: { $value } is not a number
+error-decimal_comma = { $name }: write { $point } instead of { $value }
 error-value_not_an_option = { $name }: { $value } is not one of { $options }
 error-unknown_name = unknown { $kind } { $name }: { $hint }
 error-law_does_not_suit = { $law } is not possible with this robot: it is made for other numbers of motors, outputs or coordinates
@@ -970,6 +973,7 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 ## Refusals: a law that is typed (models/control/laws)
 
+error-no_translation = { $owner } uses CasADi's operation { $operation }, which cannot be translated to { $target }
 error-law_cannot_run = a law of one's own is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
@@ -977,6 +981,9 @@ error-law = line { $line }, column { $column }: { $reason }
 error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
 error-law_character = { $character } means nothing here
+error-path_named = path { $name }: { $reason }
+error-law_no_text = a law is a name of onpath.laws(), or a text such as “across = -K1*xi - K2*dxi; along = 0”, but not a { $kind }
+error-law_instead = write { $instead } instead of { $text }
 error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
 error-law_large_number = a number is at most { $most }
 error-law_unknown_name = there is no { $name }: { $hint }
@@ -1010,6 +1017,27 @@ error-not_identifiable = { $name } cannot be told from this motion ({ $value } �
 
 error-sketch_direction = draw a curve from left to right
 error-sketch_without_points = a sketch needs points
+
+## Refusals: tables in files
+
+error-table_long_line = line { $line } is longer than { $most } characters
+error-table_long = a table has at most { $most } lines
+error-table_separator = line { $line }: { $text } separates no columns: a comma, a semicolon or a tab does
+error-table_quotes = line { $line }: a quotation mark is missing or out of place
+error-table_no_column = line { $line }: there is no column { $name }
+error-table_column_twice = line { $line }: there are several columns { $name }
+error-table_cells = line { $line }: expected { $wanted } cells, got { $count }
+error-table_empty = line { $line }: there are no rows after the names of the columns
+error-table_not_a_number = line { $line }, column { $column }: { $text } is not a number
+error-table_large_number = line { $line }, column { $column }: { $text } is out of range
+error-table_decimal_sign =
+    line { $line }, column { $column }: { $text } differs from the numbers before it, which have a decimal { $other ->
+        [comma] comma
+       *[point] point
+    }; digits cannot be grouped
+error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
+error-record_of_one_row = line { $line }: a single row of a law is no motion
+error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
 
 ## Refusals: share codes and session codes
 

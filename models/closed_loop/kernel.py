@@ -59,10 +59,12 @@ class Kernel(LoopLayouts):
             needs, (TERMS, 1 or 2).
         advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
             Both take the part of the state that the loop changes.
+        law: name of the control law, for messages.
     """
 
     basis: ca.Function
     advance: ca.Function
+    law: str = ""
 
     @property
     def layouts(self) -> LoopLayouts:
@@ -125,8 +127,16 @@ def build_kernel(
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
     own = loop_layouts(system, kind)
-    layouts = own.state, own.settings, own.log, own.changed, own.table_shape
-    return Kernel(*layouts, bases, advance)
+    return Kernel(
+        state=own.state,
+        settings=own.settings,
+        log=own.log,
+        changed=own.changed,
+        table_shape=own.table_shape,
+        basis=bases,
+        advance=advance,
+        law=law.name,
+    )
 
 
 def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:

@@ -9,6 +9,8 @@ from functools import lru_cache
 
 import numpy as np
 
+from onpath.models.systems.parameter_specs import MINUS
+
 LONGEST = 600.0  # [s]
 MOST_POINTS = 1000
 FORM = "times and speeds as 0:0, 1:6.28, 4:6.28, [s]:[rad/s]"
@@ -99,8 +101,12 @@ def profile_from(value: str | Iterable[Iterable[float]]) -> SpeedProfile:
         ValueError: not of this form; see also `SpeedProfile`.
     """
     try:
-        pairs = [one.split(":") for one in value.split(",")] if isinstance(value, str) else value
+        pairs = _pairs(value) if isinstance(value, str) else value
         points = [(float(time), float(speed)) for time, speed in pairs]
     except (TypeError, ValueError):
         raise ValueError(f"profile: expected {FORM}, got {str(value)[:60]!r}") from None
     return SpeedProfile(tuple(t for t, _ in points), tuple(w for _, w in points))
+
+
+def _pairs(text: str) -> list[list[str]]:
+    return [one.split(":") for one in text.replace(MINUS, "-").split(",")]

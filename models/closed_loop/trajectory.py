@@ -1,4 +1,4 @@
-"""The record of a run: named columns over time, written to and read from CSV."""
+"""The record of a run: named columns over time, written to CSV."""
 
 from __future__ import annotations
 
@@ -170,33 +170,7 @@ def write_csv(
         columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held])
         law = f'"{run.controller}"' if "," in run.controller else run.controller
         name = law if benches is None else f"{benches[number]},{law}"
-        line = f"%.6g,{name}{',%.9g' * columns.shape[1]}\n"
+        line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"
         columns += 0.0  # turns -0 into 0
         rows = np.column_stack([run.t, columns]).tolist()
         file.writelines(line % tuple(row) for row in rows)
-
-
-def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
-    """Columns of a file written by `write_csv`: bench or law -> column name -> array.
-
-    Files of earlier versions, which call the law controller and have fewer columns, can be read.
-
-    Raises:
-        ValueError: not a trajectory file; the message names the line.
-    """
-    reader = csv.reader(file)
-    names = next(reader, list[str]())
-    first = 3 if names[1:2] == ["bench"] else 2  # of the numbers after the time
-    if names[:1] != ["t_s"] or names[first - 1 : first] not in (["law"], ["controller"]):
-        raise ValueError("line 1: expected a header that begins with t_s, law")
-    rows: dict[str, list[list[float]]] = {}
-    for line, row in enumerate(reader, start=2):
-        try:
-            values = [float(cell) for i, cell in enumerate(row) if not 1 <= i < first]
-        except ValueError:
-            raise ValueError(f"line {line}: expected numbers, got {row}") from None
-        if len(row) != len(names):
-            raise ValueError(f"line {line}: expected {len(names)} cells, got {len(row)}")
-        rows.setdefault(row[1], []).append(values)
-    kept = [names[0], *names[first:]]
-    return {name: dict(zip(kept, np.array(values).T, strict=True)) for name, values in rows.items()}

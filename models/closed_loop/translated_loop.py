@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import CompiledLoop
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
+from onpath.models.closed_loop.operations import no_translation
+from onpath.models.errors import CodedError
 
 if TYPE_CHECKING:
     from llvmlite.binding import TargetMachine
@@ -99,15 +101,16 @@ def translate(kernel: Kernel) -> str:
     """LLVM assembly of `onpath_run`, the loops around the kernel's tick; see `CompiledLoop`.
 
     Raises:
-        NotImplementedError: the tick contains an operation without a translation; the message names
-            it.
+        CodedError: the tick contains an operation without a translation; the message names it and
+            the law.
     """
     given = "%state", "%settings"
     rows, terms = kernel.table_shape
     columns = kernel.advance.size_in(2)[1]
-    tick = instructions(kernel.basis, given, ("%basis",), "b")
+    tick = instructions(kernel.basis, given, ("%basis",), "b", kernel.law)
     tick += [line for k in range(columns) for line in _product(rows, terms, k)]
-    tick += instructions(kernel.tick(), (*given, "%values"), ("%state", "%row"), "v")
+    inputs, outputs = (*given, "%values"), ("%state", "%row")
+    tick += instructions(kernel.tick(), inputs, outputs, "v", kernel.law)
     return _LOOP.format(
         basis=terms * columns,
         values=rows * columns,
@@ -120,7 +123,11 @@ def translate(kernel: Kernel) -> str:
 
 
 def instructions(
-    function: ca.Function, inputs: Sequence[str], outputs: Sequence[str], prefix: str
+    function: ca.Function,
+    inputs: Sequence[str],
+    outputs: Sequence[str],
+    prefix: str,
+    owner: str,
 ) -> list[str]:
     """LLVM instructions for an SX function.
 
@@ -129,9 +136,10 @@ def instructions(
     Args:
         inputs, outputs: names of pointers to dense matrices, stored by columns.
         prefix: of the names of all values.
+        owner: to whom the function belongs, for messages.
 
     Raises:
-        NotImplementedError: see `translate`.
+        CodedError: see `translate`.
     """
     reads, works, writes = list[str](), list[str](), list[str]()
     values = dict[int, str]()  # what the function's registers hold
@@ -148,7 +156,9 @@ def instructions(
             writes += [_place(v, outputs[into[0]], into[1]), f"store double {value}, ptr {v}.at"]
         else:
             given = [values[operand] for operand in operands]
-            works.append(_operation(code).format(*given, v=v))
+            if code not in OPERATIONS:
+                raise no_translation(owner, code, "LLVM")
+            works.append(OPERATIONS[code].format(*given, v=v))
             values[into[0]] = v
     return [*reads, *works, *writes]
 
@@ -190,18 +200,11 @@ def _literal(value: float) -> str:
     return f"0x{struct.pack('>d', value).hex()}"
 
 
-def _operation(code: int) -> str:
-    if code not in OPERATIONS:
-        names = (name for name, value in vars(ca).items() if value == code and name[:3] == "OP_")
-        raise NotImplementedError(f"{next(names, code)} has no translation to LLVM")
-    return OPERATIONS[code]
-
-
 def translate_loop(kernel: Kernel) -> CompiledLoop:
     """Translate a kernel and compile it for this processor; takes 50 to 150 ms.
 
     Raises:
-        NotImplementedError: see `translate`.
+        CodedError: see `translate`.
         RuntimeError: LLVM does not support this machine.
     """
     import llvmlite.binding as llvm  # takes 0.1 s, which must not delay the first frame
@@ -218,6 +221,14 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()
     return CompiledLoop(kernel.layouts, engine.get_function_address("onpath_run"), engine)
+
+
+def fastest_loop(kernel: Kernel) -> Loop:
+    """The compiled loop, or the interpreted one if that cannot be made."""
+    try:
+        return translate_loop(kernel)
+    except (CodedError, RuntimeError):
+        return InterpretedLoop(kernel)
 
 
 def _machine() -> TargetMachine:

@@ -8,13 +8,14 @@ the browser's and may differ in the last bit.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.operations import no_translation
 from onpath.models.closed_loop.wasm_module import MATHEMATICS, Part, WasmFunction, wasm_module
 
 DOUBLE = 8  # bytes
@@ -49,6 +50,7 @@ OPERATIONS = {
 """Stack code of each operation: 0 and 1 are its operands, =x a constant. fmin and fmax return the
 other operand of a NaN, and the first of equal ones."""
 _CODES = {code: text.split() for code, text in OPERATIONS.items()}
+_PLACES = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)  # what is no operation
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,13 +80,18 @@ def wasm_of(
     least one step; results may be the rows themselves.
 
     Raises:
-        NotImplementedError: an operation has no translation; the message names it.
+        CodedError: an operation has no translation; the message names it and the law, or the
+            function that is of no law.
     """
-    own = [_translated(name, function) for name, function in functions.items()]
     repeated = {name: Scan(_tick(kernel), 0) for name, kernel in loops.items()} | dict(scans)
+    laws = {name: kernel.law for name, kernel in loops.items()}  # refused before what is of none
+    steps = {
+        name: _translated(f"{name}.step", scan.step, laws.get(name, name))
+        for name, scan in repeated.items()
+    }
+    own = [_translated(name, function, name) for name, function in functions.items()]
     for name, scan in repeated.items():
-        step = _translated(f"{name}.step", scan.step)
-        own += [step, _repeated(name, len(MATHEMATICS) + len(own), scan)]
+        own += [steps[name], _repeated(name, len(MATHEMATICS) + len(own), scan)]
     return wasm_module(own)
 
 
@@ -97,11 +104,17 @@ def _tick(kernel: Kernel) -> ca.Function:
     return ca.Function("tick", [state, settings, table], [after, row])
 
 
-def _translated(name: str, function: ca.Function) -> WasmFunction:
+def _translated(name: str, function: ca.Function, owner: str) -> WasmFunction:
     """All inputs are read before any output is written, so that an output may overwrite one.
 
     What is used once is computed where it is used; everything else in a local variable.
+
+    Args:
+        owner: to whom the function belongs, for messages.
     """
+    for i in range(function.n_instructions()):
+        if (code := function.instruction_id(i)) not in (*_PLACES, *_CODES):
+            raise no_translation(owner, code, "WebAssembly")
     inputs = function.n_in()
     pointers, uses = inputs + function.n_out(), _uses(function)
     values, body = dict[int, list[Part]](), list[Part]()
@@ -131,7 +144,7 @@ def _translated(name: str, function: ca.Function) -> WasmFunction:
 def _filled(code: int, operands: list[list[Part]]) -> list[Part]:
     """The stack code of an operation on operands."""
     result = list[Part]()
-    for word in _code_of(code):
+    for word in _CODES[code]:
         if word.isdigit():
             result += operands[int(word)]
         elif word[0] == "=":
@@ -150,17 +163,10 @@ def _uses(function: ca.Function) -> Counter[int]:
         if code == ca.OP_OUTPUT:
             uses[made[operands[0]]] += 1
             continue
-        if code not in (ca.OP_CONST, ca.OP_INPUT):
-            uses.update(made[operands[int(word)]] for word in _code_of(code) if word.isdigit())
+        if code not in _PLACES:
+            uses.update(made[operands[int(word)]] for word in _CODES[code] if word.isdigit())
         made[function.instruction_output(i)[0]] = i
     return uses
-
-
-def _code_of(code: int) -> Iterable[str]:
-    if code not in _CODES:
-        names = (name for name, value in vars(ca).items() if value == code and name[:3] == "OP_")
-        raise NotImplementedError(f"{next(names, code)} has no translation to WebAssembly")
-    return _CODES[code]
 
 
 def _repeated(name: str, step: int, scan: Scan) -> WasmFunction:

@@ -29,7 +29,7 @@ PERIOD = 2 * np.pi  # [rad]
 _ORDER = np.arange(1.0, HARMONICS + 1)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Curve:
     """A curve σ(θ), θ in [-π, π] (periodic when closed), in d = 2 or 3 dimensions.
 
@@ -39,11 +39,36 @@ class Curve:
             constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
             derivative.
         equation: s = ... in z1 and z2, if the curve was made of the points where s is 0.
+        deviation: largest distance between the curve and the straight lines between the points
+            that it was fitted to, [m]; 0 if it was not fitted.
     """
 
     closed: bool
     series: Array
     equation: str | None = None
+    deviation: float = 0.0
+
+    def __repr__(self) -> str:
+        kind, size = "closed" if self.closed else "open", 1e3 * np.ptp(self._drawn(), axis=0)
+        extent = " x ".join(f"{each:.0f}" for each in size)
+        return f"<{kind} path, {1e3 * self.length():.0f} mm long, {extent} mm>"
+
+    def _repr_svg_(self) -> str:
+        """A drawing for notebooks: the plan view, with a dot where θ = 0."""
+        z = 1e3 * self._drawn()[:, :2] * (1, -1)
+        (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
+        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in z)
+        x, y = 1e3 * self.at(np.array(0.0))[:2] * (1, -1)
+        return (
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:.0f}"'
+            f' viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}">'
+            f'<polyline points="{points}" fill="none" stroke="gray"/>'
+            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="gray"/></svg>'
+        )
+
+    def _drawn(self) -> Array:
+        """Points from θ = -π to π, shape (n, d), [m]."""
+        return self.at(np.linspace(-np.pi, np.pi, 181))
 
     @property
     def dimension(self) -> int:

@@ -20,6 +20,7 @@ from onpath.models.paths.curve_fit import (
     control_points,
     from_stroke,
     open_through,
+    with_deviation,
 )
 from onpath.models.paths.curves import Curve, circle, ellipse, fourier, segment
 
@@ -130,6 +131,7 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
     rightwards = before if before and not before.closed else segment((-0.1, 0.0), (0.1, 0.0))
     curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
+    curve = with_deviation(curve, stroke)
     return PathDesign("drawn", curve, control_points(curve, 10 if closed else 6))
 
 

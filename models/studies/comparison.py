@@ -268,9 +268,9 @@ def _push(contest: Contest, kernel: Kernel, state: Array, obstruction: Obstructi
 
 @lru_cache(maxsize=64)
 def _loop(robot: Robot, kind: Kind) -> Loop:
-    from onpath.models.closed_loop.translated_loop import translate_loop  # loads LLVM
+    from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
 
-    return translate_loop(kernel_of(robot, kind))
+    return fastest_loop(kernel_of(robot, kind))
 
 
 @lru_cache(maxsize=8)

@@ -266,12 +266,9 @@ def _finished(
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
-    """The content of `--json`; numbers have nine significant digits.
-
-    "controllers" is the former name of "laws".
-    """
+    """The content of `--json`; numbers have nine significant digits."""
     laws = {run.controller: _summary(run) for run in runs}
-    return {"experiment": experiment.name, "laws": laws, "controllers": laws}
+    return {"experiment": experiment.name, "laws": laws}
 
 
 def _summary(run: Trajectory) -> dict[str, Any]:

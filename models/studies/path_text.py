@@ -9,12 +9,13 @@
     {"closed": true, "points": [[0.05, 0], [0, 0.04], [-0.05, 0]]}
     ellipse                        any preset by its name
 
-Commas count as spaces.
+Commas count as spaces; a decimal number has a point.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, cast
@@ -23,12 +24,13 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.control.implicit_level import level_function
+from onpath.models.errors import CodedError
 from onpath.models.paths import curves
-from onpath.models.paths.curve_fit import closed_through, open_through
+from onpath.models.paths.curve_fit import fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.implicit_curves import implicit_curve
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.parameter_specs import MINUS, unknown_name
 
 LONGEST_TEXT = 50_000  # [characters]
 IMPLICIT = "implicit"
@@ -56,7 +58,10 @@ def curve_from_text(text: str) -> Curve:
         return _from_json(text)
     if text.lstrip().startswith(IMPLICIT):
         return _implicit(text.lstrip())
-    form, *words = text.replace(",", " ").split() or [""]
+    form, *words = text.replace(MINUS, "-").replace(",", " ").split() or [""]
+    if "." not in text and (comma := re.search(r"\d+,\d+", text)):  # no path has whole metres
+        point = comma[0].replace(",", ".")
+        raise CodedError("error.decimal_comma", name="path", value=comma[0], point=point)
     if form not in FORMS:
         known = list(dict.fromkeys([*presets(), *FORMS, IMPLICIT]))
         raise unknown_name(text.strip()[:60], known, "path")
@@ -64,6 +69,13 @@ def curve_from_text(text: str) -> Curve:
     if len(words) not in counts:
         raise ValueError(f"path: expected {shape}, [m], got {len(words)} numbers")
     return _MAKERS[form](_numbers(words, shape))
+
+
+def is_table(text: str) -> bool:
+    """Whether a text looks like a table of points: a line of two or three numbers, or more."""
+    number = r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?"
+    row = rf"^[ \t]*{number}([ \t]*[,;\t ][ \t]*{number}){{1,2}}[ \t\r]*$"
+    return re.search(row, text, re.MULTILINE) is not None
 
 
 def _implicit(text: str) -> Curve:
@@ -131,11 +143,11 @@ def _ellipse(numbers: Array) -> Curve:
 
 
 def _open(numbers: Array) -> Curve:
-    return open_through(numbers.reshape(-1, 2))
+    return fitted(numbers.reshape(-1, 2), closed=False)
 
 
 def _closed(numbers: Array) -> Curve:
-    return closed_through(numbers.reshape(-1, 2))
+    return fitted(numbers.reshape(-1, 2), closed=True)
 
 
 _MAKERS: Mapping[str, Callable[[Array], Curve]] = {

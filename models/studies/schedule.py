@@ -11,6 +11,7 @@ import numpy as np
 
 from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
 from onpath.models.closed_loop.speed_profile import SpeedProfile, profile_from
+from onpath.models.systems.parameter_specs import number_of
 
 _TIMES = ("hold", "push", "wall")
 
@@ -125,10 +126,7 @@ def _read(name: str, value: Any) -> Any:
         return str(value)
     if name == "profile":
         return value if value is None or isinstance(value, SpeedProfile) else profile_from(value)
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name}: {value!r} is not a number") from None
+    return number_of(name, value)
 
 
 def _window(what: str, begin: float, end: float) -> None:

@@ -111,7 +111,7 @@ class FiveBarLinks:
 
 def load_links() -> FiveBarLinks:
     """The illustrative linkage of assets/five_bar.toml, which is balanced and decoupled."""
-    data = tomllib.loads(asset_path("five_bar.toml").read_text())
+    data = tomllib.loads(asset_path("five_bar.toml").read_text("utf-8"))
     links = {name: Link(**data[name]) for name in ("link1", "link2", "link3", "link4")}
     return FiveBarLinks(**links, **data["friction"])
 

@@ -61,5 +61,5 @@ class FlexibleLinks:
 
 def load_links() -> FlexibleLinks:
     """The illustrative robot of assets/flexible_five_bar.toml."""
-    data = tomllib.loads(asset_path("flexible_five_bar.toml").read_text())
+    data = tomllib.loads(asset_path("flexible_five_bar.toml").read_text("utf-8"))
     return FlexibleLinks(**data["lengths"], **data["inertia"], **data["beam"], **data["friction"])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
@@ -10,6 +11,8 @@ from typing import Any
 
 from onpath.models.errors import CodedError, Message
 
+MINUS = "\N{MINUS SIGN}"  # what a typesetter or a phone makes of a hyphen
+_WITH_COMMA = re.compile(r"[-+]?\d+,\d+")
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 
 
@@ -112,11 +115,24 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
                 return option
         options = ", ".join(str(option) for option in spec.options)
         raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)
-    try:
-        result = float(value)
-    except (TypeError, ValueError, OverflowError):
-        raise CodedError("error.value_not_a_number", name=name, value=repr(value)) from None
+    result = number_of(name, value)
     if not math.isfinite(result) or not spec.low <= result <= spec.high:
         unit = f" {spec.unit}" if spec.unit else ""
         raise out_of_range(name, str(value), f"{spec.low:g}", f"{spec.high:g}{unit}")
     return result if abs(result) > NOTHING else 0.0
+
+
+def number_of(name: str, value: Any) -> float:
+    """A number, or what a user has typed as one; a typesetter's minus is a minus.
+
+    Raises:
+        CodedError: it is none. Of a number with a decimal comma the message says how to write it.
+    """
+    plain = value.strip().replace(MINUS, "-") if isinstance(value, str) else value
+    try:
+        return float(plain)
+    except (TypeError, ValueError, OverflowError):
+        if isinstance(plain, str) and _WITH_COMMA.fullmatch(plain):
+            point = plain.replace(",", ".")
+            raise CodedError("error.decimal_comma", name=name, value=plain, point=point) from None
+        raise CodedError("error.value_not_a_number", name=name, value=repr(value)) from None

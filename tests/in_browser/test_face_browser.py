@@ -354,6 +354,28 @@ def test_text_that_is_not_a_number_stays_and_is_reported(tab: Tab) -> None:
     tab.blur()
 
 
+@pytest.mark.parametrize(
+    ("language", "label", "typed"), [("en", "K1 across", "1,000"), ("de", "K1 quer", "1.000")]
+)
+def test_digits_in_groups_are_not_taken_for_a_decimal_silently(
+    tab: Tab, language: str, label: str, typed: str
+) -> None:
+    tab.ask(c.SetLanguage(language))
+    tab.wait_until_built()
+    retype(tab, label, typed)
+    tab.page.keyboard.press("Enter")
+    wait_for(lambda: gain(tab) == 1)
+    expect(tab.page.locator(WRONG)).to_contain_text(typed)
+    expect(tab.number(label)).to_have_value("1")
+    for written, value in (("\N{MINUS SIGN}5", 0), ("900", 900)):
+        retype(tab, label, written)
+        tab.page.keyboard.press("Enter")
+        wait_for(lambda n=value: gain(tab) == n)
+    expect(tab.page.locator(WRONG)).to_be_hidden()
+    tab.ask(c.SetLanguage("en"), c.SetParameter("K1", 400.0))
+    tab.wait_until_built()
+
+
 def test_an_emptied_box_gets_its_value_back(tab: Tab) -> None:
     box, wrong = tab.number("K1 across"), tab.page.locator(WRONG)
     retype(tab, "K1 across", "")

@@ -24,7 +24,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
 from onpath.models.control.laws.registry import law_name, law_named
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, said_by
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
@@ -172,9 +172,12 @@ def _check(figure: FigureChoice) -> None:
     for law in figure.every_law:
         if not law_named(law).suits(robot.system):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
-    for curve in figure.paths.values():
-        check_path(robot, raised(curve, figure.parameters))
-        check_level_set(figure.parameters, curve)
+    for name, curve in figure.paths.items():
+        try:
+            check_path(robot, raised(curve, figure.parameters))
+            check_level_set(figure.parameters, curve)
+        except ValueError as error:
+            raise CodedError("error.path_named", name=repr(name), reason=said_by(error)) from None
     for name in figure.sliders:
         check_slider(figure, name)
 

@@ -11,6 +11,7 @@ from onpath.app.lab.commands.time import StepOnce
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_fit import deviation_remark
 from onpath.models.paths.path_design import PathDesign, drawn
 from onpath.models.systems.parameter_specs import unknown_name
 
@@ -159,7 +160,11 @@ class DrawPath(Command):
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
-        commit(lab, drawn(stroke, lab.session.editor.design.curve))
+        design = drawn(stroke, lab.session.editor.design.curve)
+        commit(lab, design)
+        remark = deviation_remark(design.curve)
+        if remark and lab.session.editor.design is design:
+            lab.show_message(lab.words.sentence(remark))
 
 
 @dataclass(frozen=True, slots=True)

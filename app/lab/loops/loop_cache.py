@@ -23,6 +23,7 @@ from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
 MOST = 8  # compiled loops that are kept, in use or not; 0.1 to 0.4 MB each
+MOST_REFUSED = 256  # kinds of loops that are known not to be compilable; others are tried again
 
 
 class LoopCache:
@@ -44,6 +45,7 @@ class LoopCache:
         self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
         self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the one used last comes last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
+        self._refused = dict[Key, None]()  # cannot be compiled; in the order in which that was seen
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile", run_anywhere)
         self._lock = threading.RLock()
@@ -77,7 +79,7 @@ class LoopCache:
         if self._find(key) is not None:
             return True
         self.prepare(robot, kind)
-        return self._pool is None
+        return self._pool is None or key in self._refused
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops of typed laws in the background, and no others for this lab."""
@@ -93,7 +95,8 @@ class LoopCache:
         if is_text(kind.controller) or isinstance(self._made.get(key), CompiledLoop):
             return
         with self._lock:
-            if self._pool is not None and key not in self._making and self._waiting.ask(key):
+            known = key in self._making or key in self._refused
+            if self._pool is not None and not known and self._waiting.ask(key):
                 self._pool.submit(self._compile_next)
 
     def close(self) -> None:
@@ -144,8 +147,10 @@ class LoopCache:
             self._share(key, translate_loop(kernel))
             del meanwhile  # nothing else refers to it, unless a lab uses it
             prepare_speed_limit(key[0])
-        except Exception as error:  # the lab continues with interpreted loops
-            log.warning("cannot compile a loop, the interpreted one goes on: %s", error)
-            self.close()  # further compilations would fail, too
+        except Exception as error:  # its labs continue with the interpreted loop
+            log.warning("%s is not compiled, it is interpreted: %s", key[1].controller, error)
+            self._refused[key] = None
+            if len(self._refused) > MOST_REFUSED:
+                del self._refused[next(iter(self._refused))]
         finally:
             self._making.discard(key)

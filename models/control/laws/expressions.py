@@ -20,6 +20,7 @@ from functools import reduce
 import casadi as ca
 
 from onpath.models.errors import CodedError, Message
+from onpath.models.systems.parameter_specs import MINUS
 
 LONGEST = 500  # [characters]
 MOST_NODES = 200  # names, numbers and operations
@@ -45,6 +46,17 @@ FUNCTIONS: Mapping[str, tuple[int, Callable[..., ca.SX]]] = {
     "max": (2, ca.fmax),
 }
 """Number of arguments, of which `min` and `max` take more as well, and what they do."""
+
+INSTEAD: Mapping[str, str] = {
+    "^": "**",
+    **dict.fromkeys("×·⋅", "*"),
+    "÷": "/",
+    "≤": "<=",
+    "≥": ">=",
+    "≠": "!=",
+    **dict.fromkeys("\N{EN DASH}\N{EM DASH}\N{NON-BREAKING HYPHEN}", "-"),
+}
+"""What is written elsewhere, and how it is written here."""
 
 _KEYWORDS = ("if", "else", "and", "or", "not")
 _TOKEN = re.compile(
@@ -104,6 +116,7 @@ def read(text: str, known: Sequence[str], targets: Sequence[str]) -> Formulas:
     """
     if len(text) > LONGEST:
         raise CodedError("error.law_too_long", most=LONGEST, count=len(text))
+    typed, text = text, text.replace(MINUS, "-")
     symbols = {name: ca.SX.sym(name) for name in known}
     found: dict[str, ca.SX] = {}
     trees = list[ast.expr]()
@@ -120,7 +133,7 @@ def read(text: str, known: Sequence[str], targets: Sequence[str]) -> Formulas:
     used = {node.id for tree in trees for node in ast.walk(tree) if isinstance(node, ast.Name)}
     names = tuple(name for name in known if name in used)
     function = ca.Function("formulas", [symbols[name] for name in names], list(found.values()))
-    return Formulas(text, tuple(found), names, function)
+    return Formulas(typed, tuple(found), names, function)
 
 
 def syntax_tree(expression: str) -> ast.expr:
@@ -193,9 +206,17 @@ class _LineReader:
 
     def _check_tokens(self, expression: str, given: Sequence[str]) -> None:
         """Refuse other characters than those of the language, bad numbers and unknown names."""
-        known, at = (*given, *FUNCTIONS), 0
+        known, at, depth = (*given, *FUNCTIONS), 0, 0
         while at < len(expression):
             token = _TOKEN.match(expression, at)
+            depth += (expression[at] == "(") - (expression[at] == ")")
+            if expression[at] == "," and not depth:
+                self._refuse_comma(expression, at)
+            if token is None and expression[at] in INSTEAD:
+                shown, instead = repr(expression[at]), INSTEAD[expression[at]]
+                raise self.error(
+                    at, Message("error.law_instead", {"text": shown, "instead": instead})
+                )
             if token is None:
                 raise self.error(
                     at, Message("error.law_character", {"character": _shown(expression[at])})
@@ -211,6 +232,19 @@ class _LineReader:
             if token["name"] and token[0] not in (*known, *_KEYWORDS):
                 raise self._unknown(at, token[0], known)
             at = token.end()
+
+    def _refuse_comma(self, expression: str, at: int) -> None:
+        """Refuse a comma that separates no arguments, and probably is a decimal comma."""
+        before, after = (
+            re.search(r"[0-9]+$", expression[:at]),
+            re.match("[0-9]+", expression[at + 1 :]),
+        )
+        if before is None or after is None:
+            raise self.error(at, Message("error.law_unreadable"))
+        shown, instead = f"'{before[0]},{after[0]}'", f"{before[0]}.{after[0]}"
+        raise self.error(
+            before.start(), Message("error.law_instead", {"text": shown, "instead": instead})
+        )
 
     def _unknown(self, offset: int, name: str, known: Sequence[str]) -> CodedError:
         near = [other for other in known if other.lower() == name.lower()]

@@ -29,6 +29,7 @@ from onpath.models.control.laws.references import (
     tracking_error,
 )
 from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import MINUS
 
 MOST_KEPT = 256  # laws of which the formulas are kept, two for each lab of a large class
 OWN = "own"  # what a typed law is called where its text does not matter
@@ -143,8 +144,8 @@ def formulas_of(text: str) -> Formulas:
 
 
 def tidy(text: str) -> str:
-    """The same law on one line, without blanks at the ends of its lines."""
-    lines = (line.strip() for line in text.replace("\n", ";").split(";"))
+    """The same law on one line, without blanks at the ends of its lines, with plain minus signs."""
+    lines = (line.strip() for line in text.replace(MINUS, "-").replace("\n", ";").split(";"))
     return "; ".join(line for line in lines if line)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import subprocess
@@ -12,13 +13,14 @@ from pathlib import Path
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.common import atomic_file
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
-from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.laws.registry import LAWS, NAMES
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import specs
 from tests.support.checkout import ROOT
+from tests.support.csv_columns import read_csv
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
 
@@ -63,7 +65,7 @@ def test_laws_are_chosen_by_name_in_the_order_given(capsys: pytest.CaptureFixtur
     for text, names in chosen.items():
         assert run_command([*SHORT, "--json", "--law", text]) == 0
         result = json.loads(capsys.readouterr().out)
-        assert list(result["laws"]) == names and result["controllers"] == result["laws"]
+        assert list(result["laws"]) == names
 
 
 def test_a_path_may_be_read_from_a_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -75,6 +77,25 @@ def test_a_path_may_be_read_from_a_file(tmp_path: Path, capsys: pytest.CaptureFi
         outputs.append(capsys.readouterr().out)
     assert outputs[0] == outputs[1] == outputs[2]
     assert json.loads(outputs[0])["laws"]["path_following"]["max_distance_m"] < 1e-4
+
+
+def test_a_table_of_points_and_cut_corners_are_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "points.csv"
+    file.write_text("x,y\n0.05,0\n0,0.04\n-0.05,0\n", "utf-8")
+    assert run_command([*SHORT, "--path", f"@{file}"]) == 2
+    told = capsys.readouterr().err
+    assert f"{file}: this is a table of points: in Python, onpath.through" in told
+    assert run_command([*SHORT, "--json", "--path", "closed 0.05 0 0 0.05 -0.05 0 0 -0.05"]) == 0
+    said = capsys.readouterr()
+    assert "13.3 mm away from the lines" in said.err and said.err.count("\n") == 1
+    assert json.loads(said.out)["laws"]
+
+
+def test_the_same_is_printed_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert run_command([*SHORT, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out).keys() == {"experiment", "laws"}
 
 
 def test_table_for_a_reader_names_both_and_says_why_one_stopped(
@@ -246,6 +267,10 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experimnt"], "experiment"),
         (["experiment", "obstruction", "--set", "task=dance"], "speed, position"),
         (["experiment", "obstruction", "--set", "K1=9999"], "0 and 2500 1/s²"),
+        (["experiment", "obstruction", "--set", "K1=900,5"], "K1: write 900.5 instead of 900,5"),
+        (["experiment", "obstruction", "--set", "hold_from=0,5"], "write 0.5 instead of 0,5"),
+        (["experiment", "obstruction", "--path", "circle 0,05"], "write 0.05 instead of 0,05"),
+        (["experiment", "obstruction", "--law", "across=xi^2;along=0"], "write ** instead of '^'"),
         (["experiment", "obstruction", "--plot", "x.txt"], ".png, .svg or .pdf"),
         (["--port", "99999"], "port 99999: expected 0 to 65535"),
         (["--socket", "missing/x"], "missing/x"),
@@ -257,6 +282,50 @@ def test_complaint_names_what_was_expected(
 ) -> None:
     assert run_command(arguments) == 2
     assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [*SHORT, "--csv", "{}.csv"],
+        [*SHORT, "--plot", "{}.png"],
+        ["figure", "rank", "--plot", "{}.svg"],
+        ["export", "figure", "{}.html", "--path", "circle"],
+    ],
+)
+def test_a_file_that_cannot_be_written_is_named_as_it_was_typed(
+    arguments: list[str],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(dir: Path, suffix: str) -> tuple[int, str]:
+        raise OSError(errno.EROFS, "Read-only file system", f"{dir}/tmpq3x{suffix}")
+
+    monkeypatch.setattr(atomic_file.tempfile, "mkstemp", refuse)
+    name = str(tmp_path / "out")
+    assert run_command([each.format(name) for each in arguments]) == 2
+    told = capsys.readouterr().err
+    assert name in told and "tmpq3x" not in told and "Read-only" in told
+
+
+@pytest.mark.parametrize("arguments", [["lessons", "names"], ["figure", "2"]])
+@pytest.mark.parametrize("encoding", ["cp1252", "ascii", ""])
+def test_output_is_printed_whatever_the_encoding_of_the_machine(
+    arguments: list[str], encoding: str
+) -> None:
+    chosen = {"PYTHONIOENCODING": encoding} if encoding else {}
+    others = {"PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0", "LC_ALL": "en_US.ISO-8859-1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "onpath", *arguments],
+        env=os.environ | others | chosen,
+        cwd=ROOT,
+        capture_output=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    text = done.stdout.decode(encoding or "utf-8")
+    assert len(text) > 200 and (encoding or not text.isascii())
 
 
 def test_an_existing_file_is_kept_when_a_run_fails(

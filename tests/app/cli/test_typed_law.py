@@ -10,8 +10,8 @@ import pytest
 
 import onpath
 from onpath.app.cli.main import run_command
-from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.errors import CodedError
+from tests.support.csv_columns import read_csv
 
 SHORT = ["experiment", "obstruction", "--set", "duration=1", "--set", "hold_from=0.4"]
 SHORT += ["--set", "hold_to=0.6", "--set", "K3=0"]

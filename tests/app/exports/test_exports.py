@@ -16,8 +16,8 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words, languages
-from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.benches import BENCHES
+from tests.support.csv_columns import read_csv
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, finish, new_lab, replayed, run, store, y
 
 

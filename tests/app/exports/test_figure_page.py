@@ -131,7 +131,9 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--robot", "five"], "five_bar"),
         (["--law", "path_folowing"], "path_following"),
         (["--law", "set_point"] * 3, "one or two"),
-        (["--path", "figure of eight"], ""),
+        (["--path", "circle", "--path", "figure of eight"], "path 'figure of eight': "),
+        (["--path", "circle 0,05"], "write 0.05 instead of 0,05"),
+        (["--path", "@missing.txt"], "--path @missing.txt: No such file"),
         (["--set", "K1=nothing"], "K1"),
         (["--slider", "torque_limit"], "cannot be changed in a figure"),
         (["--slider", "task"], "cannot be changed in a figure"),
@@ -148,6 +150,15 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         said = capsys.readouterr().err
         assert said.count("\n") == 1 and hint in said and not list(tmp_path.iterdir())
     assert run_command(["export", "figure", str(tmp_path / "no" / "a.html")]) == 2
+
+
+def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
+    oval, file = tmp_path / "My oval.txt", tmp_path / "a.html"
+    oval.write_text("ellipse 0.06 0.03", "utf-8-sig")
+    arguments = ["export", "figure", str(file), "--path", f"@{oval}", "--path", "circle"]
+    assert run_command(arguments) == 0
+    named = {"My oval": onpath.ellipse(0.06, 0.03), "circle": "circle"}
+    assert file.read_bytes() == onpath.figure(tmp_path / "b.html", paths=named).read_bytes()
 
 
 def test_one_law_and_paths_of_one_s_own(tmp_path: Path) -> None:

@@ -6,7 +6,6 @@ sketch, its truth and two passed tasks, and with a class of two that was sent a 
 
 from __future__ import annotations
 
-import io
 import sqlite3
 from contextlib import closing
 from datetime import datetime
@@ -23,7 +22,6 @@ from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.storage.lab_state import put_back
 from onpath.app.storage.records import Records, file_url
-from onpath.models.closed_loop.trajectory import read_csv
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
@@ -81,8 +79,3 @@ def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     do(lab, c.CloseLesson())
     assert lab.session.parameters.K1 == 900.0 and lab.session.editor.design.name == "edited"
     records.close()
-
-
-def test_a_csv_file_of_that_version_is_read() -> None:
-    text = "t_s,controller,q1_rad\n0,trajectory_tracking,1\n0,path_following,2\n"
-    assert read_csv(io.StringIO(text))["path_following"]["q1_rad"] == [2.0]

@@ -22,6 +22,19 @@ def test_the_marks_of_a_drag_that_goes_no_further_go_with_the_hand() -> None:
     assert editor.faults == [] and "goes no further" in lab.message
 
 
+def test_a_user_is_told_of_a_path_that_is_far_from_the_stroke() -> None:
+    lab, corners = new_lab(0.2), 0.05 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    ends = zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    stroke = np.concatenate([np.linspace(a, b, 60) for a, b in ends])
+    do(lab, c.DrawPath(stroke))
+    curve = lab.session.editor.design.curve
+    assert curve.deviation > 4e-3
+    assert f"{1e3 * curve.deviation:.1f} mm away from the lines" in lab.message
+    angle = np.linspace(0, 2 * np.pi, 200)
+    do(lab, c.DrawPath(0.05 * np.column_stack([np.cos(angle), np.sin(angle)])))
+    assert lab.session.editor.design.curve.deviation < 2e-3 and lab.message == ""
+
+
 @pytest.mark.parametrize("name", ROBOTS)
 def test_exactly_the_presets_that_are_offered_without_a_warning_can_be_chosen(name: str) -> None:
     lab = new_lab()

@@ -136,7 +136,7 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         ({"path": onpath.circle(0.3)}, "leaves the workspace"),
         ({"path": onpath.circle(0.005)}, "bends too sharply"),
         ({"law": "folowing"}, "path_following"),
-        ({"law": LAWS}, "did you mean trajectory_tracking, path_following"),
+        ({"law": LAWS}, "a law is a name of onpath.laws()"),
         ({"k1": 3}, "did you mean K1"),
         ({"durations": 3}, "did you mean duration"),
         ({"r": 0.03}, "unknown parameter 'r'"),
@@ -181,15 +181,30 @@ def test_an_invalid_path_is_refused() -> None:
         (lambda: onpath.circle(0.05, (1,)), "centre: expected a point"),  # type: ignore[arg-type]
         (lambda: onpath.segment((0, 0), (0, 0)), "at least 2 points"),
         (lambda: onpath.through([[0, 0], [1]]), "points: expected"),  # type: ignore[list-item]
+        (lambda: onpath.simulate(path=np.eye(2)), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
+        (lambda: onpath.simulate(path=[(0, 1)]), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
+        (lambda: onpath.figure("a.html", paths=[[(0, 1)]]), "paths: onpath.through"),  # type: ignore[list-item]
+        (lambda: onpath.simulate(law=lambda view: view), "but not a function"),  # type: ignore[arg-type]
     ):
         with pytest.raises(ValueError, match=re.escape(words)):
             make()
 
 
+def test_a_path_that_leaves_its_polygon_warns(recwarn: pytest.WarningsRecorder) -> None:
+    square = 0.05 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    with pytest.warns(UserWarning, match="18.8 mm away from the lines") as told:
+        assert onpath.through(square).deviation == pytest.approx(18.8e-3, abs=5e-5)
+    assert told[0].filename == __file__
+    angle = np.linspace(0, 2 * np.pi, 5000, endpoint=False)
+    assert onpath.through(0.05 * np.column_stack([np.cos(angle), np.sin(angle)])).deviation < 1e-4
+    assert not recwarn.list
+
+
 def test_a_path_goes_through_its_points() -> None:
     points = np.array([[0.05, 0.0], [0.0, 0.04], [-0.05, 0.0], [0.0, -0.04]])
     for closed in (True, False):
-        curve = onpath.through(points, closed)
+        with pytest.warns(UserWarning, match="between the given points"):  # they are far apart
+            curve = onpath.through(points, closed)
         assert curve.nearest(points)[1].max() < 1e-3 and curve.closed is closed
     end = onpath.segment((0.0, 0.01), (0.03, 0.02)).at(np.array(np.pi))
     assert end == pytest.approx([0.03, 0.02])

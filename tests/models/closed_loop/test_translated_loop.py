@@ -19,8 +19,14 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import LoopLayouts, loop_layouts
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of
-from onpath.models.closed_loop.translated_loop import OPERATIONS, translate, translate_loop
+from onpath.models.closed_loop.translated_loop import (
+    OPERATIONS,
+    fastest_loop,
+    translate,
+    translate_loop,
+)
 from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.errors import CodedError
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import TABLE_SHAPE, TERMS, circle
 from onpath.models.paths.space_curves import saddle
@@ -85,9 +91,11 @@ def takes_two(code: int) -> bool:
 
 
 def test_an_operation_without_a_translation_is_named() -> None:
-    x = ca.SX.sym("x")
-    with pytest.raises(NotImplementedError, match="OP_ERF"):
-        translate(logging_kernel(ca.SX.unary(ca.OP_ERF, x), x=x))
+    x = ca.SX.sym("x", 2)
+    kernel = replace(logging_kernel(ca.SX.unary(ca.OP_ERF, x[0]), x=x), law="erring")
+    with pytest.raises(CodedError, match=r"^erring uses .*OP_ERF.* LLVM$"):
+        translate(kernel)
+    assert isinstance(fastest_loop(kernel), InterpretedLoop)
 
 
 @pytest.mark.thorough

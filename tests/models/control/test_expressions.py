@@ -18,6 +18,8 @@ from hypothesis import strategies as st
 
 from onpath.models.control.laws import expressions
 from onpath.models.control.laws.expressions import FUNCTIONS, LONGEST, Formulas, read
+from onpath.models.control.laws.own import own_law
+from onpath.models.control.laws.registry import law_name
 from onpath.models.errors import CodedError
 
 NAMES: tuple[str, ...] = ("xi", "dxi", "theta", "dtheta", "e1", "speed", "t", "K1", "K5")
@@ -125,6 +127,14 @@ def test_lines_are_separated_by_breaks_or_semicolons() -> None:
         assert values_of(formulas, numbers) == {"across": 2.0, "along": 6.0}
 
 
+def test_the_minus_of_a_typesetter_is_a_minus() -> None:
+    typed, plain = (read(text, NAMES, TARGETS) for text in ("u1 = 3 − −xi\n", "u1 = 3 - -xi\n"))
+    numbers = dict.fromkeys(NAMES, 0.7)
+    assert values_of(typed, numbers) == values_of(plain, numbers) == {"u1": 3.7}
+    assert own_law("across = −xi; along = 0").gains == ()
+    assert law_name("across = −xi\nalong = 0") == "across = -xi; along = 0"
+
+
 def test_nothing_is_a_law_without_lines() -> None:
     assert read(" \n;\t", NAMES, TARGETS).targets == ()
 
@@ -145,6 +155,11 @@ def test_nothing_is_a_law_without_lines() -> None:
         ("across", 1, 1, "a line begins with"),
         ("across == xi", 1, 1, "a line begins with"),
         ("across = 1\nacross = 2", 2, 1, "there is a line for across already"),
+        ("across = xi^2", 1, 12, "write ** instead of '^'"),
+        ("across = 2·xi", 1, 11, "write * instead of '·'"),
+        ("across = –xi", 1, 10, "write - instead of '–'"),
+        ("across = −K1*xi\nalong = 0,5*speed", 2, 9, "write 0.5 instead of '0,5'"),
+        ("across = xi, 5", 1, 12, "something is missing"),
         ("across = 2xi", 1, 10, "'2xi' is not a number"),
         ("across = 0x10", 1, 10, "'0x10' is not a number"),
         ("across = 1_000", 1, 10, "is not a number"),
@@ -200,7 +215,6 @@ def test_nothing_is_a_law_without_lines() -> None:
         ("across = \ufeffxi", 1, 10, "U+FEFF means nothing here"),
         ("across = хi", 1, 10, "'х' means nothing here"),  # Cyrillic
         ("across = ｘi", 1, 10, "'ｘ' means nothing here"),  # Python itself would read xi
-        ("across = 3 − xi", 1, 12, "'−' means nothing here"),
         ("across = ٣", 1, 10, "'٣' means nothing here"),  # a digit, but not one of ours
         ("acroSS = xi", 1, 1, "did you mean across?"),
         ("__class__ = xi", 1, 1, "there is no '__class__'"),

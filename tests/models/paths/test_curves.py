@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from xml.etree import ElementTree
 
 import numpy as np
 import pytest
@@ -11,7 +12,15 @@ from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.paths.curve_blend import blend
-from onpath.models.paths.curve_fit import closed_through, control_points, from_stroke, open_through
+from onpath.models.paths.curve_fit import (
+    FAR,
+    closed_through,
+    control_points,
+    deviation_remark,
+    fitted,
+    from_stroke,
+    open_through,
+)
 from onpath.models.paths.curves import (
     HARMONICS,
     ORDERS,
@@ -219,3 +228,59 @@ def test_blend_moves_every_point_along_a_line(fraction: float) -> None:
     for order in range(ORDERS):
         expected = (1 - fraction) * old.at(THETA, order) + fraction * new.at(THETA, order)
         assert between.at(THETA, order) == pytest.approx(expected, abs=1e-15)
+
+
+@pytest.mark.parametrize("count", [500, 5_000, 50_000])
+@pytest.mark.parametrize("fit", [closed_through, open_through])
+def test_points_may_be_as_dense_as_they_like(fit: Callable[[Array], Curve], count: int) -> None:
+    angle = np.linspace(0, 2 * np.pi if fit is closed_through else 4.0, count, endpoint=False)
+    curve = fit(0.05 * np.column_stack([np.cos(angle), np.sin(angle)]))
+    assert np.linalg.norm(dense(curve), axis=1) == pytest.approx(np.full(4001, 0.05), abs=2e-6)
+
+
+def polygon_distance(z: Array, corners: Array) -> Array:
+    """Distances of points from a closed polygon, (n, 2) and (k, 2) -> (n,)."""
+    lines = [
+        np.linspace(a, b, 3001) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    ]
+    return np.linalg.norm(z[:, None] - np.concatenate(lines), axis=2).min(1)
+
+
+@given(st.integers(0, 10_000))
+def test_a_fitted_curve_tells_how_far_it_is_from_the_lines_between_its_points(seed: int) -> None:
+    corners = star(np.random.default_rng(seed))
+    curve = fitted(corners, closed=True)
+    beside = polygon_distance(dense(curve, count=400), corners).max()
+    ends = zip(corners, np.roll(corners, -1, axis=0), strict=True)
+    places = np.concatenate([np.linspace(a, b, 60) for a, b in ends])
+    expected = max(beside, curve.nearest(places)[1].max())
+    assert curve.deviation == pytest.approx(expected, abs=1e-4)
+    assert np.array_equal(curve.series, closed_through(corners).series)
+
+
+def test_a_user_is_told_of_corners_that_are_cut_and_of_nothing_else() -> None:
+    square = 0.05 * np.array([[1, 1], [-1, 1], [-1, -1], [1, -1]])
+    remark = deviation_remark(fitted(square, closed=True))
+    assert remark is not None and "18.8 mm" in str(remark)
+    ends = zip(square, np.roll(square, -1, axis=0), strict=True)
+    sides = np.concatenate([np.linspace(a, b, 50, endpoint=False) for a, b in ends])
+    assert 1e-3 < fitted(sides, closed=True).deviation < FAR  # corners rounded by some mm
+    angle = np.linspace(0, 2 * np.pi, 8, endpoint=False)
+    eight = fitted(0.05 * np.column_stack([np.cos(angle), np.sin(angle)]), closed=True)
+    assert deviation_remark(eight) is None and deviation_remark(circle(0.05)) is None
+    assert fitted(square[:2], closed=False).deviation == pytest.approx(0, abs=1e-9)
+
+
+def test_a_notebook_shows_a_curve_in_a_line_and_as_a_picture() -> None:
+    curve = ellipse((0.07, 0.04), (0.01, 0.02))
+    assert repr(curve) == "<closed path, 352 mm long, 140 x 80 mm>"
+    assert repr(some_open_curve(0)).startswith("<open path, ")
+    drawing = ElementTree.fromstring(curve._repr_svg_())
+    left, top, width, height = map(float, drawing.attrib["viewBox"].split())
+    line, dot = drawing
+    places = np.array([point.split(",") for point in line.attrib["points"].split()], dtype=float)
+    assert (left, top) < (places[:, 0].min(), places[:, 1].min())
+    assert (left + width, top + height) > (places[:, 0].max(), places[:, 1].max())
+    assert places * (1, -1) / 1e3 == pytest.approx(dense(curve, count=len(places)), abs=1e-4)
+    assert (float(dot.attrib["cx"]), float(dot.attrib["cy"])) == (80.0, -20.0)  # θ = 0
+    assert len(curve._repr_svg_()) < 4000

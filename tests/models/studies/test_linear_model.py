@@ -20,7 +20,8 @@ from onpath.models.closed_loop.trajectory import write_csv
 from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
-from onpath.models.studies.record_file import LONGEST_LINE, read_records
+from onpath.models.studies.record_file import read_records
+from onpath.models.studies.table_file import LONGEST_LINE
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do
 from tests.support.lab import run as run_lab

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
-from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text
+from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_table
 
 CORNERS = np.array([[0.05, 0.0], [0.0, 0.04], [-0.05, 0.0], [0.0, -0.04]])
 
@@ -50,6 +50,9 @@ def test_points_mean_the_same_as_text_and_as_json(closed: bool) -> None:
         ("circle", ""),  # the preset
         ("circle 0", "positive"),
         ("circle 1 2", r"circle RADIUS \[Z1 Z2\], \[m\], got 2 numbers"),
+        ("circle 0,05", "^path: write 0.05 instead of 0,05$"),
+        ("ellipse 0,07 0,04", "^path: write 0.07 instead of 0,07$"),
+        ("closed 0,05 0,01 0,01 0,04 -0,05 0,01", "^path: write 0.05 instead of 0,05$"),
         ("circle nan", "between -1 and 1 m"),
         ("circle 1e999", "between -1 and 1 m"),
         ("ellipse a b", "ellipse A B"),
@@ -112,3 +115,25 @@ def test_an_equation_means_its_closed_line() -> None:
 def test_an_equation_without_one_smooth_closed_line_is_refused(expression: str, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         curve_from_text(f"implicit {expression}")
+
+
+def test_a_minus_of_a_typesetter_and_commas_between_numbers_are_read() -> None:
+    plain = curve_from_text("segment -0.05 0 0.05 -0.02")
+    assert np.array_equal(curve_from_text("segment −0.05,0 0.05,−0.02").series, plain.series)
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x,y\n0.05,0\n0,0.04\n", True),
+        ("0,05;0\n0;0,04\n", True),
+        ("0.05\t0\n", True),
+        ("# points\r\n0.05 0 0.1\r\n", True),
+        ("circle 0.05", False),
+        ("closed 0.05 0 0 0.04 -0.05 0", False),
+        ("Dear reader,\nthis is no table.", False),
+        ("", False),
+    ],
+)
+def test_a_table_of_points_is_recognised(text: str, expected: bool) -> None:
+    assert is_table(text) is expected

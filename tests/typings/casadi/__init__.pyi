@@ -159,6 +159,7 @@ OP_NE: int
 OP_NOT: int
 OP_IF_ELSE_ZERO: int
 OP_ERF: int
+OP_SIGN: int
 OP_CONST: int
 OP_INPUT: int
 OP_OUTPUT: int

@@ -1,0 +1,174 @@
+"""Reads tables of numbers as programs and spreadsheets of any country write them.
+
+A table has a line with the names of its columns and then a line for each row. What programs differ
+in is found out from the file:
+
+- encoding: UTF-8 or UTF-16, with a byte order mark or without one
+- separator of the cells: that of a line `sep=;`, else the tab, semicolon or comma that the line
+  with the names contains
+- decimal sign: point or comma, the same in the whole table; digits in groups are refused, because
+  `1.000` would be one thousand in one country and one in another
+
+Cells may be quoted and have blanks around them. Empty cells at the end of a line do not count, nor
+do empty lines and those that begin with #.
+
+The files are untrusted: whatever else they contain is refused.
+"""
+
+from __future__ import annotations
+
+import codecs
+import csv
+import io
+import re
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+from pathlib import Path
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import MINUS
+
+LONGEST_LINE = 10_000  # [characters]
+MOST_LINES = 1_000_000
+LARGEST = 1e9  # of any number, in absolute value
+SEPARATORS = "\t;,"
+_NUMBER = re.compile(
+    rf"[-+{MINUS}]?(?=[.,]?\d)\d*(?P<sign>[.,]?)\d*(?:[eE][-+{MINUS}]?\d+)?", re.ASCII
+)
+_COMMENT = re.compile(rf'[ "]*#(?![A-ZÄÖÜ][A-ZÄÖÜ/]|#*"?[{SEPARATORS}])')  # not a cell, as #N/A
+_DECLARED = re.compile(r'"?sep=(?P<separator>.)"?[\t;,]*\s*', re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """Columns of a table.
+
+    Attributes:
+        numbers: the columns of numbers that were asked for, shape (rows, columns).
+        texts: those columns of texts that there are, by name.
+        lines: of the rows, counted in the file from 1.
+    """
+
+    numbers: Array
+    texts: Mapping[str, Sequence[str]]
+    lines: Sequence[int]
+
+
+def read_table(path: Path, numbers: Sequence[str], texts: Sequence[str] = ()) -> Table:
+    """Read some columns of a table; the others may contain anything.
+
+    Args:
+        numbers: names of columns of finite numbers, which the table must have.
+        texts: names of columns of texts, which it may have.
+
+    Raises:
+        CodedError: not such a table; the message names the line, and the column of a bad number.
+        OSError: the file cannot be read.
+    """
+    with path.open("rb") as raw:
+        encoding = _encoding(raw.peek(1))
+        # what does not decode is replaced, and refused where it counts
+        with io.TextIOWrapper(raw, encoding, errors="replace", newline=None) as file:
+            return _read(_lines(file), numbers, texts)
+
+
+def _encoding(head: bytes) -> str:
+    """The encoding of a text that begins with ASCII characters or a mark."""
+    if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    if b"\0" in head[:2]:
+        return "utf-16-be" if head[:1] == b"\0" else "utf-16-le"
+    return "utf-8-sig"
+
+
+def _lines(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
+    """Number and text of the lines that are neither empty nor a comment."""
+    for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), start=1):
+        if len(line) >= LONGEST_LINE:
+            raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
+        if number > MOST_LINES:
+            raise CodedError("error.table_long", most=str(MOST_LINES))
+        if line.strip(f'{SEPARATORS}" \r\n') and not _COMMENT.match(line):
+            yield number, line.rstrip("\n")
+
+
+def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str]) -> Table:
+    number, line = next(lines, (1, ""))
+    if declared := _DECLARED.fullmatch(line):
+        separator = declared["separator"]
+        if separator not in SEPARATORS:
+            raise CodedError("error.table_separator", line=str(number), text=repr(separator))
+        number, line = next(lines, (number + 1, ""))
+    else:
+        unquoted = re.sub('"[^"]*"', "", line)
+        separator = next((each for each in SEPARATORS if each in unquoted), ",")
+    names = _cells(line, separator, number)
+    while names and not names[-1]:
+        names.pop()
+    wanted = [_place(name, names, number) for name in numbers]
+    others = {name: names.index(name) for name in texts if name in names}
+    reader, flat, rows = _NumberReader(), array("d"), list[int]()
+    found = {name: list[str]() for name in others}
+    for number, line in lines:
+        cells = _cells(line, separator, number)
+        if len(cells) < len(names) or any(cells[len(names) :]):
+            expected, got = str(len(names)), str(len(cells))
+            raise CodedError("error.table_cells", line=str(number), wanted=expected, count=got)
+        flat.extend(reader.number(cells[i], number, names[i]) for i in wanted)
+        for name, i in others.items():
+            found[name].append(cells[i])
+        rows.append(number)
+    if not rows:
+        raise CodedError("error.table_empty", line=str(number))
+    return Table(np.array(flat).reshape(len(rows), len(wanted)), found, rows)
+
+
+def _cells(line: str, separator: str, number: int) -> list[str]:
+    reader = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
+    try:
+        return [cell.strip() for cell in next(reader, list[str]())]
+    except csv.Error:
+        raise CodedError("error.table_quotes", line=str(number)) from None
+
+
+def _place(name: str, names: Sequence[str], line: int) -> int:
+    """Which column has this name."""
+    if names.count(name) != 1:
+        if name in names:
+            raise CodedError("error.table_column_twice", line=str(line), name=name)
+        raise CodedError("error.table_no_column", line=str(line), name=name)
+    return names.index(name)
+
+
+@dataclass(slots=True)
+class _NumberReader:
+    """Reads numbers with one decimal sign, which the first one that has any decides."""
+
+    _sign: str = field(default="", init=False)
+
+    def number(self, cell: str, line: int, column: str) -> float:
+        """The number in a cell.
+
+        Raises:
+            CodedError: it is none, or has another decimal sign than those before.
+        """
+        at, text = str(line), repr(cell[:20])
+        match = _NUMBER.fullmatch(cell)
+        if match is None:
+            raise CodedError("error.table_not_a_number", line=at, column=column, text=text)
+        value, sign = float(cell.replace(",", ".").replace(MINUS, "-")), match["sign"]
+        if sign and sign != self._sign:
+            if self._sign:
+                other = "comma" if self._sign == "," else "point"
+                raise CodedError(
+                    "error.table_decimal_sign", line=at, column=column, text=text, other=other
+                )
+            self._sign = sign
+        if not isfinite(value) or abs(value) > LARGEST:
+            raise CodedError("error.table_large_number", line=at, column=column, text=text)
+        return value

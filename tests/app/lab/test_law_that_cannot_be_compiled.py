@@ -1,0 +1,94 @@
+"""A law with an operation that no compiler translates is interpreted; it disturbs no other law."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import casadi as ca
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loops import loop_cache
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.models.closed_loop.loop_kind import Kind
+from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
+from onpath.models.control.benches import LEFT
+from onpath.models.control.laws.law import ControlAction, View
+from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.systems.five_bar_robot import rigid_five_bar
+from tests.support.lab import FRAME, do, finish, run
+
+OPERATIONS = {"sliding": ca.OP_SIGN, "erring": ca.OP_ERF}
+
+
+@pytest.fixture(params=OPERATIONS)
+def law(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A law of the registry that cannot be compiled."""
+
+    def command(view: View) -> ControlAction:
+        action = PATH_FOLLOWING.command(view)
+        assert action.acceleration is not None and action.error is not None
+        added = 1e-3 * ca.SX.unary(OPERATIONS[request.param], action.error[0])
+        return replace(action, acceleration=action.acceleration + added)
+
+    own = replace(PATH_FOLLOWING, name=request.param, label="Of the test", command=command)
+    monkeypatch.setitem(LAWS, request.param, own)
+    return request.param
+
+
+@pytest.fixture
+def store() -> Iterator[LoopCache]:
+    made = LoopCache()
+    yield made
+    made.close()
+
+
+def test_others_are_still_compiled(
+    store: LoopCache, law: str, caplog: pytest.LogCaptureFixture
+) -> None:
+    robot = rigid_five_bar()
+    with caplog.at_level(logging.WARNING, loop_cache.__name__):
+        for _ in range(3):
+            store.prepare(robot, Kind(law))
+            finish(store)
+    assert store.is_ready(robot, Kind(law))
+    assert isinstance(store.get(robot, Kind(law)), InterpretedLoop)
+    (warning,) = caplog.records
+    assert law in warning.getMessage() and "OP_" in warning.getMessage()
+    store.prepare(robot, Kind("waiting_clock"))
+    finish(store)
+    assert isinstance(store.get(robot, Kind("waiting_clock")), CompiledLoop)
+
+
+def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: str) -> None:
+    labs = Lab(store), Lab(store)
+    for lab, name in zip(labs, (law, "waiting_clock"), strict=True):
+        do(lab, c.ChooseLaw(LEFT, name))
+        for _ in range(4):
+            run(lab, FRAME)
+            finish(store)
+        assert lab.session.laws[LEFT] == name
+    made = [store.get(r.robot, r.kind) for r in (lab.session.runs[LEFT] for lab in labs)]
+    assert [type(loop) for loop in made] == [InterpretedLoop, CompiledLoop]
+
+
+def test_an_exported_figure_is_refused_in_one_line(
+    tmp_path: Path, law: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "a.html"
+    assert run_command(["export", "figure", str(file), "--law", law]) == 2
+    error = capsys.readouterr().err
+    assert law in error and "OP_" in error and "WebAssembly" in error
+    assert error.count("\n") == 1 and not list(tmp_path.iterdir())
+
+
+def test_it_is_compared_with_others(law: str, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["--law", law, "--law", "path_following", "--obstruction", "wall", "--json"]
+    assert run_command(["compare", *arguments]) == 0
+    assert law in capsys.readouterr().out
