@@ -112,6 +112,8 @@ export class Bench {
     readonly measured = (): Point => this.point("measured", this.field("q"), this.field("v"))
     /** The end of the arrow of the force. */
     readonly arrow = (): Point => this.point("arrow", this.field("y"), this.field("force"))
+    /** How far a bound of the law is reached, from 0 to 1. */
+    readonly share = (name: "far" | "integral_used"): number => this.kernels.numbers[this.field(name)]!
     /** The last row of the log. */
     readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
     /** The row before the first tick: that of a tick which is then undone, without torque and force. */

@@ -4,18 +4,21 @@ import type { Bench } from "./bench"
 import { said, written, type FigureData } from "./data"
 import type { Simulation } from "./simulation"
 
-function kind(bench: Bench, off: boolean): string {
+function kind(bench: Bench, off: boolean, data: FigureData): string {
     if (bench.stopped) return "stopped"
     const { byClock } = bench.does()
     if (bench.held) return byClock ? (off ? "torn_off" : "held") : off ? "off" : "waits"
-    if (bench.pulled) return "pulled"
-    return off ? (byClock ? "chases" : "off") : ""
+    const returns = bench.share("far") > data.returns, bounded = bench.share("integral_used") > data.full
+    if (bench.pulled) return returns ? "pulled_far" : bounded ? "pulled_bounded" : "pulled"
+    if (!off) return ""
+    if (returns) return "returns"
+    return byClock ? "chases" : bounded ? "off_bounded" : "off"
 }
 
 /** Empty for a robot that does what its law's title says. */
 export function caption(bench: Bench, data: FigureData): string {
     const distance = bench.held ? bench.most : bench.distance
-    const which = kind(bench, distance >= data.off)
+    const which = kind(bench, distance >= data.off, data)
     return which && said(data, `caption.${which}`, { mm: written(data, 1e3 * distance, 0) })
 }
 

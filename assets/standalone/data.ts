@@ -36,7 +36,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">
     state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
-    log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force", Place>
+    log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used", Place>
     benches: BenchData[]
     laws: LawData[]
     /** Laws from which readers may choose. */
@@ -46,6 +46,9 @@ export interface FigureData extends Texts<"language" | "module"> {
     controls: string[]
     box: [number, number, number, number]
     off: number
+    /** Shares from which on a law counts as returning from far away, and its integral as bounded. */
+    returns: number
+    full: number
     strip: number
     tones: Record<"light" | "dark", FigureData["colours"]> // colours are one of these
     colours: Texts<"path" | "force" | "steel" | "ink" | "point" | "selected" | "warning" | "grid" | "held">

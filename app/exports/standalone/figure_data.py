@@ -19,7 +19,7 @@ from onpath.app.exports.standalone.figure_module import (
 )
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
-from onpath.app.scene.captions import OFF
+from onpath.app.scene.captions import FULL, OFF, RETURNS
 from onpath.app.scene.tones import DARK, LIGHT, Tones
 from onpath.lessons.benches import law_text, law_titles
 from onpath.lessons.words import Words
@@ -54,7 +54,9 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "sizes": _sizes(figure, kernel),
         "state": _places(kernel.state, ("q", "theta", "theta_ref")),
         "settings": _places(kernel.settings, _SET),
-        "log": _places(kernel.log, ("q", "v", "y", "theta", "theta_ref", "u", "force")),
+        "log": _places(
+            kernel.log, ("q", "v", "y", "theta", "theta_ref", "u", "force", "far", "integral_used")
+        ),
         "benches": _benches(figure),
         "laws": _laws(figure, words),
         "choices": [figure.every_law.index(law) for law in _choices(figure)],
@@ -63,6 +65,8 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "controls": figure.controls,
         "box": _box(figure),
         "off": OFF,
+        "returns": RETURNS,
+        "full": FULL,
         "strip": robot.drawing.strip,
         "tones": {"light": _colours(LIGHT), "dark": _colours(DARK)},
         "poles": {

@@ -25,7 +25,8 @@ _FAULTS = (
 )
 _FILLED = {
     **{f"caption.{kind}": ("mm",) for kind in ("torn_off", "held", "waits", "pulled", "chases")},
-    **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped")},
+    **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped", "returns", "off_bounded")},
+    **{f"caption.{kind}": ("mm",) for kind in ("pulled_far", "pulled_bounded")},
     "caption.spoken": ("robot", "caption"),
     "standalone.scene": ("law",),
     "standalone.refused": ("reason",),
