@@ -591,7 +591,7 @@ gains-poles_at = Pole { $poles } 1/s bei θ = { $place }°; sie ändern sich lä
 gains-identify = M und b identifizieren
 gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und setzt sie in das Modell beider Regler ein.
 
-## Der biegsame Balken
+## Der elastische Balken
 
 flexible-title = Biegsamer Balken
 flexible-pull = Zugebene
@@ -791,9 +791,9 @@ glossary-to_words = Glossar: von den Fachwörtern zu den Wörtern der Lektionen
 glossary-lesson = (Lektion { $number })
 help-close = Schließen
 help-text =
-    Drücke **Beide festhalten** und sieh zu: Den linken Roboter (orange) reißt es mit der
-    Folgeregelung von der Bahn, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau) wartet
-    mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
+    Drücke **Beide festhalten** und sieh zu: Der linke Roboter (orange) wird mit der
+    Folgeregelung von der Bahn gerissen, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau)
+    wartet mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
 
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
     - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
@@ -814,7 +814,8 @@ help-text =
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.
-say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
+say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam.
+say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
@@ -909,7 +910,7 @@ path-figure-of-eight = liegende Acht
 machine-five_bar-label = Fünfgelenk
 machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrechten Ebene.
 
-machine-flexible-label = Fünfgelenk mit biegsamem Glied
+machine-flexible-label = Fünfgelenk mit elastischem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
 
 machine-spatial_arm-label = Raumarm
@@ -971,7 +972,7 @@ parameter-torque_limit-label = Motorgrenze
 parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
 
 parameter-at_limit-label = An der Grenze
-parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolge gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
+parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolgeregelung gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
 parameter-at_limit-option-across_first = quer zuerst
 parameter-at_limit-option-slow_down = langsamer
 parameter-at_limit-option-cut = abschneiden
@@ -1328,7 +1329,7 @@ standalone-no_script = Diese Abbildung braucht JavaScript.
 
 ## Der Kurs als statische Seiten: assets/site, app/exports/site
 
-site-title = OnPath: Bahnfolge ist nicht Trajektorienfolge
+site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
 site-lab = Probiere es aus
 site-skip = Zum Text
@@ -1364,7 +1365,7 @@ site-control-past = das Zurückblicken
 site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
-site-control-flexible = Ausgang, Zugebene und Vergrößerung des biegsamen Balkens
+site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens

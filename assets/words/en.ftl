@@ -817,7 +817,8 @@ worksheet-learnt = What I thought before, and think now:
 ## What the lab says by itself
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the run again.
-say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
+say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
+say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
