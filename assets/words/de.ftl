@@ -666,7 +666,9 @@ axis-phase = Phasenebene: ξ₂ über ξ₁, die letzten 3 s
 axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]
 axis-across = ξ₁ [mm]
+axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across_rate-space = ξ₂, ξ₄ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = η₂¹ = θ [rad]
@@ -731,7 +733,6 @@ figure-eta1_means = η₂¹ = θ: Ort des nächsten Punktes, längs der Bahn
 figure-eta2_means = η₂²: wie schnell sich dieser Ort längs der Bahn bewegt
 figure-u_means = u: Drehmoment jedes Motors
 figure-motor = Motor { $number }
-figure-component = Komponente { $number }
 figure-law = Wechsel des Regelgesetzes
 figure-held = festgehalten
 figure-film = Einstellungen und Verläufe

@@ -614,7 +614,9 @@ axis-phase = Phase plane: ξ₂ over ξ₁, the last 3 s
 axis-speed = speed [mm/s]
 axis-torques = torque [N m]
 axis-across = ξ₁ [mm]
+axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across_rate-space = ξ₂, ξ₄ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = η₂¹ = θ [rad]
@@ -679,7 +681,6 @@ figure-eta1_means = η₂¹ = θ: place of the closest point, along the path
 figure-eta2_means = η₂²: how fast that place moves along the path
 figure-u_means = u: torque of each motor
 figure-motor = motor { $number }
-figure-component = component { $number }
 figure-law = change of law
 figure-held = held back
 figure-film = Settings and plots
