@@ -475,7 +475,7 @@ controls-help = Help and keys
 
 wall-title = Wall
 wall-switch = A wall in the way
-wall-hint = Each robot has its own, at the same place. It pushes and never pulls; its hatched side is solid. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
+wall-hint = Each robot has its own, at the same place. On its hatched side it pushes like a stiff spring, { $stiffness } N for each millimetre and at most { $most } N, and never pulls. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
 wall-place = Wall { $name } [mm]
 wall-angle = Normal [°]
 wall-angle_hint = Direction of the free side, counter-clockwise from the right: 90 is up
