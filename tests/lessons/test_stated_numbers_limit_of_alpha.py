@@ -112,8 +112,8 @@ def test_the_limit_is_one_of_the_pose_and_of_the_modes() -> None:
     assert_stated(texts[::2], [inside(3, float(away))[0] for away in texts[1::2]])
     texts = said(
         LESSON,
-        "In other poses it is another limit: # if the link's end is # m in front of the waist"
-        " instead of #, and # at # m.",
+        "With three modes the limit is # if the link's end is # m in front of the waist instead of"
+        " #, and # at # m.",
     )
     found = [inside(3, float(away))[0] for away in (texts[1], texts[4])]
     assert_stated([texts[0], texts[3]], found)
