@@ -60,9 +60,12 @@ class Arrows:
                 arrow[None],
                 colour.linear,
                 visible=_length(arrow) >= SHORTEST,
-                **shape.sizes(_length(arrow)),
+                shaft_radius=size["shaft_radius"],
+                head_radius=size["head_radius"],
+                head_length=size["head_length"],
             )
             for i, arrow in enumerate(points)
+            for size in [shape.sizes(_length(arrow))]
         ]
 
     def draw(self, points: np.ndarray) -> None:
