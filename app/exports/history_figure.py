@@ -76,8 +76,7 @@ def history_figure(
             said = words(MEANS["level_set" if name == "xi" and level_set else name])
             axis.set_title(said, loc="left", fontsize=SMALL, color=GREY)
         if count > 1:
-            each = "figure.motor" if name == "u" else "figure.component"
-            _add_styles(axis, [words(each, number=i + 1) for i in range(count)])
+            _add_styles(axis, _line_names(name, count, words))
     entry = ROBOTS[robot]
     figure.suptitle(
         words(
@@ -143,6 +142,13 @@ def held_times(run: Trajectory) -> list[tuple[float, float]]:
     last = len(run.t) - 1
     pairs = zip(edges[::2], edges[1::2], strict=True)
     return [(float(run.t[begin]), float(run.t[min(end, last)])) for begin, end in pairs]
+
+
+def _line_names(panel: str, count: int, words: Words) -> list[str]:
+    """Names of the lines of one robot; ξ₁ and ξ₃ are the distances across a space curve."""
+    if panel == "xi":
+        return [rf"$\xi_{2 * i + 1}$" for i in range(count)]
+    return [words("figure.motor", number=i + 1) for i in range(count)]
 
 
 def _add_styles(axis: Axes, names: list[str]) -> None:

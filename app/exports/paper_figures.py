@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import AZURE, VERMILLION
+from onpath.app.common.palette import AZURE, INK, VERMILLION, WHITE
 from onpath.app.exports.figures import ShownFigure, save
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -22,6 +22,7 @@ from onpath.models.systems.beam import beam_modes
 
 COLOURS = (AZURE, VERMILLION)  # of the paper's law, and of the one beside it
 LINES = ("-", "--", ":", "-.")
+SHADES = (AZURE, AZURE.toward(INK, 0.8), AZURE.toward(WHITE, 0.45), AZURE.toward(INK, 0.4))
 AREA = 1e4  # cm² in m²: the paper's s(y) is an area
 
 
@@ -34,12 +35,14 @@ class Panel:
         values: run -> lines, shape (n, lines), in that unit.
         names: of the lines, if there are several.
         reference: run -> reference, shape (n,), or None.
+        enlarged: whether small lines are drawn larger, by the power of ten beside their name.
     """
 
     label: str
     values: Callable[[Trajectory], Array]
     names: tuple[str, ...] = ()
     reference: Callable[[Trajectory], Array] | None = None
+    enlarged: bool = False
 
 
 def draw_paper_figure(figure: PaperFigure, runs: list[Trajectory], path: Path) -> None:
@@ -115,11 +118,17 @@ def _internal(experiment: Experiment) -> list[Panel]:
     tip = 1e3 * beam_modes(modes, length).tip
     lines = tuple(f"mode {j + 1}" for j in range(modes))
     return [
-        Panel(r"$\eta_1$: $\varphi_j f_j$  [mm]", lambda run: tip * run.fields["q"][:, m:], lines),
+        Panel(
+            r"$\eta_1$: $\varphi_j f_j$  [mm]",
+            lambda run: tip * run.fields["q"][:, m:],
+            lines,
+            enlarged=True,
+        ),
         Panel(
             r"$\eta_1$: $\varphi_j \dot f_j$  [mm/s]",
             lambda run: tip * run.fields["v"][:, m:],
             lines,
+            enlarged=True,
         ),
     ]
 
@@ -137,9 +146,14 @@ def _over_time(drawn: Figure, columns: list[list[Panel]], runs: list[Trajectory]
 
 
 def _draw(axes: Axes, panel: Panel, run: Trajectory) -> None:
-    for line, style, name in zip(panel.values(run).T, LINES, (*panel.names, *LINES), strict=False):
-        label = name if panel.names else None
-        axes.plot(run.t, line, style, color=AZURE.hex, linewidth=1.4, label=label)
+    lines = panel.values(run).T
+    larger = enlargements(lines) if panel.enlarged else np.ones(len(lines))
+    shades = SHADES if panel.enlarged else [AZURE] * len(LINES)
+    looks = zip(LINES, shades, (*panel.names, *LINES), strict=False)
+    for line, factor, (style, shade, name) in zip(lines, larger, looks, strict=False):
+        told = name if factor == 1 else f"{name}, {factor:.0f}×"
+        label = told if panel.names else None
+        axes.plot(run.t, factor * line, style, color=shade.hex, linewidth=1.4, label=label)
     if panel.reference is not None:
         axes.plot(run.t, panel.reference(run), "--", color="0.25", linewidth=1.1, label="reference")
     if panel.names:
@@ -152,6 +166,13 @@ def _draw(axes: Axes, panel: Panel, run: Trajectory) -> None:
         axes.axvspan(held[0], held[-1], color="0.5", alpha=0.2, linewidth=0)
     axes.set_ylabel(panel.label)
     axes.grid(alpha=0.25)
+
+
+def enlargements(lines: Array) -> Array:
+    """Powers of ten with which no line is less than a tenth of the largest, (k, n) -> (k,)."""
+    sizes = np.abs(lines).max(axis=1)
+    sizes[sizes == 0] = sizes.max()
+    return 10.0 ** np.floor(np.log10(sizes.max() / sizes))
 
 
 def _wrapped(theta: Array) -> Array:

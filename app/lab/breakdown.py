@@ -18,7 +18,7 @@ SPAN, LASTS = 0.3, 6.0
 RESTS = 1.5
 """How long its end is shown [s]."""
 LARGER = 5.0
-"""Magnification of the bending meanwhile, at least."""
+"""Magnification of the bending meanwhile, at least, of a robot that bends."""
 WELL = 1.0
 """Simulated time after which settings under which no robot has stopped have done well [s]."""
 
@@ -105,7 +105,8 @@ class Breakdown:
         begin = max(end - SPAN, session.time - session.history.span())
         self._replay = _Replay(begin, end, session.exaggeration, session.running)
         session.running, session.viewing = False, begin
-        session.exaggeration = max(session.exaggeration, LARGER)
+        if session.entry.flexible_link is not None:
+            session.exaggeration = max(session.exaggeration, LARGER)
         return True
 
     def interrupt(self, session: Session) -> bool:

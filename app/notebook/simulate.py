@@ -74,9 +74,10 @@ def simulate(
         push: (from, to, place): interval, [s], in which a hand, modelled as a spring and a damper,
             pulls the end-point towards a place in the path's plane, shape (2,), [m]; see
             models/systems/forces.py.
-        wall: (from, to, place, angle): interval in which there is a wall, [s]; a point of its
-            surface in the path's plane, shape (2,), [m]; angle of its normal, which points to the
-            free side, with the first axis, [rad].
+        wall: (from, to, place, angle): interval in which there is a wall, [s], a stiff spring with
+            a limited force, see models/systems/forces.py; a point of its surface in the path's
+            plane, shape (2,), [m]; angle of its normal, which points to the free side, with the
+            first axis, [rad].
         reverse_at: time at which the desired speed changes sign, [s]; 0: never.
         profile: desired speed over time, linear between (time, speed) pairs, [s] and [rad/s],
             instead of `speed` and `ramp`; it is fed forward, as in (19).

@@ -71,6 +71,15 @@ def _numbered(symbol: str, field: str) -> Callable[[Fields], list[str]]:
     return names
 
 
+def _of_xi(field: str, *symbols: str) -> Callable[[Fields], list[str]]:
+    """A single line is named after its robot; across a space curve there are two, with symbols."""
+
+    def names(fields: Fields) -> list[str]:
+        return list(symbols) if dict(fields)[field] > 1 else [""]
+
+    return names
+
+
 def _alone(_: Fields) -> list[str]:
     """A single line is named after its robot."""
     return [""]
@@ -85,8 +94,8 @@ MORE = {
         PHASE,
         Plot("speed", "speed", 1e3, _alone, least=(0.0, 10.0)),
         Plot("torques", "u", 1.0, _numbered("u", "u"), least=(-0.01, 0.01)),
-        Plot("across", "xi", 1e3, _numbered("ξ", "xi"), least=(-1.0, 1.0)),
-        Plot("across_rate", "xi_rate", 1e3, _numbered("ξ'", "xi_rate"), least=(-10.0, 10.0)),
+        Plot("across", "xi", 1e3, _of_xi("xi", "ξ₁", "ξ₃"), least=(-1.0, 1.0)),
+        Plot("across_rate", "xi_rate", 1e3, _of_xi("xi_rate", "ξ₂", "ξ₄"), least=(-10.0, 10.0)),
         Plot("place", "theta", 1.0, _alone, least=(-0.1, 0.1)),
         Plot("rate", "theta_rate", 1.0, _alone, least=(-0.1, 0.1)),
         Plot("modes", "modes", 1e3, _numbered("f", "modes"), least=(-0.01, 0.01)),
@@ -137,7 +146,10 @@ class LivePlot:
         nothing = np.full(2, np.nan)
         lines = len(self._series()) - 1
         self._empty = (np.array([0.0, PLOT_WINDOW]), *[nothing] * lines)
-        self._title = words(f"axis.{plot.name}{'-level_set' if in_level_set else ''}")
+        kind = (
+            "-level_set" if in_level_set else "-space" if self._has_xi and self._names[1:] else ""
+        )
+        self._title = words(f"axis.{plot.name}{kind}")
         self._height = height if lines <= PER_ROW else height - ROW
         self._least, self._axes = least, LARGE if large else AXES
         self._handle = self._chart(None)

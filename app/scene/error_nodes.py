@@ -8,17 +8,16 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import END, MARKER, Motion
+from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.moving_lines import have_moved
 from onpath.app.scene.stage import Stage
-from onpath.app.viser_adapter.frame_channel import update_node
 
 if TYPE_CHECKING:
     import viser
 
 ARROWS = {"e": palette.VERMILLION, "d": palette.AZURE}
 """Name of each error, and its colour: that of the robot whose law makes it zero."""
-SHORTEST = 2e-3
-"""Errors below this are drawn as nothing [m]."""
+SHAPE = ArrowShape(shaft_radius=0.0018, head_radius=0.0055, head_length=0.012)
 CLOCK = 0
 """Index of the robot whose marker is the timetable's point."""
 
@@ -30,14 +29,7 @@ class ErrorNodes:
         self._origins, self._toward = stage.origins, -0.012 * stage.away
         self._drawn = self._points(motion)
         self._arrows = [
-            scene.add_arrows(
-                f"/show/errors/{name}",
-                self._drawn[:, i],
-                colour.linear,
-                shaft_radius=0.0018,
-                head_radius=0.0055,
-                head_length=0.012,
-            )
+            Arrows(scene, f"/show/errors/{name}", self._drawn[:, i], colour, SHAPE)
             for i, (name, colour) in enumerate(ARROWS.items())
         ]
 
@@ -48,7 +40,7 @@ class ErrorNodes:
             return
         self._drawn = points
         for i, arrow in enumerate(self._arrows):
-            update_node(arrow, points=points[:, i])
+            arrow.draw(points[:, i])
 
     def remove(self) -> None:
         """Remove all nodes."""
@@ -62,7 +54,7 @@ class ErrorNodes:
         for robot, origin in enumerate(self._origins):
             end = motion.point(robot, END)
             goals = clock, nearest(motion.path.points, end)
-            pairs.append(np.stack([_arrow(end, goal) for goal in goals]) + origin + self._toward)
+            pairs.append(np.stack([(end, goal) for goal in goals]) + origin + self._toward)
         return np.stack(pairs)
 
 
@@ -73,10 +65,3 @@ def nearest(points: np.ndarray, place: np.ndarray) -> np.ndarray:
     share = np.clip(((place - begin) * step).sum(1) / length, 0.0, 1.0)
     found = begin + share[:, None] * step
     return found[((found - place) ** 2).sum(1).argmin()]
-
-
-def _arrow(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """An arrow, or one too short to be seen if there is no error."""
-    if np.linalg.norm(end - begin) >= SHORTEST:
-        return np.stack([begin, end])
-    return np.stack([begin, begin + [0.0, 0.0, 1e-6]])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.stage import Stage, add_text
 from onpath.lessons.action_schema import SceneMark
 from onpath.models.systems.robots import Robot
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 BEYOND = 0.014
 """How far behind an arrow's tail its text stands [m]."""
+SHAPE = ArrowShape(shaft_radius=0.0016, head_radius=0.005, head_length=0.012)
 
 
 class MarkNodes:
@@ -44,16 +46,8 @@ class MarkNodes:
                     name = f"/show/marks/{bench}/{i}"
                     self._nodes.append(add_text(scene, name, mark.text, place, letters))
         if arrows:
-            self._nodes.append(
-                scene.add_arrows(
-                    "/show/mark_arrows",
-                    np.stack(arrows),
-                    stage.tones.line.linear,
-                    shaft_radius=0.0016,
-                    head_radius=0.005,
-                    head_length=0.012,
-                )
-            )
+            drawn = Arrows(scene, "/show/mark_arrows", np.stack(arrows), stage.tones.line, SHAPE)
+            self._nodes.extend(drawn.nodes)
 
     def remove(self) -> None:
         """Remove all nodes."""

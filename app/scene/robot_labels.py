@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.lab.snapshots.snapshot import END, Motion
+from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.label_geometry import axes_of, label_function
 from onpath.app.scene.moving_lines import MOVED, MovingLines
 from onpath.app.scene.stage import Stage, add_text
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 LETTERS, LARGE = 0.024, 0.036
 """Height of the letters, and on a narrow screen [m]."""
+AXIS = ArrowShape(shaft_radius=0.0014, head_radius=0.005, head_length=0.013)
 LINE = 0.0018
 """Thickness of the arcs [m]."""
 PAST = 0.016
@@ -94,15 +96,8 @@ class RobotLabels:
     def _add_axes(self, scene: viser.SceneApi) -> None:
         axes = axes_of(self._robot)
         everywhere = (self._origins[:, None, None] + axes).reshape(-1, 2, 3)
-        arrows = scene.add_arrows(
-            "/show/axes",
-            everywhere,
-            self._tones.line.linear,
-            shaft_radius=0.0014,
-            head_radius=0.005,
-            head_length=0.013,
-        )
-        self._nodes.append(arrows)
+        arrows = Arrows(scene, "/show/axes", everywhere, self._tones.line, AXIS)
+        self._nodes.extend(arrows.nodes)
         for i, (begin, end) in enumerate(everywhere):
             way = (end - begin) / np.linalg.norm(end - begin)
             number = i % len(axes) + 1

@@ -11,6 +11,7 @@ import numpy as np
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Counts, RobotView
 from onpath.app.scene import meshes
+from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.contact_nodes import FORCE_SHOWN
 from onpath.app.scene.poses import Poses, difference, trace_segments
 from onpath.app.scene.stage import IDENTITY, Stage, add_copies
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
 NEGLIGIBLE = 1e-6
 """Changes of lengths, rotations and forces below this are not drawn [m, N]."""
+FORCE = ArrowShape(shaft_radius=0.0032, head_radius=0.0085, head_length=0.018)
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
 """Depth of the trace behind the path, and of older laps behind newer ones [m]."""
@@ -171,7 +173,9 @@ class RobotNodes:
         self._traces = _add_traces(scene, stage)
         self._trace_origins = _trace_origins(stage.origins)
         self._traced = self._trace_origins
-        self._add_force(scene, stage)
+        nowhere = np.zeros((len(bases), 2, 3))
+        self._arrows = Arrows(scene, "/force", nowhere, stage.tones.force, FORCE)
+        self._acting = False
         self._moving = NodeGroup(
             [
                 *(each for bars in self._bars for each in bars.properties(poses)),
@@ -236,12 +240,10 @@ class RobotNodes:
             update_node(self._parts, batched_wxyzs=turns)
         forces = poses["forces"]
         acts = max(map(abs, forces.ravel().tolist())) > FORCE_SHOWN
-        if acts:
+        if acts or self._acting:
             tails = poses["tips"] - [0.0, 0.01, 0.0]
-            arrows = np.stack([tails, tails + self._force_scale * forces], axis=1)
-            update_node(self._arrows, points=arrows)
-        if self._acting != acts:
-            self._acting = self._arrows.visible = acts
+            self._arrows.draw(np.stack([tails, tails + self._force_scale * forces], axis=1))
+        self._acting = acts
 
     def hide(self, hidden: bool) -> None:
         """Hide all that moves but the forces, or show it again."""
@@ -255,15 +257,3 @@ class RobotNodes:
         if 0.0 < difference(points, self._traced) < np.inf:  # false if there is a NaN
             self._traced = points
             update_node(self._traces, points=points)
-
-    def _add_force(self, scene: viser.SceneApi, stage: Stage) -> None:
-        self._acting = False
-        self._arrows = scene.add_arrows(
-            "/force",
-            np.zeros((len(self._bases), 2, 3)),
-            stage.tones.force.linear,
-            shaft_radius=0.0032,
-            head_radius=0.0085,
-            head_length=0.018,
-            visible=False,
-        )

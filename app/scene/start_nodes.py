@@ -9,6 +9,7 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
+from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.pointer import DragByOffset, Pointer
 from onpath.app.scene.stage import add_copies
 from onpath.app.viser_adapter.frame_channel import update_node
@@ -22,8 +23,7 @@ RADIUS = 0.01
 """Radius of the ball [m]."""
 SECONDS = 0.15
 """Length of the arrow: the way in this time [s]."""
-LEAST = 1e-3
-"""Shortest arrow that is drawn [m]."""
+SHAPE = ArrowShape(shaft_radius=0.0028, head_radius=0.007, head_length=0.014)
 BEFORE = np.array([0.0, -0.012, 0.0])
 """Offset towards the viewer, so that no control point covers the ball [m]."""
 
@@ -48,7 +48,7 @@ class StartNodes:
         self._scene, self._origins = scene, origins
         self._drag, self._on_move = DragByOffset(pointer), on_move
         self._ball: viser.BatchedMeshHandle | None = None
-        self._arrows: viser.ArrowsHandle | None = None
+        self._arrows: Arrows | None = None
         self._start = np.zeros((2, 3))
 
     def show(self, visible: bool) -> None:
@@ -63,15 +63,7 @@ class StartNodes:
                 shadow=False,
             )
             self._ball.on_drag("left")(self._dragged)
-            self._arrows = self._scene.add_arrows(
-                "/start/velocity",
-                self._ways,
-                palette.GREEN.linear,
-                shaft_radius=0.0028,
-                head_radius=0.007,
-                head_length=0.014,
-                visible=self._moves,
-            )
+            self._arrows = Arrows(self._scene, "/start/velocity", self._ways, palette.GREEN, SHAPE)
         elif not visible and self._ball is not None and self._arrows is not None:
             self._ball.remove()
             self._arrows.remove()
@@ -84,9 +76,7 @@ class StartNodes:
         is_drawn, self._start = np.array_equal(start, self._start), start
         if not is_drawn and self._ball is not None and self._arrows is not None:
             update_node(self._ball, batched_positions=self._places)
-            update_node(self._arrows, points=self._ways)
-            if self._arrows.visible != self._moves:
-                self._arrows.visible = self._moves
+            self._arrows.draw(self._ways)
 
     @property
     def _places(self) -> np.ndarray:
@@ -96,10 +86,6 @@ class StartNodes:
     def _ways(self) -> np.ndarray:
         way = SECONDS * (self._start[1] - self._start[0])
         return np.stack([self._places, self._places + way], axis=1)
-
-    @property
-    def _moves(self) -> bool:
-        return bool(np.linalg.norm(SECONDS * (self._start[1] - self._start[0])) > LEAST)
 
     async def _dragged(self, event: DragEvent) -> None:
         """Mouse callback; a coroutine without await, because viser runs those in order."""

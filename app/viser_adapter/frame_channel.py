@@ -37,10 +37,10 @@ _ready: WeakKeyDictionary[asyncio.AbstractEventLoop, list[FrameChannel]] = WeakK
 """Channels with pending messages, by the event loop that sends them."""
 
 
-def update_node(handle: Any, **given: np.ndarray | str) -> None:
-    """Set float32 arrays and texts of a scene node, without viser's checks of types and changes."""
+def update_node(handle: Any, **given: np.ndarray | str | float) -> None:
+    """Set float32 arrays, numbers and texts of a scene node, without viser's checks of changes."""
     values = {
-        name: value if isinstance(value, str) else np.array(value, np.float32, order="C")
+        name: value if isinstance(value, str | float) else np.array(value, np.float32, order="C")
         for name, value in given.items()
     }
     for name, value in values.items():

@@ -533,7 +533,7 @@ controls-help = Hilfe und Tasten
 
 wall-title = Wand
 wall-switch = Eine Wand im Weg
-wall-hint = Jeder Roboter hat seine eigene, an derselben Stelle. Sie drückt, aber zieht nie; die schraffierte Seite ist fest. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
+wall-hint = Jeder Roboter hat seine eigene, an derselben Stelle. Auf ihrer schraffierten Seite drückt sie wie eine steife Feder, { $stiffness } N für jeden Millimeter und höchstens { $most } N, und zieht nie. Zieh sie in der Szene; zieh an einem gelben Ende, um sie zu drehen. Tasten: M, I J K L, T, V
 wall-place = Wand { $name } [mm]
 wall-angle = Normale [°]
 wall-angle_hint = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus: 90 ist oben
@@ -597,7 +597,7 @@ gains-poles_at = Pole { $poles } 1/s bei θ = { $place }°; sie ändern sich lä
 gains-identify = M und b identifizieren
 gains-identify_hint = Schätzt M und b aus den letzten 3 s des rechten Roboters und setzt sie in das Modell beider Regler ein.
 
-## Der biegsame Balken
+## Der elastische Balken
 
 flexible-title = Biegsamer Balken
 flexible-pull = Zugebene
@@ -672,7 +672,9 @@ axis-phase = Phasenebene: ξ₂ über ξ₁, die letzten 3 s
 axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]
 axis-across = ξ₁ [mm]
+axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across_rate-space = ξ₂, ξ₄ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = η₂¹ = θ [rad]
@@ -737,7 +739,6 @@ figure-eta1_means = η₂¹ = θ: Ort des nächsten Punktes, längs der Bahn
 figure-eta2_means = η₂²: wie schnell sich dieser Ort längs der Bahn bewegt
 figure-u_means = u: Drehmoment jedes Motors
 figure-motor = Motor { $number }
-figure-component = Komponente { $number }
 figure-law = Wechsel des Regelgesetzes
 figure-held = festgehalten
 figure-film = Einstellungen und Verläufe
@@ -797,9 +798,9 @@ glossary-to_words = Glossar: von den Fachwörtern zu den Wörtern der Lektionen
 glossary-lesson = (Lektion { $number })
 help-close = Schließen
 help-text =
-    Drücke **Beide festhalten** und sieh zu: Den linken Roboter (orange) reißt es mit der
-    Folgeregelung von der Bahn, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau) wartet
-    mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
+    Drücke **Beide festhalten** und sieh zu: Der linke Roboter (orange) wird mit der
+    Folgeregelung von der Bahn gerissen, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau)
+    wartet mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
 
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
     - **Ziehe an einer kleinen grauen Kugel**, um die Bahn zu verbiegen, während es läuft.
@@ -820,7 +821,8 @@ help-text =
 ## Was das Labor von selbst sagt
 
 say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurücksetzen beginnt von vorn.
-say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
+say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam.
+say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
 say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
@@ -916,7 +918,7 @@ path-figure-of-eight = liegende Acht
 machine-five_bar-label = Fünfgelenk
 machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrechten Ebene.
 
-machine-flexible-label = Fünfgelenk mit biegsamem Glied
+machine-flexible-label = Fünfgelenk mit elastischem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
 
 machine-spatial_arm-label = Raumarm
@@ -978,7 +980,7 @@ parameter-torque_limit-label = Motorgrenze
 parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
 
 parameter-at_limit-label = An der Grenze
-parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolge gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
+parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolgeregelung gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
 parameter-at_limit-option-across_first = quer zuerst
 parameter-at_limit-option-slow_down = langsamer
 parameter-at_limit-option-cut = abschneiden
@@ -1032,7 +1034,7 @@ parameter-strain_noise-label = Rauschen der Dehnmessstreifen
 parameter-strain_noise-help = Standardabweichung der Durchbiegung an der Spitze, wie die Dehnmessstreifen sie messen
 
 parameter-control_rate-label = Reglertakt
-parameter-control_rate-help = wie oft der Regler eingreift, Hz
+parameter-control_rate-help = wie oft der Regler eingreift, Hz. Die Pole bei den Verstärkungen gelten für eine Beschleunigung, die dazwischen gehalten wird; gehalten wird das Drehmoment, sodass das größte K2 bei 50 und 100 Hz um 1 bis 3 % über ihrem liegt
 
 parameter-error_inertia-label = Fehler der Trägheit
 parameter-error_inertia-help = um so viel liegen die Trägheiten a1, a2 und a3 im Modell des Reglers daneben
@@ -1371,7 +1373,7 @@ standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
 ## Der Kurs als statische Seiten: assets/site, app/exports/site
 
-site-title = OnPath: Bahnfolge ist nicht Trajektorienfolge
+site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
 site-lab = Probiere es aus
 site-skip = Zum Text
@@ -1414,7 +1416,7 @@ site-control-past = das Zurückblicken
 site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
-site-control-flexible = Ausgang, Zugebene und Vergrößerung des biegsamen Balkens
+site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens

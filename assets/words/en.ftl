@@ -481,7 +481,7 @@ controls-help = Help and keys
 
 wall-title = Wall
 wall-switch = A wall in the way
-wall-hint = Each robot has its own, at the same place. It pushes and never pulls; its hatched side is solid. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
+wall-hint = Each robot has its own, at the same place. On its hatched side it pushes like a stiff spring, { $stiffness } N for each millimetre and at most { $most } N, and never pulls. Drag it in the scene; drag a yellow end to turn it. Keys: M, I J K L, T, V
 wall-place = Wall { $name } [mm]
 wall-angle = Normal [°]
 wall-angle_hint = Direction of the free side, counter-clockwise from the right: 90 is up
@@ -620,7 +620,9 @@ axis-phase = Phase plane: ξ₂ over ξ₁, the last 3 s
 axis-speed = speed [mm/s]
 axis-torques = torque [N m]
 axis-across = ξ₁ [mm]
+axis-across-space = ξ₁, ξ₃ [mm]
 axis-across_rate = ξ₂ [mm/s]
+axis-across_rate-space = ξ₂, ξ₄ [mm/s]
 axis-across-level_set = ξ₁ = s(y) [mm²]
 axis-across_rate-level_set = ξ₂ = s'(y) [mm²/s]
 axis-place = η₂¹ = θ [rad]
@@ -685,7 +687,6 @@ figure-eta1_means = η₂¹ = θ: place of the closest point, along the path
 figure-eta2_means = η₂²: how fast that place moves along the path
 figure-u_means = u: torque of each motor
 figure-motor = motor { $number }
-figure-component = component { $number }
 figure-law = change of law
 figure-held = held back
 figure-film = Settings and plots
@@ -823,7 +824,8 @@ worksheet-learnt = What I thought before, and think now:
 ## What the lab says by itself
 
 say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the run again.
-say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
+say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
+say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
 say-deviates = The path is smooth: in places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.

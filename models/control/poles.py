@@ -1,8 +1,11 @@
 """Poles of the linearized closed loop, including the sampling and the computing delay.
 
 After exact linearization every channel of the normal form (17) is a double integrator under the
-laws (18) or (19), with the control held over the sampling interval. Its poles therefore follow from
-the gains, the control rate and the delay alone.
+laws (18) or (19). Its poles are computed for an acceleration that is held over the sampling
+interval, so they follow from the gains, the control rate and the delay alone. What a robot holds is
+torque: over the interval, friction and the other terms that the model cancels go on changing. At 50
+and 100 Hz the largest K2 of the five-bar is therefore 1 to 3 % above the one of the poles, and 3 to
+7 % with a look-ahead of half an interval.
 """
 
 from __future__ import annotations

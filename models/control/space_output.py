@@ -1,6 +1,6 @@
-"""The virtual output (θ, ξ1, ξ2) of a space curve: coordinates along and across it in R³.
+"""The virtual output (θ, ξ1, ξ3) of a space curve: coordinates along and across it in R³.
 
-ξ1 and ξ2 are the components of y - σ along two unit normals that depend on the tangent T alone:
+ξ1 and ξ3 are the components of y - σ along two unit normals that depend on the tangent T alone:
 
     n1 = e3 × σ' / |e3 × σ'|    to the left in the plan view,
     n2 = T × n1                 as far up as a normal can point.
@@ -9,7 +9,7 @@ They exist where the tangent is not vertical, that is wherever the plan view has
 return to themselves on every closed curve. A rotation-minimising frame does not: after one turn it
 is rotated by an angle that depends on the whole curve (its holonomy), so that ξ would have several
 values. The price is a rotation about T, at the rate w per radian of θ, whose terms appear below.
-They are exact, so the dynamics are still ξ'' = v_perp; on a planar path w = 0, and (ξ1, ξ2) are its
+They are exact, so the dynamics are still ξ'' = v_perp; on a planar path w = 0, and (ξ1, ξ3) are its
 signed distance and its height.
 
 Source: eqs. (7)-(10) with p = 3.
@@ -83,10 +83,10 @@ def space_output(
 
         θ'   = σ' · y' / D,
         θ''  = (σ' · y'' + 2 θ' σ'' · y' - θ'² (3 σ' · σ'' - e · σ''')) / D,
-        ξ1'  = n1 · y' + θ' w ξ2,
-        ξ2'  = n2 · y' - θ' w ξ1,
-        ξ1'' = n1 · y'' + θ' n1' · y' + (θ'' w + θ'² dw/dθ) ξ2 + θ' w ξ2',
-        ξ2'' = n2 · y'' + θ' n2' · y' - (θ'' w + θ'² dw/dθ) ξ1 - θ' w ξ1'.
+        ξ1'  = n1 · y' + θ' w ξ3,
+        ξ3'  = n2 · y' - θ' w ξ1,
+        ξ1'' = n1 · y'' + θ' n1' · y' + (θ'' w + θ'² dw/dθ) ξ3 + θ' w ξ3',
+        ξ3'' = n2 · y'' + θ' n2' · y' - (θ'' w + θ'² dw/dθ) ξ1 - θ' w ξ1'.
 
     D is bounded from below as in the plane.
 

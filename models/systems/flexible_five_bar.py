@@ -222,8 +222,9 @@ def _unit_modes(s: _Symbols) -> _Dynamics:
     these equations are Lagrange's for small deflections, as a test shows. With the shapes of this
     project, the units of ρ Ψ q3'' are not those of f'', the waist acts on the modes ρ times (in SI)
     as strongly as in Lagrange's equations, the mass matrix is not symmetric, and energy is not
-    conserved. This reading is kept only because, with ρ = 0.2, it reproduces the paper's figures 6
-    and 7 with the actual tip. Like (20), it has no friction in the joints: b1 to b3 do not act.
+    conserved. This reading is kept only because, with ρ = 0.2 and the actual tip, it shows what the
+    paper's text says of figures 6 and 7. Like (20), it has no friction in the joints: b1 to b3 do
+    not act.
 
     Source: eqs. (20)-(21), with Ω_j = ρ (ω_j² f_j + 2 ζ ω_j f_j').
     """

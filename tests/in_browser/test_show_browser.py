@@ -22,7 +22,7 @@ from tests.support.browser import Tab, wait_for
 pytestmark = pytest.mark.thorough
 
 WINDOW = {"width": 1280, "height": 800}
-NODES = ("/show/arcs", "/show/axes", "/show/tube", "/show/grid", "/show/rank/left")
+NODES = ("/show/arcs", "/show/axes_0", "/show/tube", "/show/grid", "/show/rank/left")
 
 
 @pytest.fixture

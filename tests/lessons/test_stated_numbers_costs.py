@@ -96,6 +96,28 @@ def test_more_gain_until_it_is_fatal() -> None:
     assert_stated(stated, [float(survives)])
 
 
+def test_too_heavy_a_model_costs_stability_where_no_accuracy_was_lost() -> None:
+    more, gain, interval, factor, stopped = said(
+        "06",
+        "K1 = 1600 and K2 = 80, make it $1 - #\\cdot #\\cdot # = #$: started with them, the"
+        " follower is stopped after # s.",
+    )
+    assert_stated([factor], [1 - value(more) * value(gain) * value(interval)])
+    stage: dict[str, Any] = {"K1": 1600, "K2": value(gain), **PD}
+    heavy: dict[str, Any] = {"error_M11": 40, "error_M22": 40}
+    slow: dict[str, Any] = {"control_rate": round(1 / value(interval))}
+    lost = play(8.0, [], **stage, **heavy, **slow)["follower"]
+    assert_stated([stopped], [float(lost.t[-1])])
+    (never,) = said("06", "the same gains and the same 50 Hz it is never more than # mm off")
+    assert_stated([never], [play(8.0, [], **stage, **slow)["follower"].largest(0, 8)])
+    (fast,) = said("06", "A thousand times a second, the model too heavy is # mm off at most")
+    assert_stated([fast], [play(8.0, [], **stage, **heavy)["follower"].largest(0, 8)])
+    for error in (40, -40):  # "with these gains, still a stable one", "stands that, too"
+        wrong: dict[str, Any] = {"error_M11": error, "error_M22": error, **PD}
+        off = play(20.0, [], **wrong)["follower"]
+        assert off.t[-1] > 19.9 and off.largest(10, 20) < 5
+
+
 def test_arm_that_nobody_has_identified() -> None:
     wrong: dict[str, Any] = {"error_M11": -40, "error_M22": -50, "error_b1": 30, "error_b2": -30}
     off = play(8.0, [], **wrong, **PD)["follower"].largest(3, 8)

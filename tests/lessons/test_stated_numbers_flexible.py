@@ -51,7 +51,7 @@ def test_a_quiet_output() -> None:
     robot.pull(20, 0).run(2.5).let_go().run(8.0)
     (energy,) = said(LESSON, "a pull of half a second that takes it to about # mJ")
     assert_stated([energy], [largest(robot.energy, 2, 2.5)])
-    (quiet,) = said(LESSON, "after 3 s its offset ξ₁ is below # mm and stays there")
+    (quiet,) = said(LESSON, "after 3 s ξ₁ and ξ₃ are below # mm and stay there")
     assert largest(robot.across, 3, 8) < value(quiet)
     swing = [largest(robot.deflection, begin, begin + 0.25) for begin in (3.0, 5.0, 7.75)]
     texts = said(
@@ -98,7 +98,7 @@ def test_past_the_limit() -> None:
     assert largest(robot.energy, 3, end) > 1e6 * before
     (jolt,) = said(LESSON, "There is a jolt at 3 s, # mm")
     assert_stated([jolt], [largest(robot.across, 3, 3.25)])
-    (late,) = said(LESSON, "Just after 5 s the output is at most # mm off")
+    (late,) = said(LESSON, "just after 5 s the output is at most # mm off")
     assert_stated([late], [largest(robot.across, 5, 5.25)])
     (left,) = said(LESSON, "You had such a plot at 5 s of the second run, # s before the lab")
     assert_stated([left], [(robot.stopped or 0.0) - 5])

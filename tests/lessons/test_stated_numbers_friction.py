@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.parameters import specs
 from tests.support.stated_numbers import (
     Motion,
     Run,
@@ -161,6 +163,30 @@ def test_formulas_of_jump_and_wait() -> None:
     )
 
 
+def test_the_formula_of_the_jump_holds_with_the_damping_that_suits_the_spring() -> None:
+    stated = said(
+        LESSON,
+        "From side to side it is # mm with K2 = #. With less damping the arm slides past the place"
+        " where the spring has taken up the surplus, as any swing does: # mm with K2 = #, and # mm"
+        " with K2 = #. With more it creeps there, and the integral turns back meanwhile: # mm with"
+        " K2 = #. And with K3 = # the integral pushes noticeably during the slip: # mm.",
+    )
+    for jump, damping in zip(stated[:8:2], stated[1:8:2], strict=True):
+        assert_stated([jump], [sum(heights(top(K2=value(damping)), 10))])
+    assert_stated(stated[9:], [sum(heights(top(K3=value(stated[8])), 10))])
+    dampings = [10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0, 200.0]
+    jumps = [sum(heights(top(K2=damping), 10)) for damping in dampings]
+    assert jumps == sorted(jumps, reverse=True)  # "Less damping makes the jumps higher"
+    still, sliding = (
+        said(LESSON, rf"$f_{letter} = #$ m/s²{after}")[0]
+        for letter, after in (("s", " of it."), ("c", "."))
+    )
+    for stiff in (200.0, 300.0, 400.0, 600.0):  # takeaway: K2 = 2 √K1, a slow integral
+        run = top(60.0, K1=stiff, K2=2 * stiff**0.5, K3=1000.0)
+        surplus = 1e3 * (value(still) - value(sliding)) / stiff
+        assert sum(heights(run, 20)) == pytest.approx(surplus, rel=0.05), stiff
+
+
 def test_neither_cause_alone_makes_it_jump() -> None:
     assert stands(top(K3=0.0), 2.0)
     level = top(60.0, stiction=0.05)
@@ -180,6 +206,9 @@ def test_table_of_remedies() -> None:
     assert_stated(hunts("| K3 = 1000 | hunts, ±# mm, period # s |", slow), [period(slow, 7)])
     row = "more damping, K2 = 80 | hunts, ±# mm, period # s |"
     assert_stated(hunts(row, damped), [period(damped, 10)])
+    loose = top(K2=10.0)
+    row = "less damping, K2 = 10 | hunts, ±# mm, period # s |"
+    assert_stated(hunts(row, loose), [period(loose, 10)])
     zone = typed("-K1*xi - K2*dxi - (K3*int_xi if abs(xi) > 0.001 else 0)")
     level = top(stiction=0.05)
     for row, run in (
@@ -194,8 +223,12 @@ def test_table_of_remedies() -> None:
     assert_stated([within], [shaken.largest(10, 20)])
     torque = float(shaken.torque[10000:].max())
     assert_stated(said(LESSON, "Shaking (*dither*): # N m from the motors"), [torque])
-    stated = said(LESSON, "that took it from ±# mm to ±# mm:")
+    stated = said(LESSON, "that took it from ±# mm to ±# mm, and K2 = 200, the most that the lab")
     assert_stated(stated, [max(heights(run, 10)) for run in (same, damped)])
+    (left,) = said(LESSON, "the most that the lab allows, leaves ±# mm:")
+    most = top(K2=200.0)
+    assert specs(FiveBarParameters)["K2"].high == 200.0
+    assert_stated([left], [max(heights(most, 10))])
 
 
 def test_stiff_spring_is_quiet_for_half_a_minute_and_then_hunts() -> None:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from onpath.app.lab.lab import Lab
 from onpath.models.arrays import Array
+from onpath.models.control.rank_test import decoupling_matrices
 from onpath.models.systems.beam import beam_modes
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
+from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
+from tests.support.lab import store
 from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme
 
 pytestmark = pytest.mark.thorough
@@ -87,6 +93,53 @@ def test_the_limit_is_one_of_the_damping() -> None:
     )
     assert_stated(texts, [stiff, heavy])
     assert_stated(stated_in_readme("with this damping, it is stable up to #."), [limit(3, equal)])
+
+
+def inside(modes: int, away: float, alpha: float = 1.0) -> tuple[float, float]:
+    """Critical α, and the largest real part of the exponents, with the link's end at d, at rest."""
+    own = FlexibleParameters(modes=modes, d=away)
+    zero, robot = flexible_zero_dynamics(modes), robot_for(own)
+    q, plant = robot.rest(robot.frame.lift(np.zeros(2))), robot.plant(own)
+    exponents = zero.exponents(q, zero.with_alpha(plant, np.array([alpha])))
+    return zero.critical_alpha(q, plant), float(exponents[0, 0].real)
+
+
+def test_the_limit_is_one_of_the_pose_and_of_the_modes() -> None:
+    texts = stated_in_readme(
+        "with three modes, the limit of `alpha` is # at d = # m, # at # m, # at # m, which is home,"
+        " and # at # m."
+    )
+    assert_stated(texts[::2], [inside(3, float(away))[0] for away in texts[1::2]])
+    texts = said(
+        LESSON,
+        "With three modes the limit is # if the link's end is # m in front of the waist instead of"
+        " #, and # at # m.",
+    )
+    found = [inside(3, float(away))[0] for away in (texts[1], texts[4])]
+    assert_stated([texts[0], texts[3]], found)
+    assert all(inside(modes, 0.5)[1] > 0 for modes in range(1, 7))  # "with one to six modes"
+    first, last = map(float, stated_in_readme("From # to # m, `alpha=1` is unstable with two"))
+    for away in np.arange(first, last + 1e-9, 0.025):
+        assert all(inside(modes, float(away))[1] > 0 for modes in range(2, 7)), away
+    *stable, unstable = map(
+        float, stated_in_readme("it is stable at # m and # m, and unstable from # m on.")
+    )
+    assert all(inside(1, away)[1] < 0 for away in stable)
+    assert all(inside(1, float(away))[1] > 0 for away in np.arange(unstable, 0.66, 0.025))
+
+
+@pytest.mark.parametrize("alpha", [0.0, 0.75, 1.0])
+def test_the_rank_is_full_on_the_path_of_the_lesson_for_mark_and_tip(alpha: float) -> None:
+    """Theorem 2.1 holds for the output whose zero dynamics are unstable as well."""
+    own = replace(ROBOTS["flexible"].lab, alpha=alpha)
+    robot, path = robot_for(own), Lab(store(), ROBOTS["flexible"]).session.editor.curve
+    places = path.at(np.linspace(0, 2 * np.pi, 120, endpoint=False))
+    q = np.stack([robot.rest(robot.frame.lift(z)) for z in places])
+    matrices = decoupling_matrices(robot, own, q)
+    signs = np.sign(np.linalg.det(matrices))
+    assert (signs == signs[0]).all()  # nowhere between the places, either
+    values = np.linalg.svd(matrices, compute_uv=False)
+    assert (values[:, -1] / values[:, 0]).min() > 0.02
 
 
 def frequencies(alpha: float, **changes: float) -> Array:

@@ -7,6 +7,7 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+import onpath
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.comparison import Contest, compare
@@ -42,6 +43,23 @@ def test_a_ramp_of_the_speed_removes_the_start_up_error() -> None:
     ]
     assert_stated([without], off[:1])
     assert off[1] < value(less)
+
+
+def test_a_wall_gives_way() -> None:
+    stiffness, most = stated_in_readme("with # N for each millimetre and at most # N.")
+    grip = FIVE_BAR.make(FIVE_BAR.lab).grip
+    assert_stated([stiffness, most], [grip.wall.stiffness / 1e3, grip.wall.largest])
+    (deep,) = stated_in_readme("slides along it, # mm deep in a wall through the circle's centre")
+    wall = (2.0, 10.0, (0.0, 0.0), 0.0)
+    runs = [
+        onpath.simulate(law=law, wall=wall, duration=10, K1=gain, K2=2 * gain**0.5)
+        for law, gain in ((TRACKER, 400.0), (FOLLOWER, 400.0), (TRACKER, 2500.0))
+    ]
+    tracker, follower, stiff = (-1e3 * float(run.y[2500:, 0].min()) for run in runs)
+    assert_stated([deep], [tracker])
+    assert 0 < follower < 1 and np.ptp(runs[1].theta[5000:]) < 1e-3  # "waits at it"
+    assert np.ptp(np.unwrap(runs[0].theta[5000:])) > 2 * np.pi  # "and goes on"
+    assert stiff > value(most) / value(stiffness)  # the force is at its limit
 
 
 def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,6 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.poles import channels
 from onpath.models.systems.five_bar import inverse_kinematics, load_links
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.parameters import specs
 from tests.support.rig import jacobian
 from tests.support.stated_numbers import (
     WORST,
@@ -47,6 +48,20 @@ def turning_points(across: np.ndarray) -> list[float]:
 
 
 # Lesson 1
+
+
+def test_no_gain_keeps_the_tracker_near_the_circle() -> None:
+    soft, stiff, spring, damper = said(
+        "01",
+        "caught at the right-hand end, it gets # mm off with these, and still # mm with the"
+        " stiffest, K1 = # and K2 = #.",
+    )
+    found = [
+        held(3.0, robot="tracker", K1=gain, K2=damping, K3=0).largest(3, 5)
+        for gain, damping in ((100.0, 20.0), (value(spring), value(damper)))
+    ]
+    assert_stated([soft, stiff], found)
+    assert specs(FiveBarParameters)["K1"].high == value(spring)
 
 
 def test_tracker_draws_four_arches_of_one_height() -> None:
@@ -136,7 +151,7 @@ def test_pull_across_moves_both_alike() -> None:
 
 
 def test_a_path_alone_asks_for_no_speed() -> None:
-    (gain,) = said("05", "With K5 = #, for example, the follower stays where it starts, exactly on")
+    (gain,) = said("05", "With K5 = #, a follower at rest stays at rest on the path,")
     alone = play(3.0, [], K5=value(gain))["follower"]
     assert np.abs(alone.rate).max() < 1e-6 and alone.distance.max() < 1e-6
 

@@ -1,4 +1,4 @@
-"""Numerical evaluation of the drawing's geometry, which is symbolic in CasADi."""
+"""The drawing's geometry as numbers, which is symbolic in CasADi, and what viser draws of it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from onpath.models.arrays import Array
 
@@ -24,3 +25,14 @@ def drawn(skeleton: Callable[..., Any], q: Array, *values: float) -> tuple[Array
     """Evaluate a robot's skeleton: bars, shape (n, 2, 3), and joints, shape (m, 3), [m]."""
     bars, joints = evaluated(skeleton, q, *values)
     return bars.T.reshape(-1, 2, 3), joints.T
+
+
+def drawn_length(arrow: Any) -> float:
+    """From end to end of what viser's client draws of a node with one arrow, [m]; 0 if hidden.
+
+    Its shaft ends where the head begins, and the head is never shortened (Arrows.tsx).
+    """
+    if not arrow.visible:
+        return 0.0
+    (begin, end), head = arrow.points[0], arrow.head_length
+    return max(float(np.linalg.norm(end - begin)), head)

@@ -59,9 +59,12 @@ class ReplayBreakdown(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        if lab.breakdown.begin(lab.session):
-            larger = f"{lab.session.exaggeration:g}"
-            lab.show_message(lab.fault_words("say.slowly", larger=larger), "replay")
+        session = lab.session
+        if lab.breakdown.begin(session):
+            bends = session.entry.flexible_link is not None
+            larger = {"larger": f"{session.exaggeration:g}"} if bends else {}
+            key = "say.slowly_larger" if bends else "say.slowly"
+            lab.show_message(lab.fault_words(key, **larger), "replay")
 
 
 @dataclass(frozen=True, slots=True)

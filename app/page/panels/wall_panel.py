@@ -24,9 +24,15 @@ class WallPanel:
         self._words = words
         self._shown: tuple[WallState | None, ...] = ()
         self._post, self._just_changed = post, False
+        wall = robot_of(first).grip.wall
+        hint = words(
+            "wall.hint",
+            stiffness=words.number(wall.stiffness / 1e3),
+            most=words.number(wall.largest),
+        )
         with gui.add_folder(words("wall.title"), expand_by_default=False):
             self._switch = gui.add_checkbox(
-                words("wall.switch"), first.obstacle is not None, hint=words("wall.hint")
+                words("wall.switch"), first.obstacle is not None, hint=hint
             )
             names = [f"y{axis}" for axis in robot_of(first).frame.axes]
             self._first, self._second = (

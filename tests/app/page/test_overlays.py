@@ -20,6 +20,7 @@ from onpath.app.lab.snapshots.snapshot import END, MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
+from onpath.app.scene.arrows import SHORTEST
 from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
 from onpath.app.scene.robot_labels import RobotLabels
@@ -37,6 +38,7 @@ from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.two_link_arm import TwoLinkArm
 from tests.support.built_in import built_in_course
+from tests.support.drawing import drawn_length
 from tests.support.lab import do, run, store
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -110,11 +112,11 @@ def test_a_switch_draws_and_removes_and_a_still_lab_sends_nothing_more(
 
 @ENTRIES
 def test_marks_are_at_both_robots_and_go_with_their_step(shown: Shown) -> None:
-    """A text at each robot, and one node for all arrows."""
+    """A text and an arrow at each robot."""
     mark = SceneMark((10.0, 20.0), text="here")
     shown.overlays.marks = (mark, SceneMark((0.0, 50.0), (0.0, 80.0)))
     sent = Counter(shown.follow())
-    assert sent["LabelMessage"] == 2 and sent["ArrowMessage"] == 1
+    assert sent["LabelMessage"] == 2 and sent["ArrowMessage"] == 2
     assert shown.follow() == []
     shown.overlays.marks = (mark,)
     assert "LabelMessage" in shown.follow()
@@ -137,6 +139,31 @@ def test_the_arrows_lead_to_the_timetable_and_to_the_path(shown: Shown) -> None:
         np.testing.assert_allclose(clock, motion.point(0, MARKER), atol=1e-9)
         assert np.linalg.norm(path - begin) == pytest.approx(view.distance, abs=2e-4)
         assert view.distance > 3e-3
+    nodes.remove()
+
+
+@ENTRIES
+def test_the_arrows_are_as_long_as_the_errors_that_they_stand_for(shown: Shown) -> None:
+    """Free, held and let go; an error too short to be seen has no arrow, so neither has none."""
+    motion = take_motion(shown.lab)
+    nodes = ErrorNodes(shown.overlays._scene, shown.overlays.stage, motion)
+    scene = shown.overlays._scene
+    seen = Counter[bool]()
+    for step in range(24):
+        do(shown.lab, *({8: [c.Hold(True)], 16: [c.Hold(False)]}.get(step, [])))
+        run(shown.lab, 0.15)
+        motion, views = take_motion(shown.lab), take_page_snapshot(shown.lab, 1.0).robots
+        nodes.follow(motion)
+        for i, view in enumerate(views.values()):
+            clock = float(np.linalg.norm(motion.point(0, MARKER) - motion.point(i, END)))
+            for name, error in ("e", clock), ("d", view.distance):
+                node: Any = scene.get_handle_by_name(f"/show/errors/{name}_{i}")
+                seen[node.visible] += 1
+                if node.visible:
+                    assert drawn_length(node) == pytest.approx(error, abs=3e-4)
+                else:
+                    assert error < SHORTEST + 3e-4
+    assert min(seen[True], seen[False]) > 5
     nodes.remove()
 
 
@@ -273,9 +300,9 @@ def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None
     labels = RobotLabels(server.scene, stage_of(entry.make(entry.lab)), Nameless(), motion)
     labels.update(motion)
     assert server.scene.get_handle_by_name("/show/arcs") is None
-    assert server.scene.get_handle_by_name("/show/axes") is not None
+    assert server.scene.get_handle_by_name("/show/axes_0") is not None
     labels.remove()
-    assert server.scene.get_handle_by_name("/show/axes") is None
+    assert server.scene.get_handle_by_name("/show/axes_0") is None
 
 
 def test_numbers_stand_beside_the_colours_and_the_lines() -> None:

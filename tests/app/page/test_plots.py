@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from types import SimpleNamespace
 from typing import Any
@@ -15,7 +16,9 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import plots
 from onpath.lessons.record import QUANTITIES
-from onpath.lessons.words import ENGLISH, Words
+from onpath.lessons.words import ENGLISH, Words, languages
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import do, run, store
 
 
@@ -85,6 +88,31 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     labels = [series.get("label", "") for series in made[0][1:]]
     assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
     assert made[1][1].get("label") == "Trajectory tracking"
+
+
+@pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
+@pytest.mark.parametrize("language", languages())
+def test_a_symbol_means_one_thing_in_all_plots(entry: RobotEntry, language: str) -> None:
+    """ξ₁ and ξ₃ are distances and ξ₂ and ξ₄ rates, in titles, in legends and in the phase plane."""
+    shown = dict[str, Any]()
+
+    def add_uplot(_: object, series: Sequence[uplot.Series], **options: Any) -> Any:
+        shown[options["title"]] = [str(each.get("label")) for each in series[1:]]
+        return SimpleNamespace()
+
+    gui: Any = SimpleNamespace(add_uplot=add_uplot)
+    fields = take_page_snapshot(Lab(store(), entry), 1.0).key.fields
+    of = dict[str, set[str]]()
+    for name in "across", "across_rate":
+        shown.clear()
+        plots.add_plot(gui, Words(language), fields, plots.MORE[name])
+        ((title, labels),) = shown.items()
+        titled, told = (set(re.findall("ξ.", each)) for each in (title, " ".join(labels)))
+        assert titled == told or (not told and len(titled) == 1)
+        of[name] = titled
+    space = dict(fields)["xi"] > 1
+    assert of["across"] == ({"ξ₁", "ξ₃"} if space else {"ξ₁"})
+    assert of["across_rate"] == ({"ξ₂", "ξ₄"} if space else {"ξ₂"})
 
 
 def test_every_plot_over_time_of_robots_at_rest_has_numbers_on_its_axis() -> None:

@@ -33,7 +33,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.drags import play
-from tests.support.drawing import evaluated
+from tests.support.drawing import drawn_length, evaluated
 
 FIVE_BAR = rigid_five_bar()
 RIGID = stage_of(FIVE_BAR)
@@ -115,17 +115,25 @@ def test_a_still_frame_costs_nothing(lab):
 
 
 def test_a_force_shows_and_then_hides_its_arrow(lab):
-    arrows = lab.api.get_handle_by_name("/force")
-    pulled = {name: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)) for name in BENCHES}
-    lab.scene.update(snapshot(robots=pulled).motion)
-    assert arrows.visible
-    lengths = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
-    twice_pulled = {n: robot(1.5, 3.0, force=(20.0, 0, 0)) for n in BENCHES}
-    lab.scene.update(snapshot(robots=twice_pulled).motion)
-    twice = np.linalg.norm(arrows.points[:, 1] - arrows.points[:, 0], axis=1)
-    np.testing.assert_allclose(twice, 2.0 * lengths, rtol=1e-5)
+    nodes = [lab.api.get_handle_by_name(f"/force_{i}") for i in range(len(BENCHES))]
+    for newtons in (10.0, 20.0):
+        pulled = {name: robot(1.5, 3.0, force=(newtons, 0.0, 0.0)) for name in BENCHES}
+        lab.scene.update(snapshot(robots=pulled).motion)
+        for node in nodes:
+            assert drawn_length(node) == pytest.approx(RIGID.force_scale * newtons, rel=1e-5)
     lab.scene.update(snapshot().motion)
-    assert not arrows.visible
+    assert [drawn_length(node) for node in nodes] == [0.0, 0.0]
+
+
+def test_a_force_at_one_robot_draws_no_arrow_at_the_other(lab):
+    one, other = BENCHES
+    lab.scene.update(
+        snapshot(
+            robots={one: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)), other: robot(1.5, 3.0)}
+        ).motion
+    )
+    lengths = [drawn_length(lab.api.get_handle_by_name(f"/force_{i}")) for i in range(2)]
+    np.testing.assert_allclose(lengths, [10.0 * RIGID.force_scale, 0.0], rtol=1e-5)
 
 
 def test_poses_that_are_not_finite_are_not_sent(lab):

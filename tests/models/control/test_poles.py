@@ -16,12 +16,13 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
+from onpath.models.control import poles
 from onpath.models.control.laws.registry import NAMES
 from onpath.models.control.poles import Complex, channels
 from onpath.models.paths.curves import circle
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from onpath.models.systems.parameters import time_step
+from onpath.models.systems.parameters import specs, time_step
 
 RADIUS = 0.05
 PD = FiveBarParameters(K3=0.0)
@@ -142,6 +143,37 @@ def test_predicted_instability_is_what_happens(
     late = np.abs(error)[len(error) // 2 :].max()
     assert np.isnan(late) or late > 2 * offset if not stable else late < offset / 2
     assert ("unstable" in str(across.behaviour())) is not stable
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("look_ahead", "least", "most"), [("half_tick", 1, 3), ("half_interval", 3, 7)]
+)
+def test_how_far_above_the_poles_the_true_limit_of_the_damping_is(
+    look_ahead: str, least: int, most: int
+) -> None:
+    """Torque is held, not acceleration: as the module says, and the help on the control rate."""
+    told = f"{least} to {most} %"
+    texts = poles.__doc__, specs(FiveBarParameters)["control_rate"].help
+    assert told.replace(" %", "") in " ".join((texts[0] or "").split())
+    assert look_ahead != "half_tick" or told in texts[1]
+    place: dict[str, Any] = {"look_ahead": look_ahead, "K1": 400.0, "speed": 0.0}
+
+    def grows(damping: float, rate: int) -> bool:
+        dt, log = simulated(12.0, 1e-4, K2=damping, control_rate=rate, **place)
+        across, second = np.abs(log["xi"][:, 0]), round(1 / dt)
+        last = across[-2 * second :].max()
+        return not np.isfinite(last) or bool(last > across[2 * second : 4 * second].max())
+
+    for rate in (50, 100):
+        dampings = np.arange(30.0, 220.0, 0.25)
+        stable = [
+            channels(dataclasses.replace(PD, K2=damping, control_rate=rate, **place))[0].stable
+            for damping in dampings
+        ]
+        limit = float(dampings[int(np.argmin(stable))])
+        assert not grows(limit * (1 + (least - 0.5) / 100), rate), rate
+        assert grows(limit * (1 + most / 100), rate), rate
 
 
 def test_the_integral_adds_a_third_pole() -> None:

@@ -1,4 +1,4 @@
-"""θ, ξ1 and ξ2 of space curves along random motions, against finite differences."""
+"""θ, ξ1 and ξ3 of space curves along random motions, against finite differences."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def test_rates_and_accelerations_are_derivatives(closed: bool) -> None:
 
 
 def test_xi_is_the_distance_in_the_frame_of_the_normals() -> None:
-    """|ξ| = |y - σ|, ξ1 to the left in the plan view, ξ2 on the upper side."""
+    """|ξ| = |y - σ|, ξ1 to the left in the plan view, ξ3 on the upper side."""
     function, still, rng = coordinates(), np.zeros(3), np.random.default_rng(1)
     for seed in range(60):
         curve = space_curve(seed)

@@ -8,11 +8,13 @@ from functools import cache
 import numpy as np
 import pytest
 
+import onpath
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.virtual_constraint import virtual_constraint
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.comparison import Contest, Outcome, compare
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 
 CONTEST = Contest(FIVE_BAR, FIVE_BAR.lab, presets()["circle"].curve)
 HELD = 2.0  # [s], by the brake
@@ -83,6 +85,28 @@ def test_the_velocity_field_gives_less_energy_and_is_not_on_time() -> None:
     own = given.pop("velocity_field")
     assert len(given) > 1 and all(own < other / 10 for other in given.values())
     assert all(abs(delay) > 0.1 for delay in delays("velocity_field", "none"))
+
+
+@pytest.mark.thorough
+def test_the_energy_of_the_virtual_constraint_grows_with_the_square_of_the_interval() -> None:
+    """Its docstring says by how much, on every rigid robot that it suits."""
+    least, most = 1.4, 2.1  # [%]
+    assert f"by {least} to {most} % in" in " ".join((virtual_constraint.__doc__ or "").split())
+    for name in (name for name, entry in ROBOTS.items() if not entry.flexible_link):
+        grown = list[float]()
+        for rate in (1000, 2000):
+            run = onpath.simulate(
+                name, law="virtual_constraint", velocity=(0.6, 0), duration=20, control_rate=rate
+            )
+            robot, parameters = run.experiment.robot(), run.experiment.parameters
+            mass, plant = robot.system.function("mass"), robot.plant(parameters)
+            first, last = (
+                float(v @ np.array(mass(q, v, plant)) @ v)
+                for q, v in ((run.q[i], run.v[i]) for i in (0, -1))
+            )
+            grown.append(100 * (last / first - 1))
+        assert least - 0.05 < grown[0] < most, name
+        assert grown[0] / grown[1] == pytest.approx(4, rel=0.1), name
 
 
 def test_the_virtual_constraint_leaves_the_pace_to_others() -> None:
