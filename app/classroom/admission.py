@@ -9,7 +9,7 @@ import time
 import unicodedata
 from collections.abc import Callable, Iterable
 
-from onpath.app.common.access_codes import ALPHABET, normalised
+from onpath.app.common.access_codes import ALPHABET, normalised, short_code
 from onpath.app.common.throttle import Throttle
 from onpath.app.common.visible_text import comparison_key, is_visible, without_surplus_marks
 from onpath.models.errors import CodedError
@@ -58,7 +58,7 @@ class Admission:
 
     def check_code(self, typed: str, codes: Iterable[str], who: str) -> str:
         """Check a class code; see `check_key`."""
-        given = "".join(typed[:40].split()).lower()
+        given = short_code(typed, CODE_LENGTH)
         with self._codes.attempt(who):
             return _found(given, codes, CodedError("error.not_the_class_code"))
 
