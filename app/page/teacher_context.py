@@ -40,7 +40,8 @@ class TeacherContext:
         progress: the teacher's own progress through the lessons.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
-        forget: deletes all stored data and ends the class; returns the number of labs deleted.
+        delete: deletes the student of a session code, with everything that is stored of them.
+        forget: deletes the labs of all students of the class, and ends it; returns their number.
         stop: returns to the ordinary lab page.
     """
 
@@ -49,5 +50,6 @@ class TeacherContext:
     progress: Callable[[], Progress]
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]
+    delete: Callable[[str], None]
     forget: Callable[[], int]
     stop: Callable[[], None]

@@ -116,6 +116,11 @@ class TeacherPanel:
             self._words("class.follow"), [self._words("class.own_lab")]
         )
         on_user_update(self._names, self._choose_followed)
+        self._delete = self._gui.add_button(
+            self._words("class.delete"), color="red", icon=viser.Icon.USER_MINUS
+        )
+        self._deleted = self._gui.add_html("")
+        on_press(self._delete, self._ask_to_delete)
         self._still = self._gui.add_html("")
         self._standing = self._gui.add_html("")
         self._clear = self._gui.add_button(self._words("class.push_end"), color="gray")
@@ -136,6 +141,7 @@ class TeacherPanel:
             self._names.options = options
         if self._names.value != shown:
             self._names.value = shown
+        self._delete.visible = shown in names
 
     def _show_standing(self) -> None:
         """Show the set-up that new members receive and the button that clears it."""
@@ -150,6 +156,25 @@ class TeacherPanel:
         else:
             said = self._words("class.standing_setup")
         _show(self._standing, note(said) if said else "")
+
+    def _ask_to_delete(self) -> None:
+        """Delete the student who is followed, after confirmation."""
+        code = self._chosen.followed
+        member = self._class.member(code)
+        if member is not None:
+            question = self._words("class.delete_sure", name=member.name)
+            self._ask(self._words("class.delete"), question, lambda: self._delete_student(code))
+
+    def _delete_student(self, code: str) -> None:
+        try:
+            self._teaching.delete(code)
+            said = self._words("class.deleted")
+        except (OSError, ValueError) as error:
+            said = self._words.sentence(error)
+        else:
+            self._chosen.numbered.clear()
+            self._choose_followed("")
+        self._deleted.content = note(said)
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed = self._followable().get(name, "")
@@ -262,7 +287,7 @@ class TeacherPanel:
     def _forget(self) -> None:
         try:
             said = self._words("class.forgotten", count=self._teaching.forget())
-        except OSError as error:
+        except (OSError, ValueError) as error:
             said = self._words.sentence(error)
         self._told.content = note(said)
         self._look_again()
