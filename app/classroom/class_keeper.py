@@ -110,6 +110,9 @@ class ClassKeeper:
 
     def _claim(self) -> None:
         stored = self._records.claim(self.id, classes)
+        if stored is None:  # what is not stored yet could be open in two processes
+            self._records.save(self.id, to_stored(ClassState(), self._class.clock()), classes)
+            stored = self._records.claim(self.id, classes)
         self._class.restore(from_stored(stored, self._progress, self._class.clock()))
         self._kept = ()
         self._claims += 1

@@ -76,8 +76,6 @@ class Serve:
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention
 
-        retention, database = Retention(self.keep_days, self.most_labs), database_url(self.database)
-        classrooms = self._classrooms()
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
@@ -85,11 +83,11 @@ class Serve:
             self.host,
             self.port,
             self.lessons,
-            database,
+            database_url(self.database),
             open_browser=self.open,
-            classrooms=classrooms,
+            classrooms=self._classrooms(),
             most_clients=self.most_clients,
-            retention=retention,
+            retention=Retention(self.keep_days, self.most_labs),
             hang_seconds=self.hang_seconds,
             privacy_url=self.privacy_url,
             allowed_origins=self.origin,

@@ -200,15 +200,18 @@ class ClassService:
             ValueError: the lab is open in another process.
         """
         delete = self._records.delete if self._records is not None else lambda _: 0
+        entry = self._sessions.find(code)
+        client = None if entry is None else entry.client
         try:
-            client = self._sessions.delete(code, delete)
+            self._sessions.delete(code, delete)
         except HeldElsewhere:
             raise CodedError("error.lab_is_open") from None
+        finally:
+            if client is not None and self._sessions.find(code) is not entry:
+                self._lost({client})  # the page comes back with a new lab
         self._class.leave(code)
         if self._class_keeper is not None:
             self._class_keeper.look()
-        if client is not None:
-            self._lost({client})  # the page comes back with a new lab
 
     def _forget(self) -> int:
         """Delete the class and all of its students' labs. Returns their number."""

@@ -249,23 +249,23 @@ class LabRegistry:
                 self._remove(entry)
             return entry.client if entry is not None else None
 
-    def delete(self, code: str, delete: Callable[[str], object]) -> int | None:
+    def delete(self, code: str, delete: Callable[[str], object]) -> None:
         """Delete a lab for good: here, what was still to be stored of it, and by `delete`.
 
-        Returns:
-            The client that it had here.
-
         Raises:
-            NotKept: it is still being stored, or could not be deleted.
+            NotKept: it is still being stored, and nothing was changed; or `delete` raised it.
             HeldElsewhere: another process has it open.
         """
         with self._alone(code):
-            client = self.lose(code)
+            self._discard(code)
+            self.lose(code)
             self.simulation.call(lambda: None)  # the frame that may still have stored it has ended
-            if self.keeper is not None:
-                self.keeper.discard(code)
+            self._discard(code)
             delete(code)
-        return client
+
+    def _discard(self, code: str) -> None:
+        if self.keeper is not None:
+            self.keeper.discard(code)
 
     def _is_current(self, code: str) -> bool:
         try:
@@ -279,8 +279,7 @@ class LabRegistry:
         Raises:
             NotKept: it is still being stored; it is not removed.
         """
-        if self.keeper is not None:
-            self.keeper.discard(entry.code)
+        self._discard(entry.code)
         with self._lock:
             self._remove(entry)
 

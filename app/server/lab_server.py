@@ -97,7 +97,7 @@ class LabServer:
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
-        self._watchdog, self._leases = Watchdog(hang_seconds), None
+        self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
         well["elsewhere"] = self._is_elsewhere
@@ -107,14 +107,8 @@ class LabServer:
         self._memory = Periodic("memory", INTERVAL, MemoryRelease(self.sessions.free_memory).look)
         self._keeper = self._expiry = None
         if records is not None:
-            self._keeper = WriteBehind(records, lost=self._lost)
-            self._expiry = Expiry(records, self._retention, self.sessions.held)
-            self.sessions.load, self.sessions.is_current = records.claim, records.is_current
-            self.sessions.keeper, self.sessions.give_up = self._keeper, records.give_up
+            self._store_labs(records)
         self._classes = ClassDirectory(classrooms, self._class_service)
-        if records is not None:
-            stored = self._classes.all_stored()
-            self._leases = LeaseKeeper(records, self._open_here, stored, self._lost)
         self._places = dict[int, str]()
         self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
@@ -122,6 +116,13 @@ class LabServer:
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()
+
+    def _store_labs(self, records: Records) -> None:
+        self._keeper = WriteBehind(records, lost=self._lost)
+        self._expiry = Expiry(records, self._retention, self.sessions.held)
+        sessions = self.sessions
+        sessions.load, sessions.is_current = records.claim, records.is_current
+        sessions.keeper, sessions.give_up = self._keeper, records.give_up
 
     def _start(self) -> None:
         self.simulation.start()
@@ -132,7 +133,9 @@ class LabServer:
         self._processor.start()
         if self._expiry is not None:
             self._expiry.start()
-        if self._leases is not None:
+        if self._records is not None:
+            stored = self._classes.all_stored()
+            self._leases = LeaseKeeper(self._records, self._open_here, stored, self._lost)
             self._leases.look()
             self._leases.rounds.start()
         self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))

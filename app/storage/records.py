@@ -142,8 +142,6 @@ class Records:
     def claim(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
         """Take over a state, which counts as its use, and its lease; see `load`.
 
-        A class can be open before anything of it is stored; so its lease is taken in any case.
-
         Raises:
             HeldElsewhere: another process has it open.
         """
@@ -151,10 +149,11 @@ class Records:
         try:
             with self.transaction() as connection:
                 row = connection.execute(_STATEMENTS[table].lock, {"of": code}).first()
-                state = None if row is None else _state(row)
-                if state is not None or table is classes:
-                    take(connection, code, self.owner, self._now(connection))
-                    connection.execute(_STATEMENTS[table].claim, values)
+                if row is None:
+                    return None
+                state = _state(row)
+                take(connection, code, self.owner, self._now(connection))
+                connection.execute(_STATEMENTS[table].claim, values)
                 return state
         except exc.IntegrityError:
             raise HeldElsewhere from None

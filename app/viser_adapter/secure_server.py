@@ -101,7 +101,8 @@ def make_server(
     local_only = is_loopback(host) and not unix_socket
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     to_page = partial(redirection, spreads=bool(door.allowed)) if unix_socket is None else _to_page
-    with _guarded_serve(listener, door, limits, connections, to_page, elsewhere):
+    to_place = partial(_to_place, to_page=to_page, elsewhere=elsewhere)
+    with _guarded_serve(listener, door, limits, connections, to_place):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
@@ -161,6 +162,19 @@ def _to_page(connection: ServerConnection, request: Request) -> Response | None:
     return response
 
 
+def _to_place(
+    connection: SecureConnection,
+    request: Request,
+    to_page: Callable[[ServerConnection, Request], Response | None],
+    elsewhere: Callable[[str], bool],
+) -> Response | None:
+    """Note the place of a connection, unless its page is at another address or process."""
+    if response := to_page(connection, request):
+        return response
+    connection.place, request.path = place_of(request.path), without_place(request.path)
+    return not_here(connection) if elsewhere(connection.place) else None
+
+
 def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
     """Complete a response: the headers of all of them, and only these if no more was asked for."""
     add_headers(response)
@@ -177,8 +191,7 @@ def _guarded_serve(
     requests: RequestFilter,
     limits: Limits,
     counts: ConnectionLimits,
-    to_page: Callable[[ServerConnection, Request], Response | None],
-    elsewhere: Callable[[str], bool],
+    to_place: Callable[[SecureConnection, Request], Response | None],
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
@@ -190,11 +203,8 @@ def _guarded_serve(
             answered = requests.refusal(request, connection.peer)  # or the health report
             if answer := answered or counts.refusal(connection, request):
                 return connection.respond(*answer)
-            if address := to_page(connection, request):
-                return address
-            connection.place, request.path = place_of(request.path), without_place(request.path)
-            if elsewhere(connection.place):
-                return not_here(connection)
+            if elsewhere := to_place(connection, request):
+                return elsewhere
             return add_scripts(process_request(connection, request))
 
         options["max_size"] = limits.max_message_bytes

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 import viser
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.concept_test_results import rows_without_names
-from onpath.app.classroom.results import class_csv
+from onpath.app.classroom.class_record import class_record
+from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -272,9 +273,11 @@ class TeacherPanel:
         }
         ways = [(session, member.progress) for session, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
-        tests = rows_without_names(test, ways, self._class.code) if test else ()
-        data = class_csv(members.values(), course, language, tests)
-        self._client.send_file_download("onpath-class.csv", data, save_immediately=True)
+        tests = sheets_without_names(test, ways, self._class.code) if test else []
+        made = datetime.now(UTC)
+        data = class_record(members.values(), course, language, made, tests)
+        name = f"onpath-class-{made:%Y-%m-%d}.xlsx"
+        self._client.send_file_download(name, data, save_immediately=True)
 
     def _end(self) -> None:
         try:

@@ -95,8 +95,8 @@ def test_every_process_with_the_key_has_the_same_class(two: list[Process], tmp_p
     stranger.keeper.open()
     assert names(stranger) == []
     stranger.records.close()
-    (row,) = rows(one.records)
-    assert KEY not in str(row) and one.room.code not in str(row)
+    for row in rows(one.records):
+        assert KEY not in str(row) and one.room.code not in str(row)
 
 
 def rows(records: Records) -> list[Any]:
