@@ -92,13 +92,13 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
 
 
 def not_here(connection: ServerConnection) -> Response:
-    """The answer at a place that another process serves.
+    """The answer to a websocket at a place that another process serves.
 
-    A proxy passes the request on to the next process because of it; a browser asks again.
+    A proxy passes the request on to the next process because of it; a page asks again every second.
     """
-    said = "Another process serves this class. This page asks again in a second.\n"
+    said = "Another process serves this class: ask again.\n"
     response = connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, said)
-    response.headers["Retry-After"] = response.headers["Refresh"] = "1"
+    response.headers["Retry-After"] = "1"
     return response
 
 

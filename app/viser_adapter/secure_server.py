@@ -84,7 +84,7 @@ def make_server(
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         health, trouble: see `RequestFilter`.
-        elsewhere: whether another process serves a place.
+        elsewhere: whether another process serves a place; a websocket there is answered 503.
 
     Raises:
         ValueError: a proxy is malformed.
@@ -168,11 +168,16 @@ def _to_place(
     to_page: Callable[[ServerConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
 ) -> Response | None:
-    """Note the place of a connection, unless its page is at another address or process."""
+    """Note the place of a connection, unless it is at another address or process.
+
+    Every process has the page. A proxy may send it and its websocket to different ones, if it reads
+    the whole path: they differ by the slash at the end.
+    """
+    is_tab = "Upgrade" in request.headers
     if response := to_page(connection, request):
         return response
     connection.place, request.path = place_of(request.path), without_place(request.path)
-    return not_here(connection) if elsewhere(connection.place) else None
+    return not_here(connection) if is_tab and elsewhere(connection.place) else None
 
 
 def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
