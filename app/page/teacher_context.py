@@ -19,6 +19,7 @@ class TeacherChoices:
         shown: whether the answers are shown, and not only how many there are.
         revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
+        told: what came of deleting a student.
         picked: numbers of the sketches that are shown; empty for all.
         numbered: sketches in the order in which they came, by where they were asked, for `picked`.
     """
@@ -28,6 +29,7 @@ class TeacherChoices:
     shown: bool = True
     revealed: bool = False
     followed: str = ""
+    told: str = ""
     picked: tuple[int, ...] = ()
     numbered: dict[tuple[str, int, bool], list[Answer]] = field(default_factory=dict)
 

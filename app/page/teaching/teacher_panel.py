@@ -94,6 +94,7 @@ class TeacherPanel:
             self._show_names()
             still = self._teaching.why_still(self._words)
             _show(self._still, note(still) if still else "")
+            _show(self._deleted, note(self._chosen.told) if self._chosen.told else "")
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._answers.view(self._large))
@@ -174,11 +175,12 @@ class TeacherPanel:
             said = self._words.sentence(error)
         else:
             self._chosen.numbered.clear()
-            self._choose_followed("")
-        self._deleted.content = note(said)
+            self._choose_followed("")  # which may rebuild the page
+        self._chosen.told = said
+        self._look_again()
 
     def _choose_followed(self, name: str) -> None:
-        self._chosen.followed = self._followable().get(name, "")
+        self._chosen.followed, self._chosen.told = self._followable().get(name, ""), ""
         self._look_again()
 
     # Predictions
