@@ -94,10 +94,11 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
 def not_here(connection: ServerConnection) -> Response:
     """The answer to a websocket at a place that another process serves.
 
-    A proxy passes the request on to the next process because of it; a page asks again every second.
+    nginx passes the request on to the next process because of it (`http_502`, which no process
+    answers otherwise); a page asks again every second.
     """
     said = "Another process serves this class: ask again.\n"
-    response = connection.respond(HTTPStatus.SERVICE_UNAVAILABLE, said)
+    response = connection.respond(HTTPStatus.BAD_GATEWAY, said)
     response.headers["Retry-After"] = "1"
     return response
 

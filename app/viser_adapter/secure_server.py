@@ -84,7 +84,7 @@ def make_server(
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         health, trouble: see `RequestFilter`.
-        elsewhere: whether another process serves a place; a websocket there is answered 503.
+        elsewhere: whether another process serves a place; a websocket there is answered 502.
 
     Raises:
         ValueError: a proxy is malformed.

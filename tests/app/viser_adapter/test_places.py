@@ -124,7 +124,7 @@ def test_who_asks_for_a_class_of_another_process_is_told_to_ask_again() -> None:
     with pytest.raises(InvalidStatus) as refused:
         connect(f"ws://127.0.0.1:{server.get_port()}/c/abc234")
     answer = refused.value.response
-    assert answer.status_code == 503 and answer.headers["Retry-After"] == "1"
+    assert answer.status_code == 502 and answer.headers["Retry-After"] == "1"
     server.stop()
 
 
