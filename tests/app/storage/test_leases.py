@@ -194,12 +194,15 @@ def test_what_is_open_in_one_process_is_not_taken_by_another(two: list[Records])
             other.claim(code, table)
     seen = other.renew([], [CLASS, LAB]).elsewhere
     assert seen.keys() == {CLASS, LAB} and all(0 < left <= LEASE for left in seen.values())
+    with pytest.raises(HeldElsewhere):
+        other.delete(LAB)
     one.give_up(LAB)
     assert other.claim(LAB) == {"n": 1}
     found = one.renew([LAB, CLASS])
     assert found.lost == {LAB} and found.missing == frozenset()
     one.give_up()
     assert opened(other) == {"n": 0}
+    assert other.delete(LAB) == 1 and other.delete(LAB) == 0 and other.load(LAB) is None
 
 
 def test_a_lease_ends_when_its_owner_is_gone(two: list[Records]) -> None:
