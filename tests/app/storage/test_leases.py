@@ -190,10 +190,13 @@ def test_what_is_open_in_one_process_is_not_taken_by_another(two: list[Records])
     one.save(LAB, {"n": 1})
     assert one.renew([LAB, CLASS]).lost == frozenset()
     for code, table in ((CLASS, classes), (LAB, labs)):
+        one.renew([LAB, CLASS])
         with pytest.raises(HeldElsewhere):
             other.claim(code, table)
+    one.renew([LAB, CLASS])
     seen = other.renew([], [CLASS, LAB]).elsewhere
     assert seen.keys() == {CLASS, LAB} and all(0 < left <= LEASE for left in seen.values())
+    one.renew([LAB, CLASS])
     with pytest.raises(HeldElsewhere):
         other.delete(LAB)
     one.give_up(LAB)
@@ -210,8 +213,14 @@ def test_a_lease_ends_when_its_owner_is_gone(two: list[Records]) -> None:
     one, other = two
     opened(one)
     keeper = LeaseKeeper(other, list, [CLASS], lambda _: None)
-    keeper.look()
-    assert keeper.is_elsewhere(CLASS) and not keeper.is_elsewhere(LAB)
+
+    def seen() -> bool:
+        one.renew([CLASS])
+        keeper.look()
+        return keeper.is_elsewhere(CLASS)
+
+    wait_for(seen, 60.0)
+    assert not keeper.is_elsewhere(LAB)
     wait_for(lambda: not keeper.is_elsewhere(CLASS), 60.0)
     assert opened(other) == {"n": 0}
 
