@@ -6,15 +6,14 @@ import hashlib
 import hmac
 import secrets
 import time
-import unicodedata
 from collections.abc import Callable, Iterable
 
-from onpath.app.common.access_codes import ALPHABET, normalised
+from onpath.app.common.access_codes import ALPHABET, normalised, short_code
 from onpath.app.common.throttle import Throttle
-from onpath.app.common.visible_text import comparison_key, is_visible, without_surplus_marks
+from onpath.app.common.visible_text import comparison_key, readable, shortened
 from onpath.models.errors import CodedError
 
-LONGEST_NAME = 24  # [characters]
+LONGEST_NAME = 24  # [characters that are seen as one]
 CODE_LENGTH = (
     6  # of a class code: short enough for a projector, long enough not to be guessed; `Admission`
 )
@@ -58,7 +57,7 @@ class Admission:
 
     def check_code(self, typed: str, codes: Iterable[str], who: str) -> str:
         """Check a class code; see `check_key`."""
-        given = "".join(typed[:40].split()).lower()
+        given = short_code(typed, CODE_LENGTH)
         with self._codes.attempt(who):
             return _found(given, codes, CodedError("error.not_the_class_code"))
 
@@ -85,11 +84,7 @@ def cleaned(name: str) -> str:
     Raises:
         ValueError: no visible character remains.
     """
-    text = unicodedata.normalize("NFC", name[:200])
-    apart = "".join(" " if unicodedata.category(c)[0] in "CZ" else c for c in text)
-    seen = "".join(c for c in apart if c == " " or is_visible(c))
-    sparse = without_surplus_marks(unicodedata.normalize("NFC", seen))
-    short = " ".join(sparse.split())[:LONGEST_NAME].strip()
+    short = shortened(" ".join(readable(name[:200], lambda _: " ").split()), LONGEST_NAME).strip()
     if not short:
         raise CodedError("error.no_nickname")
     return short
@@ -105,7 +100,7 @@ def not_among(others: set[str], name: str) -> str:
     while comparison_key(unique) in others:
         count += 1
         tail = f" {count}"
-        unique = name[: LONGEST_NAME - len(tail)].rstrip() + tail
+        unique = shortened(name, LONGEST_NAME - len(tail)).rstrip() + tail
     return unique
 
 

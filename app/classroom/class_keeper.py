@@ -2,7 +2,8 @@
 
 A class is in the memory of one process, the one that claimed its row last. A process claims it
 when somebody comes to its address and the row is not its own: then its own memory, if it has any,
-is outdated, and replaced by what is stored.
+is outdated, and replaced by what is stored. It cannot claim a class that another process has open,
+which holds a lease of it; see `app.storage.leases`.
 """
 
 from __future__ import annotations
@@ -32,34 +33,54 @@ class ClassKeeper:
         lost: called when another process has taken the class over; it is empty here by then.
 
     Attributes:
+        id: the name of the class in the database.
         rounds: the periodic writes.
     """
 
     def __init__(self, classroom: Classroom, records: Records, lost: Callable[[], object]) -> None:
         self._class, self._records, self._lost = classroom, records, lost
-        self._id = class_id_of(classroom.key)
+        self.id = class_id_of(classroom.key)
         self._kept: tuple[object, ...] = ()
         self._asked: float | None = None  # when the database was asked last; None: not here
         self._claims = 0
-        self._opening = threading.Lock()
+        self._opening, self._storing = threading.Lock(), threading.Lock()
         self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.look)
 
-    def open(self) -> None:
-        """Take the class over, unless it is here and up to date. May wait for the database."""
+    def open(self) -> bool:
+        """Take the class over, unless it is here and up to date. May wait for the database.
+
+        Returns:
+            Whether it is here; if not, another process has it open.
+        """
+        was_here = self._asked is not None
         try:
             with held(self._opening, OPENING_WAIT):
                 if self._asked is None or self._class.clock() - self._asked >= FRESH:
                     self._ask()
+                return True
         except NotKept as error:  # another thread has been asking for long
             log_warning("the class is not read from the database: %s", error)
+            return True
+        except HeldElsewhere:
+            if was_here:
+                self._lost()
+            return False
 
     def _ask(self) -> None:
-        """Ask the database whether the class is still here, and take it over if not."""
+        """Ask the database whether the class is still here, and take it over if not.
+
+        Raises:
+            HeldElsewhere: another process has it open; it is empty here.
+        """
         try:
-            if self._asked is None or not self._records.is_current(self._id, classes):
+            if self._asked is None or not self._records.is_current(self.id, classes):
                 self._claim()
         except NotKept as error:
             log_warning("the class is not read from the database: %s", error)
+        except HeldElsewhere:
+            self._asked = None
+            self._class.restore(ClassState())
+            raise
         self._asked = self._class.clock()
 
     def look(self) -> None:
@@ -68,7 +89,8 @@ class ClassKeeper:
             return
         claims = self._claims
         try:
-            self._store()
+            with self._storing:
+                self._store()
             self._asked = self._class.clock()
         except NotKept as error:
             log_warning("the class is not stored: %s", error)
@@ -87,7 +109,10 @@ class ClassKeeper:
         self.look()
 
     def _claim(self) -> None:
-        stored = self._records.claim(self._id, classes)
+        stored = self._records.claim(self.id, classes)
+        if stored is None:  # what is not stored yet could be open in two processes
+            self._records.save(self.id, to_stored(ClassState(), self._class.clock()), classes)
+            stored = self._records.claim(self.id, classes)
         self._class.restore(from_stored(stored, self._progress, self._class.clock()))
         self._kept = ()
         self._claims += 1
@@ -97,9 +122,9 @@ class ClassKeeper:
         stored = to_stored(self._class.state, self._class.clock())
         mark = stored, self._records.generation
         if mark != self._kept:
-            self._records.save(self._id, stored, classes)
+            self._records.save(self.id, stored, classes)
             self._kept = mark
-        elif not self._records.is_current(self._id, classes):
+        elif not self._records.is_current(self.id, classes):
             raise HeldElsewhere
 
     def _progress(self, session: str) -> Progress:

@@ -1,10 +1,11 @@
-"""The class's answers to the concept test, without names: for the teacher and as CSV rows."""
+"""The class's answers to the concept test, without names: for the teacher and the record."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from hashlib import sha256
 
+from onpath.app.classroom.class_record import Row, Sheet
 from onpath.app.classroom.results import Distribution
 from onpath.app.common.templates import render
 from onpath.lessons.concept_test.concept_test import (
@@ -61,10 +62,10 @@ def gain_view(
     )
 
 
-def rows_without_names(
+def sheets_without_names(
     test: Lesson, ways: Sequence[tuple[str, Progress]], code: str
-) -> Iterator[tuple[object, ...]]:
-    """Rows of the CSV: of every student who has handed in, without name, then those of the class.
+) -> list[Sheet]:
+    """Sheets of the record: every student who has handed in, without name, and the class.
 
     A student is the same pseudonym in both tests. The pseudonym does not reveal who that is.
 
@@ -73,18 +74,30 @@ def rows_without_names(
         code: of the class.
     """
     hidden = {sha256(f"{code} {session}".encode()).hexdigest()[:8]: way for session, way in ways}
-    for pseudonym, way in sorted(hidden.items()):
+    gain = class_gain(test, [way for _, way in ways])
+    columns = ("pseudonym", "test", "question", "item", "result", "chosen", "right")
+    return [
+        Sheet("Concept test", columns, _test_rows(test, sorted(hidden.items()))),
+        Sheet("Concept test, class", ("test", "of", "students", "value"), _class_rows(gain)),
+    ]
+
+
+def _test_rows(test: Lesson, ways: Iterable[tuple[str, Progress]]) -> Iterator[Row]:
+    for pseudonym, way in ways:
         for name in TESTS:
             if (notes := notes_of(way, name)) is None:
                 continue
             asked = zip(test.steps, chosen_in(test, notes), right_in(test, notes), strict=True)
             for number, (step, option, right) in enumerate(asked, 1):
-                result = "open" if option is None else LETTERS[option]
-                yield "", pseudonym, name, number, "test", step.title, result, int(right), ""
-    yield from _class_rows(class_gain(test, [way for _, way in ways]))
+                row = {"pseudonym": pseudonym, "test": name, "question": number}
+                row |= {"item": step.title, "right": int(right)}
+                if option is None:
+                    yield {**row, "result": "open"}
+                else:
+                    yield {**row, "result": "answered", "chosen": LETTERS[option]}
 
 
-def _class_rows(found: ClassGain) -> Iterator[tuple[object, ...]]:
+def _class_rows(found: ClassGain) -> Iterator[Row]:
     """The class's results; nothing if no student has handed in both tests."""
     if not found.students:
         return
@@ -94,8 +107,8 @@ def _class_rows(found: ClassGain) -> Iterator[tuple[object, ...]]:
         ("", "normalised gain"): found.gain,
     }
     for (name, item), value in told.items():
-        shown = "" if value is None else f"{value:.4g}"
-        yield "", "", name, "", "class", item, found.students, "", shown
+        row = {"test": name, "of": item, "students": found.students}
+        yield row if value is None else {**row, "value": value}
 
 
 def question_at(test: Lesson, index: int) -> Quiz:

@@ -8,6 +8,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
+from urllib.parse import urlsplit
 
 import tyro
 
@@ -39,6 +40,9 @@ class Serve:
     classroom: bool = False
     """Open a class, and print a code for the students and a key for the teacher. With teachers'
     keys in the environment, ONPATH_TEACHER_KEY, each has a class with an address of its own."""
+    privacy_url: str = ""
+    """Address of your privacy notice, https://example.org/privacy, shown where a nickname is asked
+    for."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -59,6 +63,8 @@ class Serve:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
+        if self.privacy_url and not _is_web_address(self.privacy_url):
+            raise ValueError(f"--privacy-url {self.privacy_url}: expected https://… or http://…")
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         try:
             self._serve()
@@ -70,8 +76,6 @@ class Serve:
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.expiry import Retention
 
-        retention, database = Retention(self.keep_days, self.most_labs), database_url(self.database)
-        classrooms = self._classrooms()
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
@@ -79,12 +83,13 @@ class Serve:
             self.host,
             self.port,
             self.lessons,
-            database,
+            database_url(self.database),
             open_browser=self.open,
-            classrooms=classrooms,
+            classrooms=self._classrooms(),
             most_clients=self.most_clients,
-            retention=retention,
+            retention=Retention(self.keep_days, self.most_labs),
             hang_seconds=self.hang_seconds,
+            privacy_url=self.privacy_url,
             allowed_origins=self.origin,
             trusted_proxies=self.trusted_proxy,
             unix_socket=self.socket,
@@ -101,6 +106,16 @@ class Serve:
         for room in classrooms:
             _print_class(room, self.origin[0] if self.origin else "")
         return classrooms
+
+
+def _is_web_address(text: str) -> bool:
+    """Whether a text is an address that a link may have: no script, and with a host."""
+    try:
+        parts = urlsplit(text)
+    except ValueError:
+        return False
+    plain = text.isprintable() and not any(c.isspace() or c == "\\" for c in text)
+    return plain and parts.scheme in ("http", "https") and bool(parts.hostname)
 
 
 def _print_class(room: Classroom, site: str) -> None:

@@ -1,15 +1,29 @@
-"""Session codes, which a student can note down and enter on another machine."""
+"""Codes that people note down, send and type: of a lab, of a class, a teacher's key.
+
+Word processors, mail programs and phones change what passes through them: dashes, widths, quotes,
+invisible characters, wrapped lines. `as_meant` undoes that, for share codes too.
+"""
 
 from __future__ import annotations
 
 import re
 import secrets
+import unicodedata
 
+from onpath.app.common.visible_text import is_visible
 from onpath.models.errors import CodedError
 
 ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # no characters that are easily confused
 LENGTH, GROUP = 12, 4  # 59 bits, which cannot be guessed
-_BETWEEN = re.compile(r"[\s.,_\-\u2010-\u2015]+")
+LONGEST_TYPED = 1000  # of the text around a code that is read, [characters]
+_DASHES = frozenset("\u2212\u2043\u02d7\u30fc\u2500")  # besides those of category Pd
+_EXAMPLE = "k7mf2xqa9tzr"
+_GAP = r"[^a-z0-9-]*"
+_SHOWN = re.compile(
+    rf"(?<![a-z0-9-])[{ALPHABET}]{{{LENGTH}}}(?![a-z0-9-])"
+    rf"|(?<![a-z0-9-])[{ALPHABET}]{{{GROUP}}}"
+    rf"(?:{_GAP}-{_GAP}[{ALPHABET}]{{{GROUP}}}){{{LENGTH // GROUP - 1}}}(?![a-z0-9-])"
+)
 
 
 def new_code() -> str:
@@ -22,19 +36,63 @@ def shown(code: str) -> str:
     return "-".join(code[i : i + GROUP] for i in range(0, LENGTH, GROUP))
 
 
+def as_meant(text: str) -> str:
+    """A text in which all dashes, widths and blanks are plain, and nothing is invisible.
+
+    What is no letter or digit of ASCII, dash or blank, such as a quote or a bracket, becomes "|".
+    """
+    return "".join(_plain(c) for c in unicodedata.normalize("NFKC", text))
+
+
+def _plain(character: str) -> str:
+    if character.isspace():
+        return " "
+    if character.isascii() and character.isalnum():
+        return character
+    if character in _DASHES or unicodedata.category(character) == "Pd":
+        return "-"
+    return "|" if is_visible(character) else ""
+
+
 def normalised(text: str) -> str:
-    """The stored form of a code that a user typed.
+    """The stored form of a code that a user typed or pasted, also with words around it.
 
     Raises:
-        ValueError: it is not a code.
+        ValueError: it is not a code, or there are several.
     """
-    code = _BETWEEN.sub("", text[:100]).lower()
+    plain = as_meant(text[:LONGEST_TYPED]).lower()
+    code = _letters(plain)
     if len(code) != LENGTH:
-        raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
+        found = {_letters(each) for each in _SHOWN.findall(plain)}
+        if len(found) != 1:
+            raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
+        (code,) = found
     strange = sorted(set(code) - set(ALPHABET))
     if strange:
         raise CodedError("error.session_code_letters", example=shown(_EXAMPLE))
     return code
+
+
+def short_code(text: str, length: int) -> str:
+    """The stored form of a code of `length` characters without groups; see `normalised`.
+
+    Of several words that might be one, it is the one with a digit or in capitals; if that does not
+    decide, the result is everything that was typed, which is no code.
+    """
+    plain = as_meant(text[:LONGEST_TYPED])
+    whole = _letters(plain.lower())
+    words = {word for word in re.findall(r"[A-Za-z0-9]+", plain) if len(word) == length}
+    fit = {word for word in words if set(word.lower()) <= set(ALPHABET)}
+    clear = {word.lower() for word in fit if word.isupper() or not word.isalpha()}
+    found = {word.lower() for word in fit}
+    for each in (found, clear):
+        if len(whole) != length and len(each) == 1:
+            return each.pop()
+    return whole
+
+
+def _letters(plain: str) -> str:
+    return re.sub(r"[^A-Za-z0-9]+", "", plain)
 
 
 def is_code(text: str) -> bool:
@@ -44,6 +102,3 @@ def is_code(text: str) -> bool:
     except ValueError:
         return False
     return True
-
-
-_EXAMPLE = "k7mf2xqa9tzr"

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import unicodedata
 
 from msgspec.structs import replace
 
-from onpath.app.common.visible_text import is_visible, without_surplus_marks
+from onpath.app.common.visible_text import readable
 from onpath.app.lab.sketches import sketched
 from onpath.lessons.progress import MOST_TEXT, SURENESS, Answer
 from onpath.lessons.schema import Prediction, Sketch
@@ -48,9 +47,7 @@ def kept_number(given: object) -> float:
 
 def kept_text(typed: object) -> str:
     """An answer in own words: at most MOST_TEXT characters that can be seen, and spaces."""
-    text = without_surplus_marks(unicodedata.normalize("NFC", str(typed)[: 4 * MOST_TEXT]))
-    kept = (each if is_visible(each) else _space(each) for each in text)
-    return "".join(kept)[:MOST_TEXT].strip()
+    return readable(str(typed)[: 4 * MOST_TEXT], _space)[:MOST_TEXT].strip()
 
 
 def _space(character: str) -> str:

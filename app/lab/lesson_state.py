@@ -186,12 +186,11 @@ class LessonState:
         return notes.answers.get(found[0]) if found is not None and again else None
 
     def ask_again(self) -> None:
-        """Ask the open step's prediction a second time; no answer counts as skipped."""
+        """Ask the open step's prediction a second time, also of those who were not there before."""
         if (found := self.prediction()) is None:
             return
         key, notes = found[0], self.notes
         self.note(
-            answers={key: Answer(), **notes.answers},
             asked_again=tuple(dict.fromkeys((*notes.asked_again, key))),
             second={k: answer for k, answer in notes.second.items() if k != key},
             unknown=tuple(each for each in notes.unknown if each != second_key(key)),

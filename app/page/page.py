@@ -239,7 +239,7 @@ class Page:
         if self._desk.course.lessons:
             self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
         if self._desk.seat is not None:
-            self._parts.append(ClassPanel(gui, words, self._desk.seat, first))
+            self._parts.append(ClassPanel(gui, words, self._desk, first))
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""

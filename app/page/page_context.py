@@ -40,6 +40,7 @@ class PageContext:
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
         dark: whether the browser asks for dark pages.
+        privacy_url: the address of the site's privacy notice; empty if it has none.
     """
 
     code: str
@@ -49,3 +50,4 @@ class PageContext:
     enter: Callable[[str], None]
     seat: ClassSeat | None = None
     dark: bool = False
+    privacy_url: str = ""

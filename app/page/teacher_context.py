@@ -19,6 +19,7 @@ class TeacherChoices:
         shown: whether the answers are shown, and not only how many there are.
         revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
+        told: what came of deleting a student.
         picked: numbers of the sketches that are shown; empty for all.
         numbered: sketches in the order in which they came, by where they were asked, for `picked`.
     """
@@ -28,6 +29,7 @@ class TeacherChoices:
     shown: bool = True
     revealed: bool = False
     followed: str = ""
+    told: str = ""
     picked: tuple[int, ...] = ()
     numbered: dict[tuple[str, int, bool], list[Answer]] = field(default_factory=dict)
 
@@ -40,7 +42,8 @@ class TeacherContext:
         progress: the teacher's own progress through the lessons.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
-        forget: deletes all stored data and ends the class; returns the number of labs deleted.
+        delete: deletes the student of a session code, with everything that is stored of them.
+        forget: deletes the labs of all students of the class, and ends it; returns their number.
         stop: returns to the ordinary lab page.
     """
 
@@ -49,5 +52,6 @@ class TeacherContext:
     progress: Callable[[], Progress]
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]
+    delete: Callable[[str], None]
     forget: Callable[[], int]
     stop: Callable[[], None]

@@ -19,9 +19,10 @@ from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
-from onpath.app.storage.records import Records
+from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.places import storage_key
+from onpath.models.errors import CodedError
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
 
@@ -31,8 +32,9 @@ class ClassService:
 
     Args:
         place: of its page; empty if it is that of every page. See `app.viser_adapter.places`.
-        records, keeper: delete a student's data when the teacher asks for it. A class with a place
-            is kept in the records, too.
+        records: from which a student's data are deleted when the teacher asks for it. A class with
+            a place is kept in them, too.
+        keeper: stores a student's lab on joining.
         lost: called with the clients of the class when another process has taken it over.
     """
 
@@ -63,17 +65,31 @@ class ClassService:
         if self._class_keeper is not None:
             self._class_keeper.stop()
 
-    def greet(self, client: viser.ClientHandle, shown: str | None) -> None:
+    @property
+    def stored_as(self) -> str:
+        """The name of the class in the database; empty if it is not stored."""
+        return self._class_keeper.id if self._class_keeper is not None else ""
+
+    @property
+    def in_use(self) -> bool:
+        """Whether anybody is here, so that the class must not move to another process."""
+        return bool(self._clients)
+
+    def greet(self, client: viser.ClientHandle, shown: str | None) -> bool:
         """Receive a client, and make a browser that was a teacher's a teacher's again.
 
         Args:
             shown: the value that it keeps under `TEACHER_KEY`.
+
+        Returns:
+            Whether the class is here; if not, another process has it open.
         """
+        if self._class_keeper is not None and not self._class_keeper.open():
+            return False
         self._clients.add(client.client_id)
-        if self._class_keeper is not None:
-            self._class_keeper.open()
         if shown is not None and self._class.is_pass(shown):
             self._teachers[client.client_id] = (shown, TeacherChoices())
+        return True
 
     def gone(self, client: int) -> None:
         """Forget a client that has disconnected."""
@@ -158,6 +174,7 @@ class ClassService:
             progress=lambda: lab.lessons.progress,
             why_still=followed.why_still,
             send_setup=send_setup,
+            delete=self._delete,
             forget=self._forget,
             stop=stop,
         )
@@ -175,10 +192,31 @@ class ClassService:
         """Send everybody of a class that is in another process away, to come back there."""
         self._lost(set(self._clients))
 
+    def _delete(self, code: str) -> None:
+        """Delete a student's lab with everything that is stored of it, and their seat.
+
+        Raises:
+            NotKept: it could not be deleted; the student is still in the class.
+            ValueError: the lab is open in another process.
+        """
+        delete = self._records.delete if self._records is not None else lambda _: 0
+        entry = self._sessions.find(code)
+        client = None if entry is None else entry.client
+        try:
+            self._sessions.delete(code, delete)
+        except HeldElsewhere:
+            raise CodedError("error.lab_is_open") from None
+        finally:
+            if client is not None and self._sessions.find(code) is not entry:
+                self._lost({client})  # the page comes back with a new lab
+        self._class.leave(code)
+        if self._class_keeper is not None:
+            self._class_keeper.look()
+
     def _forget(self) -> int:
+        """Delete the class and all of its students' labs. Returns their number."""
+        codes = list(self._class.members())
+        for code in codes:
+            self._delete(code)
         self._class.end()
-        if self._records is None:
-            return 0
-        if self._keeper is None:
-            return self._records.delete_all()
-        return self._keeper.forget(self._records.delete_all)
+        return len(codes)

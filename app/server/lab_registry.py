@@ -11,7 +11,7 @@ import re
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 from onpath.app.common.access_codes import new_code
@@ -21,7 +21,8 @@ from onpath.app.lab.looking_back import forget_history
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.lab_state import LabState, StateObserver, put_back
-from onpath.app.storage.records import NotKept
+from onpath.app.storage.leases import LEASE
+from onpath.app.storage.records import HeldElsewhere, NotKept
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.models.errors import CodedError, Message
 
@@ -32,6 +33,8 @@ MOST_CODES = 8
 KEPT = 15 * 60.0  # [s] that an abandoned session is kept, if it was used
 HISTORY_KEPT = 30.0  # [s] that its history is kept, which is most of its memory
 MOST_ABANDONED = 60
+LEASE_WAIT = LEASE + 1.0  # [s] to wait for another process to give up a lab
+ASK_AGAIN = 0.1  # [s] between questions meanwhile
 
 
 @dataclass(slots=True)
@@ -57,7 +60,9 @@ class LabRegistry:
 
     Attributes:
         make: makes a new lab.
-        load: takes over the state stored under a code and returns it, or None.
+        load: takes over the state stored under a code and returns it, or None; raises
+            `HeldElsewhere` if another process has it open.
+        give_up: lets other processes open the lab of a code.
         is_current: whether no other process has had a lab of this one meanwhile.
         keeper: stores changes, or None.
     """
@@ -66,6 +71,7 @@ class LabRegistry:
     make: Callable[[], Lab]
     clock: Callable[[], float] = time.monotonic
     load: Callable[[str], LabState | None] = lambda _: None
+    give_up: Callable[[str], None] = lambda _: None
     is_current: Callable[[str], bool] = lambda _: True
     keeper: WriteBehind | None = None
     _entries: dict[str, RegisteredLab] = field(default_factory=dict)
@@ -83,10 +89,12 @@ class LabRegistry:
         """
         codes = CODE.findall(known[:200]) if known else []
         refusal: NotKept | None = None
+        until = time.monotonic() + LEASE_WAIT
         try:
             for code in self._in_turn(codes):
-                if (entry := self._open(client, code)) is not None:
-                    return entry
+                with suppress(HeldElsewhere):  # it is in use, as in another tab of this process
+                    if (entry := self._open(client, code, until)) is not None:
+                        return entry
         except NotKept as error:
             refusal = error
         entry = self._made(new_code())
@@ -107,7 +115,10 @@ class LabRegistry:
             entry = self._entries.get(code)
             if entry is not None and entry.client is not None:
                 raise CodedError("error.lab_is_open")
-            found = self._open(client, code)
+            try:
+                found = self._open(client, code, time.monotonic() + LEASE_WAIT)
+            except HeldElsewhere:
+                raise CodedError("error.lab_is_open") from None
             if found is None:
                 raise CodedError("error.no_such_lab")
             return found
@@ -126,11 +137,16 @@ class LabRegistry:
         stand_ins = [entry.code for entry in waiting if entry.stands_in]
         return [*own, *(code for code in codes if code not in here), *stand_ins]
 
-    def _open(self, client: int, code: str) -> RegisteredLab | None:
+    def _open(self, client: int, code: str, until: float) -> RegisteredLab | None:
         """Give a lab to a client; None if there is no lab that it may have.
+
+        Args:
+            until: when to stop waiting for the lease of another process to end, by
+                `time.monotonic`, [s].
 
         Raises:
             NotKept: the database is unavailable, or the stored state cannot be read.
+            HeldElsewhere: another process has it open.
         """
         with self._alone(code):
             entry = self._entries.get(code)
@@ -140,17 +156,27 @@ class LabRegistry:
                 self._drop(entry)
                 entry = None
             if entry is None:
-                state = self._load(code)
+                state = self._load(code, until)
                 if state is None:
                     return None
                 entry = self._made(code, state)
             return self._give(client, entry)
 
-    def _load(self, code: str) -> LabState | None:
-        """The stored state of a lab; what is still pending of it here is stored before."""
+    def _load(self, code: str, until: float) -> LabState | None:
+        """The stored state of a lab; what is still pending of it here is stored before.
+
+        A process that has it open may just have been killed, or be about to notice that its client
+        has left: then its lease ends within `LEASE_WAIT`.
+        """
         if self.keeper is not None and not self.keeper.flush(code):
             raise NotKept("error.database_busy")
-        return self.load(code)
+        while True:
+            try:
+                return self.load(code)
+            except HeldElsewhere:
+                if time.monotonic() >= until:
+                    raise
+                time.sleep(ASK_AGAIN)
 
     @contextmanager
     def _alone(self, code: str) -> Iterator[None]:
@@ -205,8 +231,9 @@ class LabRegistry:
             entry = self._abandon(client)
             if entry is not None:
                 self._drop_old()
-        if entry is not None and self.keeper is not None:
-            self.keeper.flush(entry.code)  # it may return to another process
+        if entry is not None and self.keeper is not None and self.keeper.flush(entry.code):
+            with suppress(NotKept):  # else its lease ends by itself
+                self.give_up(entry.code)  # it may return to another process
         return entry
 
     def held(self) -> list[str]:
@@ -222,6 +249,24 @@ class LabRegistry:
                 self._remove(entry)
             return entry.client if entry is not None else None
 
+    def delete(self, code: str, delete: Callable[[str], object]) -> None:
+        """Delete a lab for good: here, what was still to be stored of it, and by `delete`.
+
+        Raises:
+            NotKept: it is still being stored, and nothing was changed; or `delete` raised it.
+            HeldElsewhere: another process has it open.
+        """
+        with self._alone(code):
+            self._discard(code)
+            self.lose(code)
+            self.simulation.call(lambda: None)  # the frame that may still have stored it has ended
+            self._discard(code)
+            delete(code)
+
+    def _discard(self, code: str) -> None:
+        if self.keeper is not None:
+            self.keeper.discard(code)
+
     def _is_current(self, code: str) -> bool:
         try:
             return self.is_current(code)
@@ -234,8 +279,7 @@ class LabRegistry:
         Raises:
             NotKept: it is still being stored; it is not removed.
         """
-        if self.keeper is not None:
-            self.keeper.discard(entry.code)
+        self._discard(entry.code)
         with self._lock:
             self._remove(entry)
 

@@ -43,6 +43,7 @@ from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.expiry import Expiry, Retention
+from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.page_release import clear_page, release_page
@@ -71,6 +72,7 @@ class LabServer:
         most_clients: maximum number at once; others wait. A teacher is always admitted.
         retention: how long labs are kept, and how many; by default that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
+        privacy_url: the address of the site's privacy notice, if it has one.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -88,25 +90,24 @@ class LabServer:
         most_clients: int = MOST_CLIENTS,
         retention: Retention | None = None,
         hang_seconds: float = 0.0,
+        privacy_url: str = "",
         **listening: Any,
     ) -> None:
-        self._store = store
+        self._store, self._privacy_url = store, privacy_url
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
-        self._watchdog = Watchdog(hang_seconds)
+        self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
         health = partial(metrics_json, self.simulation)
         well = {"health": health, "trouble": lambda: self._watchdog.trouble}
+        well["elsewhere"] = self._is_elsewhere
         self.server = make_server(host, port, label="OnPath", **well, **listening)
         self._records, self._retention = records, retention or Retention()
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
         self._memory = Periodic("memory", INTERVAL, MemoryRelease(self.sessions.free_memory).look)
         self._keeper = self._expiry = None
         if records is not None:
-            self._keeper = WriteBehind(records, lost=self._lost)
-            self._expiry = Expiry(records, self._retention, self.sessions.held)
-            self.sessions.load, self.sessions.is_current = records.claim, records.is_current
-            self.sessions.keeper = self._keeper
+            self._store_labs(records)
         self._classes = ClassDirectory(classrooms, self._class_service)
         self._places = dict[int, str]()
         self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
@@ -115,6 +116,13 @@ class LabServer:
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()
+
+    def _store_labs(self, records: Records) -> None:
+        self._keeper = WriteBehind(records, lost=self._lost)
+        self._expiry = Expiry(records, self._retention, self.sessions.held)
+        sessions = self.sessions
+        sessions.load, sessions.is_current = records.claim, records.is_current
+        sessions.keeper, sessions.give_up = self._keeper, records.give_up
 
     def _start(self) -> None:
         self.simulation.start()
@@ -125,6 +133,11 @@ class LabServer:
         self._processor.start()
         if self._expiry is not None:
             self._expiry.start()
+        if self._records is not None:
+            stored = self._classes.all_stored()
+            self._leases = LeaseKeeper(self._records, self._open_here, stored, self._lost)
+            self._leases.look()
+            self._leases.rounds.start()
         self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))
 
     @property
@@ -151,12 +164,24 @@ class LabServer:
         if self._keeper is not None:
             self._keeper.close()
         self._classes.stop()
+        if self._leases is not None:
+            self._leases.stop()
         if self._records is not None:
             self._records.close()
 
     def _class_service(self, classroom: Classroom, place: str) -> ClassService:
         away = self._send_away
         return ClassService(classroom, self.sessions, place, self._records, self._keeper, away)
+
+    def _is_elsewhere(self, place: str) -> bool:
+        """Whether another process has the class of a place open."""
+        if self._leases is None:
+            return False
+        return self._leases.is_elsewhere(self._classes.stored_as(place))
+
+    def _open_here(self) -> list[str]:
+        """The names in the database of everything that is open in this process."""
+        return [*self.sessions.held(), *self._classes.in_use()]
 
     def _class_of(self, client: int) -> ClassService | None:
         return self._classes.at(self._places.get(client, ""))
@@ -165,8 +190,10 @@ class LabServer:
         client, kept, number = arrival.client, arrival.kept, arrival.client.client_id
         self._places[number] = arrival.place
         service = self._class_of(number)
-        if service is not None:
-            service.greet(client, kept[TEACHER_KEY])
+        if service is not None and not service.greet(client, kept[TEACHER_KEY]):
+            disconnect(self.server, {number})
+            self._disconnected(client)
+            return
         if kept[DARK_KEY] == "yes":
             self._dark.add(number)
         teaches = service is not None and service.teaches(number)
@@ -215,7 +242,7 @@ class LabServer:
         teaching = service.teaching(client, lab, reopen) if service else None
         keeps = self._records is not None and not self._records.warning
         days, dark = self._retention.days if keeps else 0, number in self._dark
-        desk = PageContext(code, lab.post, self._course, days, enter, seat, dark)
+        desk = PageContext(code, lab.post, self._course, days, enter, seat, dark, self._privacy_url)
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
         first = self.simulation.call(take)

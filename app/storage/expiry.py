@@ -14,7 +14,7 @@ import sqlalchemy as sa
 
 from onpath.app.common.periodic import Periodic
 from onpath.app.storage.records import NotKept, Records
-from onpath.app.storage.schema import classes, labs
+from onpath.app.storage.schema import classes, labs, leases
 
 log = logging.getLogger(__name__)
 
@@ -95,6 +95,7 @@ class Expiry:
         with self._records.transaction() as connection:
             ended = classes.c.updated < now - CLASS_DAYS * DAY
             connection.execute(sa.delete(classes).where(ended))
+            connection.execute(sa.delete(leases).where(leases.c.until < now - DAY))
             return connection.execute(sa.delete(labs).where(wanted)).rowcount
 
     def _run(self) -> None:

@@ -1,7 +1,8 @@
 """The stored states of labs and classes: in an SQLite file of the user, or a database by URL.
 
 Several processes may share a database. A state belongs to the process that claimed it last, and no
-other can save it; so a process whose copy in memory is outdated notices it.
+other can save it; so a process whose copy in memory is outdated notices it. Nobody can claim what
+another process has open: it holds a lease, see leases.py.
 
 An SQLite file that cannot be used never stops the lab: `Records.warning` then says why, and the
 records are in memory. engine.py opens the database.
@@ -13,7 +14,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -40,8 +41,9 @@ from onpath.app.storage.engine import (
     parsed,
     words,
 )
+from onpath.app.storage.leases import Renewal, give_up, renew, take
 from onpath.app.storage.private_files import make_private_folder
-from onpath.app.storage.schema import LONGEST_CODE, classes, labs
+from onpath.app.storage.schema import LONGEST_CODE, classes, labs, leases
 
 log = logging.getLogger(__name__)
 
@@ -74,11 +76,12 @@ def _statements(table: sa.Table) -> _Statements:
     )
 
 
+_SERVER_TIME = sa.select(sa.cast(sa.extract("epoch", sa.func.clock_timestamp()), sa.Double))
 _STATEMENTS = {table: _statements(table) for table in (labs, classes)}
 
 
 class HeldElsewhere(Exception):
-    """Another process has claimed the state; the copy in this process is outdated."""
+    """The state is another process's: it has claimed it, or has it open."""
 
 
 def default_file() -> Path:
@@ -137,15 +140,45 @@ class Records:
         return None if row is None else _state(row)
 
     def claim(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
-        """Take over a state, which counts as its use; see `load`."""
+        """Take over a state, which counts as its use, and its lease; see `load`.
+
+        Raises:
+            HeldElsewhere: another process has it open.
+        """
         values = {"of": code, "own": self.owner, "updated": self._clock()}
+        try:
+            with self.transaction() as connection:
+                row = connection.execute(_STATEMENTS[table].lock, {"of": code}).first()
+                if row is None:
+                    return None
+                state = _state(row)
+                take(connection, code, self.owner, self._now(connection))
+                connection.execute(_STATEMENTS[table].claim, values)
+                return state
+        except exc.IntegrityError:
+            raise HeldElsewhere from None
+
+    def renew(self, codes: Iterable[str], watched: Iterable[str] = ()) -> Renewal:
+        """Renew the leases of what this process has open; see `app.storage.leases.renew`.
+
+        Raises:
+            NotKept: the database cannot be used.
+        """
         with self.transaction() as connection:
-            row = connection.execute(_STATEMENTS[table].lock, {"of": code}).first()
-            if row is None:
-                return None
-            state = _state(row)
-            connection.execute(_STATEMENTS[table].claim, values)
-            return state
+            found = renew(connection, codes, watched, self.owner, self._now(connection))
+        for code in found.missing:
+            with suppress(exc.IntegrityError), self.transaction() as connection:
+                take(connection, code, self.owner, self._now(connection))
+        return found
+
+    def give_up(self, code: str | None = None) -> None:
+        """Give up the lease of a state, or all leases of this process.
+
+        Raises:
+            NotKept: the database cannot be used; the leases end by themselves.
+        """
+        with self.transaction() as connection:
+            give_up(connection, self.owner, code)
 
     def is_current(self, code: str, table: sa.Table = labs) -> bool:
         """Whether no other process has claimed or saved a state since this one did.
@@ -189,6 +222,22 @@ class Records:
         with self.transaction() as connection:
             connection.execute(sa.update(labs).where(ours).values(updated=self._clock()))
 
+    def delete(self, code: str) -> int:
+        """Delete a lab. Returns the number of labs deleted, 1 or 0.
+
+        Raises:
+            NotKept: it could not be deleted.
+            HeldElsewhere: another process has it open.
+        """
+        try:
+            with self.transaction() as connection:
+                take(connection, code, self.owner, self._now(connection))
+                count = connection.execute(sa.delete(labs).where(labs.c.code == code)).rowcount
+                give_up(connection, self.owner, code)
+                return count
+        except exc.IntegrityError:
+            raise HeldElsewhere from None
+
     def delete_all(self) -> int:
         """Delete all labs and classes. Returns the number of labs.
 
@@ -197,7 +246,9 @@ class Records:
         """
         with self.transaction() as connection:
             connection.execute(sa.delete(classes))
-            return connection.execute(sa.delete(labs)).rowcount
+            count = connection.execute(sa.delete(labs)).rowcount
+            connection.execute(sa.delete(leases))
+            return count
 
     def close(self) -> None:
         """Close the database."""
@@ -246,6 +297,12 @@ class Records:
                 raise
             except (exc.SQLAlchemyError, UnicodeDecodeError) as error:
                 raise NotKept("error.database", reason=words(error)) from error
+
+    def _now(self, connection: sa.Connection) -> float:
+        """The time by which leases are reckoned, the same for all processes, [s]."""
+        if connection.dialect.name == "postgresql":
+            return connection.execute(_SERVER_TIME).scalar_one()
+        return self._clock()
 
     def _opened(self) -> sa.Engine:
         if self._url.get_backend_name() != "sqlite":

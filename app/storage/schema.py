@@ -1,6 +1,6 @@
 """The tables of the database. A change here needs a revision in `migrations/versions`.
 
-meta: engine.py. labs, classes: records.py.
+meta: engine.py. labs, classes: records.py. leases: leases.py.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ meta = sa.Table(
 def _states(name: str) -> sa.Table:
     """A table of states by code.
 
-    owner: the process that opened the state last; only it may write.
+    owner: the process that opened the state last; only it may write. See leases.py.
     version: of the program's format. updated: when it was last used, seconds since 1970.
     """
     return sa.Table(
@@ -37,3 +37,10 @@ def _states(name: str) -> sa.Table:
 
 labs = _states("labs")
 classes = _states("classes")
+leases = sa.Table(
+    "leases",
+    metadata,
+    sa.Column("code", sa.String(LONGEST_CODE), primary_key=True),
+    sa.Column("owner", sa.String(40), nullable=False),
+    sa.Column("until", sa.Double, nullable=False),
+)

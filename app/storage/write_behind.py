@@ -92,22 +92,6 @@ class WriteBehind:
         """Changes when what was saved may be gone; see `Records.generation`."""
         return self._records.generation
 
-    def forget(self, delete: Callable[[], int]) -> int:
-        """Call `delete`, discard the states that were pending before, and return its result.
-
-        Raises:
-            NotKept: another write takes too long, or `delete` failed; the states stay pending.
-        """
-        with held(self._writing, TURN_WAIT):
-            with self._lock:
-                outdated = dict(self._pending)
-            count = delete()
-            with self._lock:
-                newer = {c: s for c, s in self._pending.items() if s is not outdated.get(c)}
-                self._pending = newer
-                self._failed.clear()
-            return count
-
     def discard(self, code: str) -> None:
         """Discard the pending state of a lab that is outdated; it is not being written on return.
 

@@ -2,6 +2,10 @@
 
 All of them serve the same page. They exist so that a proxy can send everybody who belongs together
 to one process, by the path alone: viser's page opens its websocket at its own address.
+
+An address has one spelling, in lower case and without a query, because a proxy may send another
+spelling of it to another process. A page that is asked for in another one is redirected, and a
+websocket is refused.
 """
 
 from __future__ import annotations
@@ -16,7 +20,9 @@ from onpath.app.common.access_codes import new_code
 
 CLASS, ALONE = "c", "l"
 COOKIE = "onpath"  # brings a browser back to its /l/NAME/
-_PLACE = re.compile(r"/([cl])/([A-Za-z0-9]{1,32})(?=[/?]|$)")
+_PLACE = re.compile(r"/([cl])/([a-z0-9]{1,32})(?=[/?]|$)", re.ASCII | re.IGNORECASE)
+_LIKE_A_PLACE = re.compile(r"/[cl](?:[/?]|$)", re.IGNORECASE)
+_SOCKET = re.compile(r"/[cl]/[a-z0-9]{1,32}/?")
 _KNOWN = re.compile(rf"(?:^|;\s*){COOKIE}=([a-z0-9]{{12}})(?:;|$)")
 _START = ("/", "/index.html")
 _YEAR = 31_536_000  # [s]
@@ -30,7 +36,15 @@ def class_address(code: str) -> str:
 def place_of(path: str) -> str:
     """The place in a path, "c/CODE" or "l/NAME"; empty for the others."""
     found = _PLACE.match(path)
-    return f"{found[1]}/{found[2].lower()}" if found else ""
+    return f"{found[1]}/{found[2]}".lower() if found else ""
+
+
+def takes_websocket(path: str) -> bool:
+    """Whether a websocket may be opened at a path: at a place as it is spelt, or at no place.
+
+    viser's page opens it without the slash at the end.
+    """
+    return bool(_SOCKET.fullmatch(path)) or not _LIKE_A_PLACE.match(path)
 
 
 def class_code_in(place: str) -> str:
@@ -52,7 +66,7 @@ def without_place(path: str) -> str:
 
 
 def redirection(connection: ServerConnection, request: Request, spreads: bool) -> Response | None:
-    """Where a page is, if it is asked for at a similar address.
+    """Where a page is, if it is asked for at a similar address. The query of a page is dropped.
 
     Args:
         spreads: whether visitors without a class are spread over places of their own.
@@ -60,19 +74,32 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
     if "Upgrade" in request.headers:
         return None
     path, mark, query = request.path.partition("?")
-    found = _PLACE.match(path)
-    if found and (path == found[0] or found[2] != found[2].lower()):
+    if found := _PLACE.match(path):
         rest = path[found.end() :] or "/"
-        return _redirect(connection, f"/{found[1]}/{found[2].lower()}{rest}{mark}{query}")
-    if found or not spreads or path not in _START:
+        rest = "/" if rest in _START else f"{rest}{mark}{query}"
+        address = f"/{place_of(path)}{rest}"
+        return None if address == request.path else _redirect(connection, address)
+    if not spreads or path not in _START:
         return None
     cookies = "; ".join(request.headers.get_all("Cookie"))
     known = _KNOWN.search(cookies)
     name = known[1] if known else new_code()
-    response = _redirect(connection, f"/{ALONE}/{name}/{mark}{query}")
+    response = _redirect(connection, f"/{ALONE}/{name}/")
     if not known:
         cookie = f"{COOKIE}={name}; Path=/; HttpOnly; SameSite=Strict; Max-Age={_YEAR}"
         response.headers["Set-Cookie"] = cookie
+    return response
+
+
+def not_here(connection: ServerConnection) -> Response:
+    """The answer to a websocket at a place that another process serves.
+
+    nginx passes the request on to the next process because of it (`http_502`, which no process
+    answers otherwise); a page asks again every second.
+    """
+    said = "Another process serves this class: ask again.\n"
+    response = connection.respond(HTTPStatus.BAD_GATEWAY, said)
+    response.headers["Retry-After"] = "1"
     return response
 
 

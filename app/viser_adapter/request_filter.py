@@ -9,6 +9,8 @@ from urllib.parse import unquote, urlsplit
 
 from websockets.http11 import Request, Response
 
+from onpath.app.viser_adapter.places import takes_websocket
+
 LONGEST_PATH = 200  # [characters]; file systems have limits
 HEALTH = "/health"  # answered while the network thread is alive, for process supervisors
 
@@ -99,6 +101,8 @@ class RequestFilter:
             return HTTPStatus.BAD_REQUEST, "More than one Upgrade.\n"
         if not self.open:
             return HTTPStatus.SERVICE_UNAVAILABLE, "Starting.\n"
+        if not takes_websocket(request.path):
+            return HTTPStatus.NOT_FOUND, "No lab has this address.\n"
         if not self._trusts(request):
             return HTTPStatus.FORBIDDEN, "This page's origin may not connect to this server.\n"
         return None

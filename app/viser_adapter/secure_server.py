@@ -35,7 +35,7 @@ from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
-from onpath.app.viser_adapter.places import place_of, redirection, without_place
+from onpath.app.viser_adapter.places import not_here, place_of, redirection, without_place
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
     add_headers,
@@ -71,6 +71,7 @@ def make_server(
     unix_socket: Path | None = None,
     health: Callable[[str], str] = well,
     trouble: Callable[[], str] = str,
+    elsewhere: Callable[[str], bool] = lambda _: False,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -83,6 +84,7 @@ def make_server(
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         health, trouble: see `RequestFilter`.
+        elsewhere: whether another process serves a place; a websocket there is answered 502.
 
     Raises:
         ValueError: a proxy is malformed.
@@ -98,7 +100,9 @@ def make_server(
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
-    with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
+    to_page = partial(redirection, spreads=bool(door.allowed)) if unix_socket is None else _to_page
+    to_place = partial(_to_place, to_page=to_page, elsewhere=elsewhere)
+    with _guarded_serve(listener, door, limits, connections, to_place):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     harden(server, limits=limits)
     door.open = True
@@ -158,6 +162,24 @@ def _to_page(connection: ServerConnection, request: Request) -> Response | None:
     return response
 
 
+def _to_place(
+    connection: SecureConnection,
+    request: Request,
+    to_page: Callable[[ServerConnection, Request], Response | None],
+    elsewhere: Callable[[str], bool],
+) -> Response | None:
+    """Note the place of a connection, unless it is at another address or process.
+
+    Every process has the page. A proxy may send it and its websocket to different ones, if it reads
+    the whole path: they differ by the slash at the end.
+    """
+    is_tab = "Upgrade" in request.headers
+    if response := to_page(connection, request):
+        return response
+    connection.place, request.path = place_of(request.path), without_place(request.path)
+    return not_here(connection) if is_tab and elsewhere(connection.place) else None
+
+
 def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
     """Complete a response: the headers of all of them, and only these if no more was asked for."""
     add_headers(response)
@@ -174,11 +196,10 @@ def _guarded_serve(
     requests: RequestFilter,
     limits: Limits,
     counts: ConnectionLimits,
-    in_folder: bool,
+    to_place: Callable[[SecureConnection, Request], Response | None],
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
-    to_page = _to_page if in_folder else partial(redirection, spreads=bool(requests.allowed))
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
@@ -187,9 +208,8 @@ def _guarded_serve(
             answered = requests.refusal(request, connection.peer)  # or the health report
             if answer := answered or counts.refusal(connection, request):
                 return connection.respond(*answer)
-            if elsewhere := to_page(connection, request):
+            if elsewhere := to_place(connection, request):
                 return elsewhere
-            connection.place, request.path = place_of(request.path), without_place(request.path)
             return add_scripts(process_request(connection, request))
 
         options["max_size"] = limits.max_message_bytes

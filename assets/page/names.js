@@ -12,19 +12,27 @@
   const ROW = ".mantine-Flex-root:has(label)";
   const ICON = "button.mantine-ActionIcon-root:not([aria-label])";
 
+  const UNCORRECTED = Object.entries({
+    autocapitalize: "off", autocorrect: "off", autocomplete: "off", spellcheck: "false",
+  });
+
   function set(element, name, value) {
     if (element && value && element.getAttribute(name) !== value) element.setAttribute(name, value);
   }
 
   // A slider's handle, the box beside it and a field to type in are named by the label of their row.
-  // A required field has a mark before it, see panel/required.html.
+  // A required field has a mark before it, and so has one for codes, see panel/field.html.
   function nameFields() {
     for (const field of document.querySelectorAll(FIELD)) {
       if (field.labels?.length) continue;
       set(field, "aria-label", field.closest(ROW)?.querySelector("label").textContent);
     }
+    const after = (mark) => mark.closest("div")?.nextElementSibling?.querySelector("input");
     for (const mark of document.querySelectorAll("[data-required]")) {
-      set(mark.closest("div")?.nextElementSibling?.querySelector("input"), "aria-required", "true");
+      set(after(mark), "aria-required", "true");
+    }
+    for (const mark of document.querySelectorAll("[data-typed-code]")) {
+      for (const [name, value] of UNCORRECTED) set(after(mark), name, value);
     }
   }
 

@@ -257,7 +257,13 @@ class-title = Klasse
 class-code = Klassencode
 class-code_hint = Er steht auf der Leinwand
 class-nickname = Spitzname
-class-nickname_hint = Höchstens 24 Zeichen; mehr wird von dir nicht gespeichert
+class-nickname_hint = Höchstens 24 Zeichen; es muss nicht dein richtiger Name sein
+class-stored = Dein Labor speichert, und deine Lehrkraft sieht unter deinem Spitznamen: deine Vorhersagen und gezeichneten Kurven, deine Antworten und eigenen Worte, Aufgaben, Verstärkungen und wann du zuletzt etwas getan hast. Der Spitzname wird gelöscht, wenn du die Klasse verlässt oder sie endet, das Übrige, { $days ->
+        [0] wenn der Server endet
+        [one] wenn es einen Tag lang nicht benutzt wurde
+       *[other] wenn es { $days } Tage lang nicht benutzt wurde
+    }. Deine Lehrkraft kann alles sofort löschen.
+class-privacy = Datenschutzerklärung
 class-join = Der Klasse beitreten
 class-leave = Die Klasse verlassen
 class-elsewhere = Diese Klasse hat eine eigene Seite: Öffne sie
@@ -292,6 +298,9 @@ class-free = Freies Labor
 class-nobody = Noch ist niemand beigetreten.
 class-follow = Zusehen bei
 class-own_lab = Mein eigenes Labor
+class-delete = Diese Person löschen
+class-delete_sure = { $name } aus der Klasse löschen, und das Labor mit allem, was davon gespeichert ist: Vorhersagen, gezeichnete Kurven, Antworten, Aufgaben? Das lässt sich nicht rückgängig machen. Eine offene Seite beginnt mit einem neuen Labor.
+class-deleted = Gelöscht.
 class-following = Das ist das Labor von { $name }. Du kannst nur zusehen.
 class-hidden = Der Tab dieser Person ist verdeckt: Das Labor wartet.
 class-absent = Diese Person ist nicht verbunden: Das Labor wartet.
@@ -317,7 +326,7 @@ class-predicted = Vorhersagen
 class-given = { $given } vorhergesagt, { $skipped } übersprungen, { $waiting } noch nicht
 class-record = Ergebnisse
 class-record_text = Eine Zeile für jede Person und jede Vorhersage, Aufgabe und Frage der begonnenen Lektionen. Sie enthält Spitznamen: Behandle sie als personenbezogene Daten.
-class-export = Ergebnisse der Klasse (CSV)
+class-export = Ergebnisse der Klasse (XLSX)
 class-end = Die Klasse beenden
 class-end_sure = Die Klasse beenden? Spitznamen und Ergebnisse der Klasse werden gelöscht; die Labore gehen ohne Klasse weiter. Sichere die Ergebnisse zuerst.
 class-ended = Die Klasse ist zu Ende. { $count ->
@@ -325,8 +334,8 @@ class-ended = Die Klasse ist zu Ende. { $count ->
         [one] 1 Person war dabei.
        *[other] { $count } Personen waren dabei.
     } Die nächste Klasse hat einen neuen Code.
-class-forget = Alles Gespeicherte löschen
-class-forget_sure = Alle Labore löschen, die dieser Server speichert, und die Klasse beenden? Offene Labore bleiben offen und werden wieder gespeichert, sobald sich etwas in ihnen ändert.
+class-forget = Die Klasse und ihre Labore löschen
+class-forget_sure = Die Labore aller Personen dieser Klasse löschen, mit allem, was davon gespeichert ist, und die Klasse beenden? Das lässt sich nicht rückgängig machen. Offene Seiten beginnen mit einem neuen Labor.
 class-forgotten =
     { $count ->
         [0] Kein Labor wurde gelöscht.

@@ -259,7 +259,13 @@ class-title = Class
 class-code = Class code
 class-code_hint = Shown on the projector
 class-nickname = Nickname
-class-nickname_hint = At most 24 characters; nothing else about you is stored
+class-nickname_hint = At most 24 characters; it need not be your real name
+class-stored = Your lab stores, and your teacher sees under your nickname: your predictions and drawn curves, your answers and own words, tasks, gains, and when you were last active. The nickname is deleted when you leave the class or it ends, the rest { $days ->
+        [0] when the server stops
+        [one] after a day without use
+       *[other] after { $days } days without use
+    }. Your teacher can delete it all at once.
+class-privacy = Privacy notice
 class-join = Join the class
 class-leave = Leave the class
 class-elsewhere = This class has a page of its own: open it
@@ -294,6 +300,9 @@ class-free = Free lab
 class-nobody = Nobody has joined yet.
 class-follow = Follow
 class-own_lab = My own lab
+class-delete = Delete this student
+class-delete_sure = Delete { $name } from the class, and the lab with everything that is stored of it: predictions, drawn curves, answers, tasks? It cannot be undone. An open page starts again with a new lab.
+class-deleted = Deleted.
 class-following = This is the lab of { $name }. You can only look.
 class-hidden = This student's tab is hidden: the lab waits.
 class-absent = This student is not connected: the lab waits.
@@ -319,7 +328,7 @@ class-predicted = predictions
 class-given = { $given } predicted, { $skipped } skipped, { $waiting } not yet
 class-record = Record
 class-record_text = One row for each student and each prediction, task and question of the lessons begun. It contains nicknames: treat it as personal data.
-class-export = Class record (CSV)
+class-export = Class record (XLSX)
 class-end = End the class
 class-end_sure = End the class? Nicknames and the class record are deleted; the labs continue without a class. Export the record first.
 class-ended = The class is over. { $count ->
@@ -327,8 +336,8 @@ class-ended = The class is over. { $count ->
         [one] 1 student was in it.
        *[other] { $count } students were in it.
     } The next class has a new code.
-class-forget = Delete everything stored
-class-forget_sure = Delete every lab that this server stores, and end the class? Labs that are open stay open, and are stored again when something in them changes.
+class-forget = Delete the class and its labs
+class-forget_sure = Delete the labs of all students of this class, with everything that is stored of them, and end the class? It cannot be undone. Open pages start again with a new lab.
 class-forgotten =
     { $count ->
         [0] No labs were deleted.

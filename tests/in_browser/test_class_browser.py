@@ -84,6 +84,10 @@ def fill(tab: Tab, label: str, text: str) -> None:
     tab.blur()
 
 
+UNCORRECTED = ["autocapitalize", "autocorrect", "spellcheck"]  # by a phone
+UNCORRECTED_CODE = ["off", "off", "false"]
+
+
 def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     for student, name in zip(tabs.students, ("Ada", HOSTILE), strict=True):
         fill(student, "Class code", tabs.room.code.upper())
@@ -94,6 +98,8 @@ def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     teacher.open("Teacher…")
     for label in ("Class code", "Nickname", "Teacher's key"):
         assert teacher.field(label).get_attribute("aria-required") == "true"
+        left = [teacher.field(label).get_attribute(name) for name in UNCORRECTED]
+        assert left == (UNCORRECTED_CODE if label != "Nickname" else [None] * len(UNCORRECTED))
     fill(teacher, "Teacher's key", "2222-2222-2222")
     teacher.press("Open the teacher's page")
     refusal = teacher.page.get_by_role("alert").filter(has_text="this is not the teacher's key")

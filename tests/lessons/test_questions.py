@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import re
@@ -16,7 +14,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.classroom.classroom import Member
-from onpath.app.classroom.results import class_csv
 from onpath.app.exports.guide import guide, worksheet
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
@@ -33,6 +30,7 @@ from onpath.models.errors import CodedError
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, store
 from tests.support.lesson_texts import LESSON, write_lesson
+from tests.support.record import record
 
 NUMBER = """
 ```number
@@ -182,15 +180,14 @@ def test_record_and_class_show_all_of_it(tmp_path: Path) -> None:
         assert part in told
     assert "<b>x" not in told
     member = Member(1, "Ada", lab.lessons.progress)
-    data = class_csv([member], lab.lessons.course, "en").decode("utf-8-sig")
-    every = list(csv.DictReader(io.StringIO(data)))
+    every = record([member], lab.lessons.course)["Answers"]
     rows = {(row["kind"], row["step"]): row for row in every}
     items = [row["item"] for row in every if row["kind"] in ("question", "number", "words")]
     assert len(items) == len(set(items)) == 3  # several in one step are told apart
-    assert (rows["prediction", "4"]["sure"], rows["prediction", "4"]["why"]) == ("fairly", "B")
-    assert rows["prediction", "2"]["why"].startswith("<b>x</b>")
-    assert (rows["number", "8"]["right"], rows["number", "8"]["value"]) == ("0", "7.0")
-    assert rows["words", "8"]["result"] == "words" and rows["words", "8"]["value"]
+    assert (rows["prediction", 4]["sure"], rows["prediction", 4]["reason"]) == ("fairly", "B")
+    assert rows["prediction", 2]["why"].startswith("<b>x</b>")
+    assert (rows["number", 8]["right"], rows["number", 8]["value"]) == (0, 7)
+    assert rows["words", 8]["result"] == "answered" and rows["words", 8]["text"]
 
 
 def test_guide_and_worksheet_have_the_questions(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ import zlib
 
 import msgspec
 
-from onpath.app.common.access_codes import is_code
+from onpath.app.common.access_codes import as_meant, is_code
 from onpath.app.lab.setups.setup import Setup, to_data
 from onpath.app.lab.setups.stored import from_data
 from onpath.models.errors import CodedError, said_by
@@ -22,7 +22,7 @@ LONGEST_TEXT = 50_000  # maximum input, [characters]
 LARGEST = 20_000  # maximum size of an inflated set-up, [B]
 _CODE = re.compile(r"ONPATH([0-9]{1,6})-([A-Z2-7]*)-([A-Z2-7]{7})", re.ASCII | re.IGNORECASE)
 _BEGINNING = re.compile(r"ONPATH([0-9]{1,6})-", re.ASCII | re.IGNORECASE)
-_SPACE = re.compile(r"[\s\u00ad\u200b\ufeff]+")  # also what chats and mails insert to break lines
+_BETWEEN = re.compile(r"[^A-Za-z0-9-]+")  # what mails insert to break lines, and quotes
 _encoder = msgspec.json.Encoder(order="sorted")
 # Dictionary for deflate. Part of the format: changing it requires a new version.
 _KNOWN = (
@@ -51,8 +51,8 @@ def decode(text: str) -> Setup:
     """
     if len(text) > LONGEST_TEXT:
         raise CodedError("error.share_too_long")
-    text = _SPACE.sub("", text)
-    beginning, code = _BEGINNING.search(text), _CODE.search(text)
+    plain = _BETWEEN.sub("", as_meant(text))
+    beginning, code = _BEGINNING.search(plain), _CODE.search(plain)
     if beginning is None:
         if is_code(text):
             raise CodedError("error.share_is_lab")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import viser
 
+from onpath.app.common.templates import render
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -20,6 +21,7 @@ class TeacherControls:
         self._freezing = _add_freezing(gui, words, teaching)
         send = gui.add_button(words("class.push_setup"), icon=viser.Icon.SEND)
         with gui.add_folder(words("keep.paste"), expand_by_default=False):
+            gui.add_html(render("panel/field.html", kind="code", required=False))
             code = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             push = gui.add_button(words("class.push_code"), color="gray", icon=viser.Icon.SEND)
         self._said = gui.add_html("")

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import Any
 
 import viser
 
 from onpath.app.classroom import class_html as page
-from onpath.app.classroom.concept_test_results import rows_without_names
-from onpath.app.classroom.results import class_csv
+from onpath.app.classroom.class_record import class_record
+from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -93,6 +94,7 @@ class TeacherPanel:
             self._show_names()
             still = self._teaching.why_still(self._words)
             _show(self._still, note(still) if still else "")
+            _show(self._deleted, note(self._chosen.told) if self._chosen.told else "")
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._answers.view(self._large))
@@ -116,6 +118,11 @@ class TeacherPanel:
             self._words("class.follow"), [self._words("class.own_lab")]
         )
         on_user_update(self._names, self._choose_followed)
+        self._delete = self._gui.add_button(
+            self._words("class.delete"), color="red", icon=viser.Icon.USER_MINUS
+        )
+        self._deleted = self._gui.add_html("")
+        on_press(self._delete, self._ask_to_delete)
         self._still = self._gui.add_html("")
         self._standing = self._gui.add_html("")
         self._clear = self._gui.add_button(self._words("class.push_end"), color="gray")
@@ -136,6 +143,7 @@ class TeacherPanel:
             self._names.options = options
         if self._names.value != shown:
             self._names.value = shown
+        self._delete.visible = shown in names
 
     def _show_standing(self) -> None:
         """Show the set-up that new members receive and the button that clears it."""
@@ -151,8 +159,28 @@ class TeacherPanel:
             said = self._words("class.standing_setup")
         _show(self._standing, note(said) if said else "")
 
+    def _ask_to_delete(self) -> None:
+        """Delete the student who is followed, after confirmation."""
+        code = self._chosen.followed
+        member = self._class.member(code)
+        if member is not None:
+            question = self._words("class.delete_sure", name=member.name)
+            self._ask(self._words("class.delete"), question, lambda: self._delete_student(code))
+
+    def _delete_student(self, code: str) -> None:
+        try:
+            self._teaching.delete(code)
+            said = self._words("class.deleted")
+        except (OSError, ValueError) as error:
+            said = self._words.sentence(error)
+        else:
+            self._chosen.numbered.clear()
+            self._choose_followed("")  # which may rebuild the page
+        self._chosen.told = said
+        self._look_again()
+
     def _choose_followed(self, name: str) -> None:
-        self._chosen.followed = self._followable().get(name, "")
+        self._chosen.followed, self._chosen.told = self._followable().get(name, ""), ""
         self._look_again()
 
     # Predictions
@@ -247,9 +275,11 @@ class TeacherPanel:
         }
         ways = [(session, member.progress) for session, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
-        tests = rows_without_names(test, ways, self._class.code) if test else ()
-        data = class_csv(members.values(), course, language, tests)
-        self._client.send_file_download("onpath-class.csv", data, save_immediately=True)
+        tests = sheets_without_names(test, ways, self._class.code) if test else []
+        made = datetime.now(UTC)
+        data = class_record(members.values(), course, language, made, tests)
+        name = f"onpath-class-{made:%Y-%m-%d}.xlsx"
+        self._client.send_file_download(name, data, save_immediately=True)
 
     def _end(self) -> None:
         try:
@@ -262,7 +292,7 @@ class TeacherPanel:
     def _forget(self) -> None:
         try:
             said = self._words("class.forgotten", count=self._teaching.forget())
-        except OSError as error:
+        except (OSError, ValueError) as error:
             said = self._words.sentence(error)
         self._told.content = note(said)
         self._look_again()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from threading import Event, Thread
 from typing import Any
@@ -21,6 +22,7 @@ from onpath.app.classroom.classroom import (
 from onpath.app.common.access_codes import shown
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.setup import Setup
+from onpath.app.storage.leases import LEASE, RENEWAL
 from onpath.app.storage.records import NotKept, Records, file_url
 from onpath.app.storage.schema import classes
 from onpath.lessons.pace import Pace
@@ -31,16 +33,26 @@ ADA, BOB = "a" * 12, "b" * 12
 
 
 class Process:
-    """A class in one process, under a clock."""
+    """A class in one process, under a clock of its own.
 
-    def __init__(self, file: Path, now: float, key: str = KEY) -> None:
+    Args:
+        wall: the time that all processes share.
+    """
+
+    def __init__(
+        self, file: Path, now: float, key: str = KEY, wall: Callable[[], float] = time.time
+    ) -> None:
         self.now, self.given_up = now, 0
-        self.records = Records(file_url(file))
+        self.records = Records(file_url(file), wall)
         self.room: Classroom = class_with_address(key, lambda: self.now)
         self.keeper = ClassKeeper(self.room, self.records, self._give_up)
 
     def _give_up(self) -> None:
         self.given_up += 1
+
+    def leave(self) -> None:
+        """Nobody has the class open here any more."""
+        self.records.give_up()
 
     def settle(self) -> None:
         """Some time passes, and the class is stored."""
@@ -62,6 +74,7 @@ def moved(two: list[Process]) -> list[Process]:
     one.keeper.open()
     one.room.join(ADA, one.room.code, "Ada")
     one.keeper.look()
+    one.leave()
     other.keeper.open()
     other.room.join(BOB, other.room.code, "Bob")
     other.keeper.look()
@@ -82,8 +95,8 @@ def test_every_process_with_the_key_has_the_same_class(two: list[Process], tmp_p
     stranger.keeper.open()
     assert names(stranger) == []
     stranger.records.close()
-    (row,) = rows(one.records)
-    assert KEY not in str(row) and one.room.code not in str(row)
+    for row in rows(one.records):
+        assert KEY not in str(row) and one.room.code not in str(row)
 
 
 def rows(records: Records) -> list[Any]:
@@ -107,6 +120,7 @@ def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep |
     room.keep_within(Pace("01-a", 1, 3))
     room.note(ADA, taken=1)
     one.settle()
+    one.leave()
     other.keeper.open()
     assert names(other) == ["Ada", "Cid"]
     ada, cid = other.room.members().values()
@@ -129,6 +143,7 @@ def test_who_has_lost_the_class_gives_it_up_and_takes_it_back_as_it_is_then(
         one.keeper.look()
     assert one.given_up == 1 and names(one) == [] and not one.room.orders.frozen
     assert other.given_up == 0 and names(other) == ["Ada", "Bob"]
+    other.leave()
     one.keeper.open()
     assert names(one) == ["Ada", "Bob"] and not one.room.orders.frozen
     other.keeper.look()
@@ -148,12 +163,33 @@ def test_a_class_that_moved_away_while_its_process_was_suspended_is_read_again(
 ) -> None:
     one, other = moved(two)
     one.now += FRESH  # it wakes up, and somebody comes before it has looked
-    one.keeper.open()
+    other.leave()
+    assert one.keeper.open()
     assert names(one) == ["Ada", "Bob"]
     one.keeper.look()
     assert one.given_up == 0 and names(one) == ["Ada", "Bob"]
     other.keeper.look()
     assert other.given_up == 1
+
+
+def test_a_class_is_not_taken_from_a_process_that_has_it_open(tmp_path: Path) -> None:
+    wall = [1e9]
+    one, other = (Process(tmp_path / "labs.db", 0.0, wall=lambda: wall[0]) for _ in range(2))
+    assert one.keeper.open()
+    one.room.join(ADA, one.room.code, "Ada")
+    one.keeper.look()
+    for _ in range(20):
+        wall[0] += RENEWAL
+        one.records.renew([one.keeper.id])
+        assert not other.keeper.open()
+    other.keeper.look()
+    assert names(one) == ["Ada"] and (one.given_up, other.given_up) == (0, 0)
+    wall[0] += LEASE + RENEWAL  # the first one is suspended
+    assert other.keeper.open() and names(other) == ["Ada"]
+    one.now += FRESH
+    assert not one.keeper.open() and one.given_up == 1 and names(one) == []
+    for process in (one, other):
+        process.records.close()
 
 
 def test_who_comes_while_the_database_is_away_does_not_ask_it_each_time(
@@ -206,6 +242,7 @@ def test_a_push_that_labs_may_not_have_stored_yet_is_sent_again(two: list[Proces
     one.room.push(TakeStep("01-a", 1))
     one.room.note(ADA, taken=2, given=one.now)
     one.keeper.look()
+    one.leave()
     other.keeper.open()
     member = other.room.member(ADA)
     assert member is not None and member.taken == 1 < other.room.orders.pushes == 2
@@ -219,6 +256,7 @@ def test_a_push_is_not_sent_again_because_the_class_moves_twice(two: list[Proces
     one.room.push(TakeStep("01-a", 0))
     one.room.note(ADA, taken=1, given=one.now)
     one.settle()
+    one.leave()
     for process in (other, one, other):
         process.now += FRESH
         process.keeper.open()
@@ -226,6 +264,7 @@ def test_a_push_is_not_sent_again_because_the_class_moves_twice(two: list[Proces
         process.keeper.look()
         member = process.room.member(ADA)
         assert member is not None and member.taken == 1
+        process.leave()
     one.keeper.look()
 
 
@@ -246,6 +285,7 @@ def test_a_database_that_is_away_ends_no_class(
         one.keeper.open()
         assert names(one) == ["Ada"]
     one.keeper.look()
+    one.leave()
     other.keeper.open()
     assert names(other) == ["Ada"]
 

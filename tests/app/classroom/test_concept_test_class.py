@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
+import pytest
 
 from onpath.app.classroom.class_html import choices_view
 from onpath.app.classroom.classroom import Member
@@ -11,13 +10,13 @@ from onpath.app.classroom.concept_test_results import (
     gain_view,
     item_distribution,
     question_at,
-    rows_without_names,
+    sheets_without_names,
 )
-from onpath.app.classroom.results import class_csv
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
+from tests.support.record import Row, record
 
 COURSE = built_in_course()[0]
 TEST = COURSE.lesson(BEFORE, "en")
@@ -44,35 +43,34 @@ MEMBERS = [Member(n, f"Nick {n}", way) for n, way in enumerate(WAYS.values(), 1)
 GAIN = (62.5 - 37.5) / (100 - 37.5)  # of the two who have handed in both
 
 
-def rows() -> list[dict[str, str]]:
-    tests = rows_without_names(TEST, list(WAYS.items()), CODE)
-    data = class_csv(MEMBERS, COURSE, "en", tests)
-    return list(csv.DictReader(io.StringIO(data.decode("utf-8-sig"))))
+def rows() -> tuple[list[Row], list[Row]]:
+    """The sheet of the tests, and that of the class."""
+    found = record(MEMBERS, COURSE, sheets_without_names(TEST, list(WAYS.items()), CODE))
+    assert not {BEFORE, AFTER} & {row["lesson"] for row in found["Answers"]}
+    return found["Concept test"], found["Concept test, class"]
 
 
 def test_the_record_has_the_gain_and_every_answer_in_the_author_s_letters() -> None:
-    found = {row["item"]: row for row in rows() if row["kind"] == "class"}
-    assert float(found["normalised gain"]["value"]) == round(GAIN, 4)
-    assert {row["result"] for row in found.values()} == {"2"}
-    items = [row for row in rows() if row["kind"] == "test"]
+    items, of_class = rows()
+    found = {row["of"]: row for row in of_class}
+    assert found["normalised gain"]["value"] == pytest.approx(GAIN)
+    assert {row["students"] for row in of_class} == {2}
     assert len(items) == 5 * 12
     assert sum(row["result"] == "open" for row in items) == 5
     for row in items:
-        block = question_at(TEST, int(row["step"]) - 1)
+        block = question_at(TEST, int(row["question"]) - 1)
         letters = [option.right for option in block.options]
-        at = "ABCD".find(row["result"])
-        assert int(row["right"]) == (at >= 0 and letters[at])
+        at = "ABCD".find(str(row["chosen"])) if row["chosen"] else -1
+        assert row["right"] == (at >= 0 and letters[at])
 
 
 def test_the_record_has_neither_number_nor_nickname_beside_a_test() -> None:
-    of_tests = [row for row in rows() if row["lesson"] in (BEFORE, AFTER) or row["kind"] == "class"]
-    alone = [row for row in rows() if row["lesson"] == "" and row["kind"] != "class"]
-    assert all(set(row.values()) == {"", row["number"], row["nickname"]} for row in alone)
-    assert of_tests and {row["number"] for row in of_tests} == {""}
-    names = {row["nickname"] for row in of_tests if row["kind"] == "test"}
-    assert len(names) == 3 and not any("Nick" in name or "session" in name for name in names)
-    order = [row["nickname"] for row in of_tests if row["kind"] == "test"]
-    assert order == sorted(order)  # not that in which they joined
+    items, of_class = rows()
+    assert not {"number", "nickname"} & {key for row in (*items, *of_class) for key in row}
+    names = [str(row["pseudonym"]) for row in items]
+    assert len(set(names)) == 3
+    assert not any("Nick" in name or "session" in name for name in names)
+    assert names == sorted(names)  # not the order in which they joined
 
 
 def test_the_teacher_sees_the_gain_and_both_distributions() -> None:

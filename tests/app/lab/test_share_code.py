@@ -14,7 +14,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from onpath.app.common.access_codes import ALPHABET, new_code, normalised, shown
+from onpath.app.common.access_codes import ALPHABET, as_meant, new_code, normalised, shown
 from onpath.app.lab.commands import DrawPath, SetParameter, UseShared
 from onpath.app.lab.setups import share_code
 from onpath.app.lab.setups.capture import capture, capture_path
@@ -76,7 +76,7 @@ def test_codes_of_version_1_stay_readable() -> None:
 def test_a_single_wrong_character_is_noticed(setup: Setup, data: st.DataObject) -> None:
     code = encode(setup)
     at = data.draw(st.integers(0, len(code) - 1))
-    wrong = data.draw(st.characters().filter(lambda c: c.upper() != code[at]))
+    wrong = data.draw(st.characters().filter(lambda c: as_meant(c).upper() != code[at]))
     with pytest.raises(ValueError):
         decode(code[:at] + wrong + code[at + 1 :])
 
@@ -85,7 +85,7 @@ def test_every_single_wrong_character_is_noticed() -> None:
     code = encode(drawn_lab())
     for at in range(len(code)):
         for wrong in string.printable + "ſıK–":
-            if wrong.upper() != code[at]:
+            if as_meant(wrong).upper() != code[at]:
                 with pytest.raises(ValueError):
                     decode(code[:at] + wrong + code[at + 1 :])
 

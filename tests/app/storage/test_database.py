@@ -68,6 +68,7 @@ def works(records: Records) -> None:
     records.claim("new")
     records.save("new", {"a": 1})
     assert records.load("new") == {"a": 1}
+    records.give_up("new")
 
 
 def found_in(records: Records, i: int) -> str | None:
@@ -399,10 +400,15 @@ def test_writes_that_the_system_refuses_lose_nothing_that_was_kept(file: Path) -
 WRITER = """
 import sys
 from pathlib import Path
-from onpath.app.storage.records import Records, file_url
+from onpath.app.storage.records import HeldElsewhere, Records, file_url
 records = Records(file_url(Path(sys.argv[1])))
 assert not records.warning
-records.claim(sys.argv[2])
+while True:
+    try:
+        records.claim(sys.argv[2])
+        break
+    except HeldElsewhere:  # the lease of a process that was killed has not ended
+        pass
 print("open", flush=True)
 for i in range(int(sys.argv[3])):
     records.save(sys.argv[2], {"n": i, "text": "x" * (i % 7) * 3000})
@@ -619,15 +625,13 @@ def test_nobody_waits_long_for_a_write_that_hangs_and_all_is_kept_when_it_goes_o
     assert keeper.flush("a") and len(store.saved) == 3
 
 
-def test_nothing_is_discarded_or_deleted_while_a_write_hangs(
+def test_nothing_is_discarded_while_a_write_hangs(
     hanging: tuple[Memory, WriteBehind],
 ) -> None:
     """The write would store again what was deleted, or overwrite what is read next."""
     store, keeper = hanging
     with pytest.raises(NotKept, match="busy"):
         keeper.discard("a")
-    with pytest.raises(NotKept, match="busy"):
-        keeper.forget(lambda: store.saved.append(("deleted", 0)) or 0)
     assert not store.saved
     store.gate.set()
     keeper.close()
@@ -646,22 +650,6 @@ def test_while_a_write_hangs_its_lab_and_those_behind_it_count_as_not_kept(
     store.gate.set()
     until(lambda: len(store.saved) == 3)
     until(lambda: not keeper.fails("a") and not keeper.fails("b"))
-
-
-def test_what_could_not_be_deleted_is_still_written() -> None:
-    store = Memory()
-    keeper = WriteBehind(store, interval=60.0)
-    keeper.submit("a", number(1))
-    until(lambda: store.saved)
-    keeper.submit("a", number(2))
-
-    def refuse() -> int:
-        raise NotKept("error.database_busy")
-
-    with pytest.raises(NotKept):
-        keeper.forget(refuse)
-    keeper.close()
-    assert store.saved == [("a", 1), ("a", 2)]
 
 
 def test_a_failed_write_is_repeated_and_reported_once(caplog: Any) -> None:

@@ -54,7 +54,7 @@ def test_no_lab_of_an_old_database_is_lost_and_nothing_of_its_classes_stays(old:
     assert records.claim("c0de01") == state and records.is_current("c0de01")
     records.close()
     after = rows(old)
-    assert after.keys() == {"alembic_version", "meta", "labs", "classes"}
+    assert after.keys() == {"alembic_version", "meta", "labs", "classes", "leases"}
     assert after["alembic_version"] == [(HEAD,)] and after["meta"] == before["meta"]
     assert after["classes"] == [] and b"Bob <b>" not in old.read_bytes()
     with closing(sqlite3.connect(old)) as raw:

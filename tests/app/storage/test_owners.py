@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,11 @@ from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.app.server import lab_registry
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage import records as database
+from onpath.app.storage.leases import LEASE
 from onpath.app.storage.records import HeldElsewhere, NotKept, Records, file_url
 from onpath.app.storage.schema import classes, labs
 from onpath.app.storage.write_behind import WriteBehind
@@ -34,6 +37,7 @@ class Process:
             SimulationThread(),
             lambda: Lab(store()),
             load=self.records.claim,
+            give_up=self.records.give_up,
             is_current=self.records.is_current,
             keeper=self.keeper,
         )
@@ -74,10 +78,14 @@ def test_only_who_opened_a_state_last_can_save_it(two: list[Process], table: obj
         other.save(CODE, {"n": 3}, table)  # type: ignore[arg-type]
     assert other.claim(CODE, table) == {"n": 2}  # type: ignore[arg-type]
     with pytest.raises(HeldElsewhere):
+        one.claim(CODE, table)  # type: ignore[arg-type]
+    with pytest.raises(HeldElsewhere):
         one.save(CODE, {"n": 4}, table)  # type: ignore[arg-type]
     other.save(CODE, {"n": 5}, table)  # type: ignore[arg-type]
     assert one.load(CODE, table) == {"n": 5}  # type: ignore[arg-type]
     assert other.is_current(CODE, table) and not one.is_current(CODE, table)  # type: ignore[arg-type]
+    other.give_up(CODE)
+    assert one.claim(CODE, table) == {"n": 5}  # type: ignore[arg-type]
     assert one.claim("nobody", table) is None and one.is_current("nobody", table)  # type: ignore[arg-type]
 
 
@@ -97,17 +105,24 @@ def test_a_state_that_cannot_be_read_is_not_taken_over(
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.tuples(st.sampled_from(["claim", "save"]), st.integers(0, 2)), max_size=20))
+@given(
+    st.lists(st.tuples(st.sampled_from(["claim", "save", "wait"]), st.integers(0, 2)), max_size=20)
+)
 def test_nothing_that_was_saved_is_ever_overwritten_from_an_older_copy(
     steps: list[tuple[str, int]],
 ) -> None:
     """Each process counts on from what it read last, as a lab does that is worked in."""
-    shared = Records("sqlite://")
+    now = [1e9]
+    shared = Records("sqlite://", clock=lambda: now[0])
     owners, known, stored = ["one", "two", "three"], [0, 0, 0], 0
     for what, who in steps:
         shared.owner = owners[who]
         if what == "claim":
-            known[who] = (shared.claim(CODE) or {"n": known[who]})["n"]
+            with suppress(HeldElsewhere):
+                known[who] = (shared.claim(CODE) or {"n": known[who]})["n"]
+            continue
+        if what == "wait":
+            now[0] += LEASE
             continue
         try:
             shared.save(CODE, {"n": known[who] + 1})
@@ -180,6 +195,32 @@ def test_a_lab_that_is_dropped_before_it_could_be_stored_is_opened_as_it_was_lef
         here.registry.lose(code)
         assert here.registry.join(1, code).stands_in  # not as it was stored before
     assert here.registry.join(2, code).code == code and here.gain(code) == 42
+
+
+def test_a_lab_that_is_open_in_one_process_stays_there(
+    two: list[Process], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here, there = two
+    monkeypatch.setattr(lab_registry, "LEASE_WAIT", 0.0)
+    code = here.registry.join(1, None).code
+    here.set(code, 41)
+    here.keeper.flush(code)
+    here.records.renew(here.registry.held())
+    assert there.registry.join(1, code).code != code  # a new one, as in a second tab
+    with pytest.raises(ValueError, match="open"):
+        there.registry.enter(2, code)
+    here.set(code, 42)
+    here.registry.leave(1)
+    assert there.registry.join(3, code).code == code and there.gain(code) == 42
+
+
+def test_the_lab_of_a_process_that_was_killed_is_waited_for(two: list[Process]) -> None:
+    here, there = two
+    code = here.registry.join(1, None).code
+    here.set(code, 41)
+    here.keeper.flush(code)
+    here.records.renew(here.registry.held())  # for the last time
+    assert there.registry.join(1, code).code == code and there.gain(code) == 41
 
 
 def test_an_error_while_a_lab_is_given_up_does_not_end_the_writes(two: list[Process]) -> None:

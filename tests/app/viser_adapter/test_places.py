@@ -8,8 +8,15 @@ from http.client import HTTPConnection, HTTPResponse
 
 import pytest
 import viser
+from hypothesis import given
+from hypothesis import strategies as st
+from websockets import Headers
+from websockets.exceptions import InvalidStatus
+from websockets.http11 import Request
+from websockets.sync.client import connect
 
 from onpath.app.viser_adapter.places import class_code_in, place_of, storage_key, without_place
+from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.secure_server import make_server
 
 ORIGIN = "https://lab.example.org"
@@ -62,7 +69,7 @@ def test_each_class_has_values_of_its_own_in_a_browser() -> None:
 
 def test_every_place_has_the_same_page(alone: viser.ViserServer) -> None:
     page = get(alone, "/").read()
-    for path in ("/c/abc234/", "/l/abc/", "/l/abc/index.html", "/index.html"):
+    for path in ("/c/abc234/", "/l/abc/", "/index.html"):
         assert get(alone, path).read() == page
     for path in ("/c/abc234/nothing.js", "/c/abc234/..%2f..%2f..%2fsetup.py", "/c/a-b/"):
         assert get(alone, path).status == 404
@@ -73,13 +80,52 @@ def test_every_place_has_the_same_page(alone: viser.ViserServer) -> None:
     [
         ("/c/abc234", "/c/abc234/"),
         ("/c/ABC234/", "/c/abc234/"),
-        ("/c/ABC234?x=1", "/c/abc234/?x=1"),
+        ("/C/abc234/", "/c/abc234/"),
+        ("/c/ABC234?x=1", "/c/abc234/"),
+        ("/c/abc234/?utm_source=moodle", "/c/abc234/"),
+        ("/c/abc234/index.html", "/c/abc234/"),
+        ("/l/ABC/x.js?y", "/l/abc/x.js?y"),
         ("/l/abc", "/l/abc/"),
     ],
 )
 def test_a_similar_address_leads_to_the_page(alone: viser.ViserServer, path: str, to: str) -> None:
     answer = get(alone, path)
     assert (answer.status, answer.getheader("Location")) == (302, to)
+
+
+@given(
+    st.sampled_from("cCl"),
+    st.text("abcXYZ234", min_size=1, max_size=34),
+    st.sampled_from(["", "/", "//", "/index.html", "/x", "/."]),
+    st.sampled_from(["", "?", "?x=1", "?websocket=ws://evil.example", "#x"]),
+)
+def test_a_websocket_is_opened_at_a_place_as_it_is_spelt_only(
+    kind: str, name: str, rest: str, query: str
+) -> None:
+    """What another process may be asked for, since a proxy does not read it as this place."""
+    door = RequestFilter((), local_only=False)
+    door.open = True
+    path = f"/{kind}/{name}{rest}{query}"
+    canonical = kind in "cl" and name == name.lower() and len(name) <= 32 and rest in ("", "/")
+    answer = door.refusal(Request(path, Headers(Upgrade="websocket")))
+    assert (answer is None) == (canonical and not query)
+
+
+def test_at_no_place_a_websocket_is_opened_as_before() -> None:
+    door = RequestFilter((), local_only=False)
+    door.open = True
+    for path in ("/", "/?x", "/index.html", "/onpath", "/user/ada/proxy/8080/"):
+        assert door.refusal(Request(path, Headers(Upgrade="websocket"))) is None
+
+
+def test_who_asks_for_a_class_of_another_process_is_told_to_ask_again() -> None:
+    server = make_server(port=0, elsewhere=lambda place: place == "c/abc234")
+    assert get(server, "/c/abc234/").status == 200  # the page, which asks every second
+    with pytest.raises(InvalidStatus) as refused:
+        connect(f"ws://127.0.0.1:{server.get_port()}/c/abc234")
+    answer = refused.value.response
+    assert answer.status_code == 502 and answer.headers["Retry-After"] == "1"
+    server.stop()
 
 
 def test_who_is_in_no_class_has_a_place_that_stays(proxied: viser.ViserServer) -> None:

@@ -1,0 +1,95 @@
+"""A class stays in the process that has it open, whoever asks another one, until that is gone.
+
+Two processes that share a database, without a proxy: an attacker may ask either of them.
+"""
+
+from __future__ import annotations
+
+import signal
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from onpath.app.classroom.class_opening import KEY
+from onpath.app.storage.database_url import DATABASE
+from onpath.app.storage.leases import LEASE
+from tests.support.lab_process import LabProcess, free_ports
+from tests.support.site_class import CODES, KEYS
+from tests.support.student import Student
+
+pytestmark = pytest.mark.thorough
+
+CODE = CODES[0]
+BACK = 10.0  # [s] after a kill, as SECURITY.md promises; the lease ends after 2
+PATHS = f"/c/{CODE.upper()}", f"/c/{CODE[:-1]}{CODE[-1].upper()}/", f"/c/{CODE}?x=1", f"/c/{CODE}"
+
+
+@pytest.fixture
+def two(tmp_path: Path) -> Iterator[list[LabProcess]]:
+    told = ["--classroom", "--log-level", "warning"]
+    given = {DATABASE: f"sqlite:///{tmp_path / 'labs.db'}", KEY: " ".join(KEYS)}
+    made = [LabProcess(port, told, given) for port in free_ports(2)]
+    for process in made:
+        process.wait_until_well()
+    yield made
+    for process in made:
+        process.kill()
+
+
+def at(process: LabProcess, path: str) -> Student:
+    return Student(f"ws://127.0.0.1:{process.port}{path}")
+
+
+def move(students: list[Student], there: LabProcess) -> float:
+    """Their connections are closed, and they connect to another process, as through a proxy.
+
+    Returns:
+        When they are let in, by `time.monotonic`.
+    """
+    codes = [student.code for student in students]
+    for student in students:
+        student.wait_until_closed()
+        student.address = f"ws://127.0.0.1:{there.port}/c/{CODE}"
+    for student in students:
+        student.reopen()
+    let_in = time.monotonic()
+    for student, code in zip(students, codes, strict=True):
+        student.read(lambda student=student: student.sees("You are in the class as"))
+        assert student.code == code
+    return let_in
+
+
+def join(process: LabProcess, name: str) -> Student:
+    student = at(process, f"/c/{CODE}")
+    student.reopen()
+    student.set("Nickname", name)
+    student.set("Join the class", True)
+    student.read(lambda: student.sees("You are in the class as"))
+    return student
+
+
+def test_a_class_is_taken_from_nobody_who_is_alive_and_goes_on_after_a_stall_and_a_kill(
+    two: list[LabProcess],
+) -> None:
+    home, other = two
+    students = [join(home, f"Ada {number}") for number in range(2)]
+    end, attempts = time.monotonic() + 4 * LEASE, 0
+    while time.monotonic() < end or attempts < len(PATHS):
+        for path in PATHS:
+            with pytest.raises(InvalidStatus):
+                at(other, path).open()
+            attempts += 1
+            for student in students:
+                student.read_what_has_come()  # raises if it has been thrown out
+    home.process.send_signal(signal.SIGSTOP)
+    late = join(other, "Cid")  # after the lease has ended
+    home.process.send_signal(signal.SIGCONT)
+    move(students, other)
+    late.set("K2", late.find("K2")["min"])
+    other.kill()
+    killed = time.monotonic()
+    took = move([*students, late], home) - killed
+    assert took < BACK, f"let in after {took:.1f} s"
