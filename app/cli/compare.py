@@ -45,13 +45,20 @@ class CompareCommand:
 
     def run(self) -> None:
         """Simulate, then write and print the requested output."""
+        from onpath.app.cli.experiment import assignments
         from onpath.models.studies.comparison import as_data
+        from onpath.models.studies.experiments import on_path
+        from onpath.models.studies.unused import unused_text
 
         check_plot(self.plot)
         if self.csv:
             check_writable(self.csv)
         contest = self._contest()
-        results = self._results(contest)
+        laws = _laws(self.law, contest)
+        plain = on_path(contest.entry, contest.parameters, contest.curve)
+        if text := unused_text(plain, laws, assignments(self.set)):
+            print(text, file=sys.stderr)
+        results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", newline="") as file:
                 rows = [dataclasses.asdict(o) for each in results.values() for o in each]
@@ -71,7 +78,7 @@ class CompareCommand:
         from onpath.models.studies.comparison import Contest
         from onpath.models.systems.catalogue import ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
-        from onpath.models.systems.parameters import changed
+        from onpath.models.systems.parameters import changed, rise_of
 
         if self.robot not in ROBOTS:
             raise unknown_name(self.robot, list(ROBOTS), "robot")
@@ -85,15 +92,16 @@ class CompareCommand:
             raise ValueError("a comparison needs a speed along the path other than 0")
         if parameters.speed_profile != "constant":
             raise ValueError("speed_profile: a comparison is at a constant speed")
+        if rise_of(parameters):
+            raise ValueError("rise: a comparison is on a plane circle")
         return Contest(entry, parameters, circle(self.radius))
 
-    def _results(self, contest: Contest) -> Results:
+    def _results(self, contest: Contest, laws: list[str]) -> Results:
         from rich.console import Console
         from rich.progress import track
 
         from onpath.models.studies.comparison import OBSTRUCTIONS, compare
 
-        laws = _laws(self.law, contest)
         obstructions = _known(self.obstruction, list(OBSTRUCTIONS), "obstruction")
         pairs = compare(contest, laws, obstructions)
         console = Console(stderr=True)

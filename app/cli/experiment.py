@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -48,6 +49,7 @@ class ExperimentCommand:
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
         from onpath.models.studies.experiments import experiments, run, summary
+        from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
         known = experiments(self.robot)
@@ -60,8 +62,11 @@ class ExperimentCommand:
         if self.path is not None:
             chosen = chosen.along(read_path(self.path))
         times = {} if self.profile is None else {"profile": self.profile}
-        chosen = chosen.with_values(assignments(self.set) | times)
-        runs = [run(chosen, name) for name in laws_named(self.law)]
+        given, laws = assignments(self.set) | times, laws_named(self.law)
+        chosen = chosen.with_values(given)
+        if text := unused_text(chosen, laws, given):
+            print(text, file=sys.stderr)
+        runs = [run(chosen, name) for name in laws]
         result = summary(chosen, runs)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", newline="") as file:

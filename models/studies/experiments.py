@@ -36,10 +36,12 @@ from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
 from onpath.models.systems.robots import Robot, RobotEntry
 
 NEAR = 1e-9  # [m], as good as on the path
+OF_SPEED = ("speed", "ramp", "speed_profile", "profile_period")
+"""Parameters that a profile of the schedule replaces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +54,9 @@ class Experiment:
         make: the robot for given parameters.
         parameters: of the robot, the control laws and the task.
         schedule: what happens when.
-        start: r -> the end-point at rest at the start, shape (p,), [m].
-        path: the path to follow; None: the circle of the schedule, with the rise of the parameters.
+        start: (robot, r) -> the end-point at rest at the start, shape (p,), [m].
+        path: the path to follow, with the rise of the parameters; None: the circle of the schedule.
+        lifts: whether the start is lifted to the height of a path with a rise.
     """
 
     name: str
@@ -63,6 +66,7 @@ class Experiment:
     schedule: Schedule
     start: Callable[[Robot, float], Array]
     path: Curve | None = None
+    lifts: bool = True
 
     def robot(self) -> Robot:
         """The robot for the parameters."""
@@ -70,12 +74,13 @@ class Experiment:
 
     def curve(self) -> Curve:
         """The path to follow."""
-        return raised(circle(self.schedule.r), self.parameters) if self.path is None else self.path
+        path = circle(self.schedule.r) if self.path is None else self.path
+        return raised(path, self.parameters)
 
     def begin(self) -> Array:
-        """The end-point at the start, at the height of the path there, shape (p,), [m]."""
+        """The end-point at the start, shape (p,), [m]; see `lifts`."""
         y, curve = self.start(self.robot(), self.schedule.r), self.curve()
-        if self.path is not None or curve.dimension == 2:
+        if not self.lifts or not rise_of(self.parameters):
             return y
         frame = self.robot().frame
         theta, _ = curve.plan.nearest(frame.planar(y)[None])
@@ -104,7 +109,8 @@ class Experiment:
             assignments: name -> value, or value as text, of the schedule or the parameters.
 
         Raises:
-            ValueError: an unknown name or a bad value; the message names it.
+            ValueError: an unknown name, a bad value, or one that contradicts another; the message
+                names it.
         """
         parameters, own = self.parameters, dict[str, Any]()
         for name, text in assignments.items():
@@ -119,7 +125,13 @@ class Experiment:
         schedule = schedules.with_values(self.schedule, own)
         for speed in schedule.profile.speeds if schedule.profile else ():
             changed(parameters, "speed", speed)  # in range
-        return dataclasses.replace(self, parameters=parameters, schedule=schedule)
+        for name in OF_SPEED if schedule.profile else ():
+            if name in assignments:
+                raise ValueError(f"{name}: the profile says the speed already")
+        whole = dataclasses.replace(self, parameters=parameters, schedule=schedule)
+        if rise_of(parameters) != rise_of(self.parameters):
+            check_path(whole.robot(), whole.curve())
+        return whole
 
 
 def check_path(robot: Robot, path: Curve) -> None:
@@ -135,6 +147,20 @@ def check_path(robot: Robot, path: Curve) -> None:
 
 def _always(point: Array, _robot: Robot, _r: float) -> Array:
     return point
+
+
+def on_path(entry: RobotEntry, parameters: Parameters, path: Curve) -> Experiment:
+    """A robot that starts at rest on a path, at θ = 0, with nothing in its way."""
+    return Experiment(
+        name="on_path",
+        title=entry.label,
+        make=entry.make,
+        parameters=parameters,
+        schedule=Schedule(),
+        start=lambda robot, _: robot.frame.lift(raised(path, parameters).at(np.array(0.0))),
+        path=path,
+        lifts=False,
+    )
 
 
 def experiments(robot: str = "") -> dict[str, Experiment]:
@@ -196,7 +222,7 @@ def _there_and_back() -> Experiment:
         name="flexible",
         title="Flexible link: there and back along the path",
         make=FLEXIBLE.make,
-        parameters=FlexibleParameters(),
+        parameters=FlexibleParameters(law="redefined"),
         schedule=Schedule(duration=6.0, reverse_at=3.0),
         start=lambda robot, _: _off_the_ellipse(robot),
     )

@@ -79,7 +79,7 @@ def test_the_comparison_under_a_brake() -> None:
         "a brake for # s, the worst of eight places is # mm for tracking, # mm for path following,"
         " and # mm for a clock that waits"
     )
-    contest = Contest(FIVE_BAR, FIVE_BAR.lab, presets()["circle"].curve)
+    contest = Contest(FIVE_BAR, FIVE_BAR.parameters(), presets()["circle"].curve)
     laws = [TRACKER, FOLLOWER, "waiting_clock"]
     found = [list(outcomes) for outcomes in compare(contest, laws, ["brake"])]
     assert [len(outcomes) for outcomes in found] == [8, 8, 8]

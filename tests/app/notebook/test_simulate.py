@@ -33,7 +33,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "wall": (0.2, 0.9, (0.0, 0.03), -1.5),
     },
     "position": {"duration": 0.5, "task": "position", "velocity": (0.1, 0.05), "clock_offset": 0.4},
-    "flexible": {"robot": "flexible", "duration": 0.5, "reverse_at": 0.3},
+    "flexible": {"robot": "flexible", "output": "redefined", "duration": 0.5, "reverse_at": 0.3},
 }
 SET = {
     "obstruction": {
@@ -53,6 +53,7 @@ SET = {
 PUSH = {"push_from": 0.1, "push_to": 0.2, "push_z1": 0.06, "push_z2": 0.01}
 
 
+@pytest.mark.filterwarnings("ignore:no effect under path following. clock_offset")
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_bytes_are_those_of_the_command_line(name: str, tmp_path: Path) -> None:
     assignments = {**SET[name], **PUSH, "K1": 500, "control_rate": 500}

@@ -43,7 +43,7 @@ LIMITED = -1.0
 def robot_of(entry: RobotEntry, **changes: Any) -> tuple[Robot, Parameters]:
     if changes.get("torque_limit") == LIMITED:
         changes["torque_limit"] = 3.0 if entry is FLEXIBLE else 0.3
-    parameters = replace(entry.lab, **changes)
+    parameters = replace(entry.parameters(), **changes)
     return entry.make(parameters), parameters
 
 
@@ -147,7 +147,7 @@ def near(robot: Robot, curve: Curve, v: Array) -> dict[str, float]:
     """The names, computed from the paper's definitions, half a tick ahead of the start."""
     q, system = robot.rest(robot.frame.lift(1.1 * curve.at(np.array(0.3)))), robot.system
     inputs = [system.q, system.v, system.tau, system.parameters]
-    plant = robot.plant(FIVE_BAR.lab)
+    plant = robot.plant(FIVE_BAR.parameters())
     a = ca.Function("a", inputs, [system.acceleration])(q, v, 0, plant).full().ravel()
     half, step = 0.5e-3, 1e-5
 

@@ -225,7 +225,7 @@ def test_divergence_is_reported_and_nothing_after_it_is_told() -> None:
 
 @pytest.mark.parametrize(
     ("hold_from", "hold_to", "held_ms"),
-    [(0, 0, 0), (0.1, 0.1, 0), (0.1, 0.2, 100), (0.25, 9, 50), (5, 9, 0), (0, 9, 300)],
+    [(0, 0, 0), (0.1, 0.1, 0), (0.1, 0.2, 100), (0.25, 9, 50), (0, 9, 300)],
 )
 def test_any_hold_window(hold_from: float, hold_to: float, held_ms: int) -> None:
     runs = runs_of("obstruction", duration=0.3, hold_from=hold_from, hold_to=hold_to)
