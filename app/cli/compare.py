@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+from onpath.app.exports.summary_text import STOPPED, finite
 
 if TYPE_CHECKING:
     from onpath.models.studies.comparison import Contest, Outcome
@@ -57,7 +59,7 @@ class CompareCommand:
         laws = _laws(self.law, contest)
         plain = on_path(contest.entry, contest.parameters, contest.curve)
         if text := unused_text(plain, laws, assignments(self.set)):
-            print(text, file=sys.stderr)
+            print(f"onpath: {text}", file=sys.stderr)
         results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", newline="") as file:
@@ -70,7 +72,8 @@ class CompareCommand:
 
             with whole_file(self.plot) as path:
                 draw_comparison(results, path)
-        print(json.dumps(as_data(contest, results), indent=2) if self.json else table(results))
+        data = finite(as_data(contest, results)) if self.json else None
+        print(json.dumps(data, indent=2) if self.json else table(results))
 
     def _contest(self) -> Contest:
         from onpath.app.cli.experiment import assignments
@@ -172,7 +175,7 @@ def table(results: Results) -> str:
             for law, short in laws.items()
         ]
         lines.append("")
-    lines.append("Runs that were stopped as diverged are marked by !; see --json for all measures.")
+    lines.append(f"{STOPPED}: a run diverged at one of the places; see --json for all measures.")
     return "\n".join(lines)
 
 
@@ -185,5 +188,5 @@ def _delay(outcomes: list[Outcome]) -> str:
 
 
 def _worst(outcomes: list[Outcome], value: Callable[[Outcome], float], form: str) -> str:
-    mark = "!" if any(o.diverged_at_s is not None for o in outcomes) else ""
-    return f"{max(map(value, outcomes), key=abs) + 0.0:{form}}{mark}"
+    found = max(map(value, outcomes), key=abs) + 0.0
+    return STOPPED if math.isinf(found) else f"{found:{form}}"

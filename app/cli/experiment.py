@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
-from onpath.app.exports.summary_text import summary_lines
+from onpath.app.exports.summary_text import finite, summary_lines
 
 if TYPE_CHECKING:
     from onpath.models.paths.curves import Curve
@@ -65,7 +65,7 @@ class ExperimentCommand:
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
         if text := unused_text(chosen, laws, given):
-            print(text, file=sys.stderr)
+            print(f"onpath: {text}", file=sys.stderr)
         runs = [run(chosen, name) for name in laws]
         result = summary(chosen, runs)
         if self.csv:
@@ -75,7 +75,7 @@ class ExperimentCommand:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
         reasons = {r.controller: r.reason for r in runs}
-        print(json.dumps(result, indent=2) if self.json else _table(result, reasons))
+        print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import tyro
 
 from onpath.app.cli.experiment import assignments
 from onpath.app.common.atomic_file import check_plot, whole_file
-from onpath.app.exports.summary_text import summary_lines
+from onpath.app.exports.summary_text import finite, summary_lines
 
 RANK = "rank"
 
@@ -36,7 +36,7 @@ class FigureCommand:
         check_plot(self.plot)
         result = self._rank() if self.name == RANK else self._repeated()
         if self.json:
-            print(json.dumps(result, indent=2, ensure_ascii=False))
+            print(json.dumps(finite(result), indent=2, ensure_ascii=False))
         else:
             print(_rank_text(result) if self.name == RANK else _text(result))
 

@@ -245,7 +245,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     """Simulate an experiment under one control law.
 
     Returns:
-        One row per millisecond; shorter than the schedule, with `diverged_at`, if the run diverged.
+        One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
 
     Raises:
         ValueError: the controller is unknown, or the path is out of the robot's reach.
@@ -286,15 +286,22 @@ def _finished(
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt
-    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=str(fault[1]))
+    return dataclasses.replace(whole.thinned(), stopped_at=end, reason=str(fault[1]))
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     """The content of `--json`; numbers have nine significant digits.
 
+    Of a run that was stopped, maxima and means are infinity, which stands behind every number, and
+    the final speed is None.
+
     "controllers" is the former name of "laws".
     """
-    laws = {run.controller: _summary(run) for run in runs}
+    held = experiment.schedule.hold_from < experiment.schedule.hold_to
+    laws = {
+        run.controller: _summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)
+        for run in runs
+    }
     return {"experiment": experiment.name, "laws": laws, "controllers": laws}
 
 
@@ -302,13 +309,27 @@ def _summary(run: Trajectory) -> dict[str, Any]:
     def largest(values: Array) -> float | None:
         return float(f"{np.abs(values).max():.9g}") if values.size else None
 
-    empty = run.t.size == 0
     return {
         "max_distance_m": largest(run.distance),
         "max_distance_while_held_m": largest(run.distance[run.held]),
-        "rms_distance_m": None if empty else float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
-        "final_speed_rad_s": None if empty else float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
+        "rms_distance_m": float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
+        "final_speed_rad_s": float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
         "max_torque_Nm": largest(run.fields["u"]),
-        "diverged": run.diverged_at is not None,
-        "diverged_at_s": None if run.diverged_at is None else float(f"{run.diverged_at:.9g}"),
+        "stopped_at_s": None,
+    }
+
+
+def _stopped(time: float, held: bool) -> dict[str, Any]:
+    """The summary of a run that was stopped at a time, [s].
+
+    Args:
+        held: whether there was to be a hold.
+    """
+    return {
+        "max_distance_m": np.inf,
+        "max_distance_while_held_m": np.inf if held else None,
+        "rms_distance_m": np.inf,
+        "final_speed_rad_s": None,
+        "max_torque_Nm": np.inf,
+        "stopped_at_s": float(f"{time:.9g}"),
     }

@@ -53,7 +53,7 @@ def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
     load = value(grams) / 1e3
     assert stated_in_readme("`--set payload=#` hangs") == [f"{load:g}"]
     half = did("flexible", FOLLOWER, alpha=0.5, payload=load)
-    found = [half.diverged_at or 0.0]
+    found = [half.stopped_at or 0.0]
     for gravity in (tip_load.GRAVITY, 0.0):
         with monkeypatch.context() as patch:
             patch.setattr(tip_load, "GRAVITY", gravity)

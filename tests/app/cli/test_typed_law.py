@@ -76,7 +76,7 @@ def test_in_python_a_law_may_be_text() -> None:
     wanted, typed = (onpath.simulate(law=law, duration=0.5, K3=0.0) for law in both)
     assert np.array_equal(wanted.q, typed.q) and np.array_equal(wanted.distance, typed.distance)
     assert typed.law == TYPED and TYPED in repr(typed)
-    assert typed.summary()["diverged"] is False
+    assert typed.summary()["stopped_at_s"] is None
     for law in ("across = y.real; along = 0", "across = 1", 3):
         with pytest.raises(CodedError):
             onpath.simulate(law=law)  # type: ignore[arg-type]

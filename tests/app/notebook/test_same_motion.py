@@ -79,7 +79,7 @@ def public(own: dict[str, Any]) -> dict[str, Any]:
 def in_python(robot: str, path: str, law: str, own: dict[str, Any]) -> np.ndarray:
     """End-points at the ends of ticks, a row each."""
     run = onpath.simulate(robot, path, law, duration=SECONDS, **public(own))
-    assert run.diverged_at is None
+    assert run.stopped_at is None
     return run.y
 
 
@@ -188,7 +188,7 @@ def test_a_robot_has_one_set_of_defaults(
 
 def test_the_flexible_robot_holds_its_path_with_its_defaults() -> None:
     run = onpath.simulate("flexible", hold=(3, 5))
-    assert run.diverged_at is None and run.distance.max() < 0.006
+    assert run.stopped_at is None and run.distance.max() < 0.006
 
 
 def test_the_rise_of_a_path_is_followed() -> None:

@@ -358,10 +358,10 @@ def test_an_experiment_stops_where_the_typed_law_has_no_finite_number(
 ) -> None:
     stopped = run(experiments()["obstruction"], text)
     assert "the typed law" in stopped.reason
-    assert stopped.diverged_at == pytest.approx(seconds, abs=1e-9)
+    assert stopped.stopped_at == pytest.approx(seconds, abs=1e-9)
     assert all(np.isfinite(values).all() for values in stopped.fields.values())
 
 
 def test_a_law_that_tears_the_robot_apart_stops_for_that_reason() -> None:
     stopped = run(experiments()["obstruction"], "u1 = 900; u2 = 900")
-    assert stopped.diverged_at is not None and "the typed law" not in stopped.reason
+    assert stopped.stopped_at is not None and "the typed law" not in stopped.reason
