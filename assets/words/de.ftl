@@ -804,7 +804,8 @@ help-text =
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
     - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
     - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
-      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
+      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das;
+      in Python heißt es `onpath.NEWCOMER`.
 
     Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
     Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.

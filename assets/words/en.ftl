@@ -749,7 +749,8 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
     - **Arrow**: the force that pulls or holds the end-point.
     - **Turn the view** with the right button or two fingers; *Reset view* restores it.
     - **A new lab begins slowly**: the wanted speed rises from 0 to 2 rad/s, so both robots are on the
-      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that.
+      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that; in Python it is
+      `onpath.NEWCOMER`.
 
     A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
     button, acts on that control only.
