@@ -66,6 +66,7 @@ def test_the_obstruction_is_shaded_and_the_reference_drawn() -> None:
         ["figure", "rank", "--set", "K1"],
         ["figure", "rank", "--set", "weight=3"],
         ["figure", "rank", "--set", "payload=heavy"],
+        ["figure", "rank", "--set", "K1=300"],
     ],
 )
 def test_errors_are_one_line(
