@@ -121,7 +121,7 @@ def _reaches_motion(
     before = ca.SX.sym("before", kernel.changed)
     table = ca.reshape(ca.DM(curve.table()), *kernel.table_shape)
     after = _tick(kernel, before, settings, table)
-    known = before * (1 - _zeros(after))  # an integral that is switched off is 0 for ever
+    known = before * _alive(after)  # an integral that is switched off is 0 for ever
     after = _tick(kernel, known, settings, table)
     step = _pattern(after, before)
     reached = np.asarray(_pattern(after, asked).any(axis=1))
@@ -140,9 +140,9 @@ def _tick(kernel: Kernel, before: ca.SX, settings: ca.SX, table: ca.DM) -> ca.SX
     return kernel.advance(before, settings, table @ kernel.basis(before, settings))[0]
 
 
-def _zeros(values: ca.SX) -> ca.DM:
-    """1 for each value that is 0 whatever the symbols are, else 0."""
-    return ca.DM([float(values[i].is_zero()) for i in range(values.numel())])
+def _alive(values: ca.SX) -> ca.DM:
+    """0 for each value that is 0 whatever the symbols are, else 1."""
+    return ca.DM([float(not values[i].is_zero()) for i in range(values.numel())])
 
 
 def _pattern(values: ca.SX, of: ca.SX) -> NDArray[np.bool_]:
