@@ -20,7 +20,7 @@ from onpath.models.systems.parameters import Parameters, specs, time_step
 
 SPEED = ("speed", "ramp")
 """Settings of a loop that a speed profile sets."""
-FROM_OUTSIDE = ("hold_", "hand_", "wall_")
+FROM_OUTSIDE = ("hand_", "hold_active", "hold_anchor", "hold_tangent", "hold_normal", "wall_")
 """How the names of the settings begin that change during a run."""
 
 
