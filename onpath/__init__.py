@@ -9,13 +9,15 @@ In Python, without a browser:
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` says what can be
 set. Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
-`onpath.parameters("five_bar")`.
+`onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
+in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
     from onpath.app.notebook.run import Run as Run
     from onpath.app.notebook.simulate import circle as circle
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
     from onpath.app.notebook.simulate import through as through
 
 __all__ = (
+    "NEWCOMER",
     "Run",
     "circle",
     "ellipse",

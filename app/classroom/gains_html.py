@@ -67,7 +67,8 @@ def gains_view(
     known = [each for each in gains if each]
     at = [GAINS.index(name) for name in pair]
     counted = Counter((each[at[0]], each[at[1]]) for each in known)
-    declared = specs(FIVE_BAR.lab)
+    parameters = FIVE_BAR.parameters()
+    declared = specs(parameters)
     ranges = [(declared[name].low, declared[name].high) for name in pair]
     scale = Scale(*ranges)
     dots = [
@@ -80,7 +81,7 @@ def gains_view(
     ]
     return render(
         "class/gains.html",
-        titles=[f"{setting_label(n, FIVE_BAR.lab, words)} [{declared[n].unit}]" for n in pair],
+        titles=[f"{setting_label(n, parameters, words)} [{declared[n].unit}]" for n in pair],
         dots=dots,
         marks=marks,
         border=_border(scale) if pair in SPRINGS else "",

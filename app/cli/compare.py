@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import json
+import math
 import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+from onpath.app.exports.summary_text import STOPPED, finite
 
 if TYPE_CHECKING:
     from onpath.models.studies.comparison import Contest, Outcome
@@ -45,13 +47,20 @@ class CompareCommand:
 
     def run(self) -> None:
         """Simulate, then write and print the requested output."""
+        from onpath.app.cli.experiment import assignments
         from onpath.models.studies.comparison import as_data
+        from onpath.models.studies.experiments import on_path
+        from onpath.models.studies.unused import unused_text
 
         check_plot(self.plot)
         if self.csv:
             check_writable(self.csv)
         contest = self._contest()
-        results = self._results(contest)
+        laws = _laws(self.law, contest)
+        plain = on_path(contest.entry, contest.parameters, contest.curve)
+        if text := unused_text(plain, laws, assignments(self.set)):
+            print(f"onpath: {text}", file=sys.stderr)
+        results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
                 rows = [dataclasses.asdict(o) for each in results.values() for o in each]
@@ -63,7 +72,8 @@ class CompareCommand:
 
             with whole_file(self.plot) as path:
                 draw_comparison(results, path)
-        print(json.dumps(as_data(contest, results), indent=2) if self.json else table(results))
+        data = finite(as_data(contest, results)) if self.json else None
+        print(json.dumps(data, indent=2) if self.json else table(results))
 
     def _contest(self) -> Contest:
         from onpath.app.cli.experiment import assignments
@@ -71,7 +81,7 @@ class CompareCommand:
         from onpath.models.studies.comparison import Contest
         from onpath.models.systems.catalogue import ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
-        from onpath.models.systems.parameters import changed
+        from onpath.models.systems.parameters import changed, rise_of
 
         if self.robot not in ROBOTS:
             raise unknown_name(self.robot, list(ROBOTS), "robot")
@@ -85,15 +95,16 @@ class CompareCommand:
             raise ValueError("a comparison needs a speed along the path other than 0")
         if parameters.speed_profile != "constant":
             raise ValueError("speed_profile: a comparison is at a constant speed")
+        if rise_of(parameters):
+            raise ValueError("rise: a comparison is on a plane circle")
         return Contest(entry, parameters, circle(self.radius))
 
-    def _results(self, contest: Contest) -> Results:
+    def _results(self, contest: Contest, laws: list[str]) -> Results:
         from rich.console import Console
         from rich.progress import track
 
         from onpath.models.studies.comparison import OBSTRUCTIONS, compare
 
-        laws = _laws(self.law, contest)
         obstructions = _known(self.obstruction, list(OBSTRUCTIONS), "obstruction")
         pairs = compare(contest, laws, obstructions)
         console = Console(stderr=True)
@@ -164,7 +175,7 @@ def table(results: Results) -> str:
             for law, short in laws.items()
         ]
         lines.append("")
-    lines.append("Runs that were stopped as diverged are marked by !; see --json for all measures.")
+    lines.append(f"{STOPPED}: a run diverged at one of the places; see --json for all measures.")
     return "\n".join(lines)
 
 
@@ -177,5 +188,5 @@ def _delay(outcomes: list[Outcome]) -> str:
 
 
 def _worst(outcomes: list[Outcome], value: Callable[[Outcome], float], form: str) -> str:
-    mark = "!" if any(o.diverged_at_s is not None for o in outcomes) else ""
-    return f"{max(map(value, outcomes), key=abs) + 0.0:{form}}{mark}"
+    found = max(map(value, outcomes), key=abs) + 0.0
+    return STOPPED if math.isinf(found) else f"{found:{form}}"

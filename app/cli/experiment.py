@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
-from onpath.app.exports.summary_text import summary_lines
+from onpath.app.exports.summary_text import finite, summary_lines
 
 if TYPE_CHECKING:
     from onpath.models.paths.curves import Curve
@@ -49,6 +49,7 @@ class ExperimentCommand:
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
         from onpath.models.studies.experiments import experiments, run, summary
+        from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
         known = experiments(self.robot)
@@ -61,8 +62,11 @@ class ExperimentCommand:
         if self.path is not None:
             chosen = chosen.along(read_path(self.path))
         times = {} if self.profile is None else {"profile": self.profile}
-        chosen = chosen.with_values(assignments(self.set) | times)
-        runs = [run(chosen, name) for name in laws_named(self.law)]
+        given, laws = assignments(self.set) | times, laws_named(self.law)
+        chosen = chosen.with_values(given)
+        if text := unused_text(chosen, laws, given):
+            print(f"onpath: {text}", file=sys.stderr)
+        runs = [run(chosen, name) for name in laws]
         result = summary(chosen, runs)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
@@ -71,7 +75,7 @@ class ExperimentCommand:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
         reasons = {r.controller: r.reason for r in runs}
-        print(json.dumps(result, indent=2) if self.json else _table(result, reasons))
+        print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 
 
 @dataclass(frozen=True)

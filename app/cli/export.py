@@ -34,7 +34,8 @@ class ExportFigure:
     choice: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A further law, which readers may choose for each robot; repeat for more."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Set any parameter of the robot as name=value; repeat for more."""
+    """Set any parameter of the robot as name=value; repeat for more. Without speed and ramp, the
+    robots move as slowly as in a new lab: speed=2, ramp=4."""
     title: str = ""
     """Title above the figure."""
     language: str = "en"
@@ -55,7 +56,7 @@ class ExportFigure:
             choices=self.choice,
             title=self.title,
             language=self.language,
-            **dict(assignments(self.set)),
+            **{"output" if n == "law" else n: v for n, v in assignments(self.set).items()},
         )
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
 

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
 from onpath.app.cli.experiment import assignments
 from onpath.app.common.atomic_file import check_plot, whole_file
-from onpath.app.exports.summary_text import summary_lines
+from onpath.app.exports.summary_text import finite, summary_lines
+
+if TYPE_CHECKING:
+    from onpath.models.systems.parameters import Parameters
+    from onpath.models.systems.robots import RobotEntry
 
 RANK = "rank"
 
@@ -36,7 +40,7 @@ class FigureCommand:
         check_plot(self.plot)
         result = self._rank() if self.name == RANK else self._repeated()
         if self.json:
-            print(json.dumps(result, indent=2, ensure_ascii=False))
+            print(json.dumps(finite(result), indent=2, ensure_ascii=False))
         else:
             print(_rank_text(result) if self.name == RANK else _text(result))
 
@@ -67,13 +71,30 @@ class FigureCommand:
         name = self.robot or FIVE_BAR.name
         if name not in ROBOTS:
             raise unknown_name(name, list(ROBOTS), what="robot")
-        parameters = ROBOTS[name].parameters()
+        entry = ROBOTS[name]
+        parameters = entry.parameters()
         for key, value in assignments(self.set).items():
             parameters = changed(parameters, key, value)
+            if not _matters_at_rest(entry, parameters, key):
+                raise ValueError(f"{key}: the rank test does not depend on it")
         if self.plot:
             with whole_file(self.plot) as path:
-                draw_rank_figure(ROBOTS[name], parameters, path)
-        return rank_summary(ROBOTS[name], parameters)
+                draw_rank_figure(entry, parameters, path)
+        return rank_summary(entry, parameters)
+
+
+def _matters_at_rest(entry: RobotEntry, parameters: Parameters, name: str) -> bool:
+    """Whether a parameter selects another robot, or changes the numbers of its model."""
+    from onpath.models.systems.parameters import specs
+
+    spec, robot = specs(parameters)[name], entry.make(parameters)
+    for value in spec.options or (spec.low, spec.high):
+        other = replace(parameters, **{name: value})
+        if entry.make(other) is not robot:
+            return True
+        if (robot.plant(other) != robot.plant(parameters)).any():
+            return True
+    return False
 
 
 def _rank_text(result: dict[str, Any]) -> str:

@@ -86,7 +86,7 @@ def taught_lesson(course: Course, folder: Path, name: str, words: Words) -> Taug
     if problems:
         raise ValueError(str(problems[0]))
     solutions = {
-        task: tuple(script_words(each.solution, ROBOTS[lesson.front.robot].lab, words))
+        task: tuple(script_words(each.solution, ROBOTS[lesson.front.robot].parameters(), words))
         for task, each in references.items()
     }
     steps = [

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from itertools import cycle
 from pathlib import Path
 
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.exports.figures import ShownFigure, save
@@ -30,29 +31,39 @@ def comparison_figure(
     """Plot the largest distance over the delay at the end, at the worst place of each obstruction.
 
     A law that stays on the path has a small distance; one that keeps to its clock has a delay of 0.
-    Where a run was stopped as diverged, the point is hollow.
+    Those with a run that was stopped have neither, and stand hollow along the upper edge.
     """
     laws = list(dict.fromkeys(law for law, _ in results))
     obstructions = list(dict.fromkeys(name for _, name in results))
     figure = ShownFigure(figsize=(10, 6.2), layout="constrained")
     axes = figure.subplots()
+    stopped = 0
     for (law, name), outcomes in results.items():
         colour = COLOURS[laws.index(law) % len(COLOURS)]
         worst = max(outcomes, key=lambda outcome: outcome.max_distance_m)
-        stopped = any(outcome.diverged_at_s is not None for outcome in outcomes)
-        axes.plot(
-            worst.delay_s,
-            max(1e3 * worst.max_distance_m, LEAST),
-            MARKERS[obstructions.index(name) % len(MARKERS)],
-            color=colour,
-            markerfacecolor="none" if stopped else colour,
-            markersize=9,
-            alpha=0.85,
-        )
+        marker = MARKERS[obstructions.index(name) % len(MARKERS)]
+        if worst.stopped_at_s is None:
+            place = worst.delay_s, max(1e3 * worst.max_distance_m, LEAST)
+            axes.plot(*place, marker, color=colour, markersize=9, alpha=0.85)
+        else:
+            stopped += 1
+            edge = {"transform": axes.transAxes, "markerfacecolor": "none", "markersize": 9}
+            axes.plot(0.03 * stopped, 0.96, marker, color=colour, **edge)
+    if stopped:
+        place = 0.03 * stopped + 0.02, 0.96
+        axes.text(*place, words("compare.stopped"), transform=axes.transAxes, va="center")
     axes.set_yscale("log")
     axes.grid(alpha=0.25, which="major")
     axes.set_xlabel(words("compare.delay"))
     axes.set_ylabel(words("compare.distance"))
+    _explain(figure, axes, laws, obstructions, words)
+    return figure
+
+
+def _explain(
+    figure: Figure, axes: Axes, laws: list[str], obstructions: list[str], words: Words
+) -> None:
+    """Say which colour is which law, and which marker which obstruction."""
     by_law = [
         axes.plot([], [], "o", color=colour, label=title)[0]
         for title, colour in zip(law_titles(laws, words).values(), cycle(COLOURS), strict=False)
@@ -67,4 +78,3 @@ def comparison_figure(
     figure.legend(
         handles=by_obstruction, loc="outside right lower", title="obstruction", frameon=False
     )
-    return figure

@@ -88,7 +88,7 @@ def history_figure(
         fontsize=15,
     )
     if parameters is not None:
-        told = fill(parameter_line(parameters, entry.lab, words), WIDE)
+        told = fill(parameter_line(parameters, entry.parameters(), words), WIDE)
         axes[0].set_title(told, loc="left", fontsize=SMALL, color=GREY)
     axes[0].legend(handles=_legend(runs, words), loc="upper right", fontsize=SMALL)
     axes[-1].set_xlabel("t  [s]")

@@ -1,7 +1,8 @@
-"""The summary of a run as text."""
+"""The summary of a run as text, and for JSON."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -11,8 +12,10 @@ ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("rms_distance_m", "rms distance", lambda v: f"{v * 1e3:.3f} mm"),
     ("final_speed_rad_s", "final speed", lambda v: f"{v + 0.0:.3f} rad/s"),
     ("max_torque_Nm", "max torque", lambda v: f"{v:.3f} N m"),
-    ("diverged_at_s", "diverged at", lambda v: f"{v:.3f} s"),
+    ("stopped_at_s", "stopped at", lambda v: f"{v:.3f} s"),
 )
+STOPPED = "stopped"
+"""What tables have for the numbers of a run that was stopped."""
 
 
 def summary_lines(values: Mapping[str, Any]) -> list[str]:
@@ -22,5 +25,16 @@ def summary_lines(values: Mapping[str, Any]) -> list[str]:
         values: of one controller, from `models.studies.experiments.summary`.
     """
     return [
-        f"{title:26s} {show(values[key])}" for key, title, show in ROWS if values[key] is not None
+        f"{title:26s} {STOPPED if math.isinf(values[key]) else show(values[key])}"
+        for key, title, show in ROWS
+        if values[key] is not None
     ]
+
+
+def finite(data: Any) -> Any:
+    """Data for JSON, which has no infinity: None instead."""
+    if isinstance(data, Mapping):
+        return {name: finite(value) for name, value in data.items()}
+    if isinstance(data, list):
+        return [finite(value) for value in data]
+    return None if isinstance(data, float) and math.isinf(data) else data

@@ -127,7 +127,8 @@ class Session:
 
     def _set_up(self, entry: RobotEntry) -> None:
         self.history.settle()  # a page that is being built in another thread reads it, too
-        parameters, editor, start, wall = self.earlier.get(entry.name, Belongings(entry.lab))
+        new = Belongings(entry.parameters())
+        parameters, editor, start, wall = self.earlier.get(entry.name, new)
         robot, rise = entry.make(parameters), rise_of(parameters)
         editor = editor or PathEditor(robot, self.presets["circle"], rise)
         self.entry, self.editor = entry, editor

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from onpath.app.common.atomic_file import check_writable, whole_file
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.app.notebook.arguments import curve_of
+from onpath.app.notebook.simulate import by_declared_names, entry_named
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
+from onpath.models.studies.experiments import on_path
+from onpath.models.studies.unused import unused_text
 
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
@@ -49,13 +54,17 @@ def figure(
         choices: further laws, which readers may choose for each robot.
         title: above the figure.
         language: of the page.
-        parameters: as in `onpath.simulate`; the speed is that of a new lab if not given.
+        parameters: as in `onpath.simulate`. If neither `speed` nor `ramp` is among them, the robots
+            move as slowly as in a new lab, with **onpath.NEWCOMER.
 
     Returns:
         The file.
 
     Raises:
         ValueError: an unknown name or an invalid value, or the file cannot be written.
+
+    Warns:
+        UserWarning: as in `onpath.simulate`.
 
     >>> import onpath, tempfile, pathlib
     >>> folder = pathlib.Path(tempfile.mkdtemp())
@@ -75,7 +84,12 @@ def figure(
         choices = [choices]
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
-    choice = chosen(robot, laws, curves, parameters, sliders, controls, choices)
+    own = by_declared_names(parameters, entry_named(robot), figure)
+    values = own if own.keys() & NEWCOMER.keys() else {**NEWCOMER, **own}
+    choice = chosen(robot, laws, curves, values, sliders, controls, choices)
+    first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
+    if text := unused_text(first, choice.every_law, own):
+        warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:
         scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
     return path

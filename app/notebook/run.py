@@ -95,6 +95,11 @@ class Run:
         return self.trajectory.distance
 
     @property
+    def max_distance(self) -> float:
+        """The largest distance, [m]; infinity if the run was stopped, so that it is never best."""
+        return float(self.distance.max()) if self.stopped_at is None else np.inf
+
+    @property
     def speed(self) -> Array:
         """Speed along the path, shape (n,), [m/s]."""
         return self.trajectory.speed
@@ -115,9 +120,9 @@ class Run:
         return self.trajectory.held
 
     @property
-    def diverged_at(self) -> float | None:
-        """Time at which the simulation stopped because the motion diverged, [s], or None."""
-        return self.trajectory.diverged_at
+    def stopped_at(self) -> float | None:
+        """Time at which the simulation was stopped because the motion diverged, [s], or None."""
+        return self.trajectory.stopped_at
 
     @property
     def reason(self) -> str:
@@ -125,7 +130,10 @@ class Run:
         return self.trajectory.reason
 
     def summary(self) -> dict[str, Any]:
-        """Summary of the run, as in `onpath experiment --json`; units are in the names."""
+        """Summary of the run, as in `onpath experiment --json`; units are in the names.
+
+        Maxima and means of a run that was stopped are infinity, null in JSON.
+        """
         return summary(self.experiment, [self.trajectory])["laws"][self.law]
 
     def plot(self, *others: Run, file: str | Path | None = None) -> Figure:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from inspect import signature
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
 from onpath.app.notebook.arguments import (
     array_of,
     curve_of,
@@ -28,6 +29,7 @@ from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
+from onpath.models.studies.unused import unused_text
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec, unknown_name
 from onpath.models.systems.parameters import specs
@@ -44,7 +46,7 @@ def simulate(
     clock_offset: float = 0.0,
     hold: tuple[float, float] | None = None,
     hold_at: float | None = None,
-    hold_direction: str = "along",
+    hold_direction: str | None = None,
     push: tuple[float, float, ArrayLike] | None = None,
     wall: tuple[float, float, ArrayLike, float] | None = None,
     reverse_at: float = 0.0,
@@ -70,7 +72,7 @@ def simulate(
         hold: (from, to): interval in which a brake acts, [s].
         hold_at: theta at which the brake acts, for to - from, when the end-point passes there for
             the first time after from, [rad]; None: at once, wherever it is.
-        hold_direction: "along" the path's tangent, "across" it, or "both".
+        hold_direction: "along" the path's tangent, as without it, "across" it, or "both".
         push: (from, to, place): interval, [s], in which a hand, modelled as a spring and a damper,
             pulls the end-point towards a place in the path's plane, shape (2,), [m]; see
             models/systems/forces.py.
@@ -81,12 +83,19 @@ def simulate(
         reverse_at: time at which the desired speed changes sign, [s]; 0: never.
         profile: desired speed over time, linear between (time, speed) pairs, [s] and [rad/s],
             instead of `speed` and `ramp`; it is fed forward, as in (19).
-        parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep their
-            defaults. What `--set law=` sets for the flexible robot is called `output` here.
+        parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
+            robot's defaults, which are those of the lab, the command line and figures, too. A new
+            lab begins more slowly, as with **onpath.NEWCOMER. What `--set law=` sets for the
+            flexible robot is called `output` here.
 
     Raises:
-        ValueError: an unknown name (the message lists the nearest ones) or an invalid value (the
-            message lists the valid ones).
+        ValueError: an unknown name (the message lists the nearest ones), an invalid value (the
+            message lists the valid ones), or one that contradicts another, such as `hold_at`
+            without `hold`.
+
+    Warns:
+        UserWarning: a parameter that is given, but has no effect in this run, such as K4 with
+            task="speed".
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -113,8 +122,10 @@ def simulate(
     Traceback (most recent call last):
     onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
-    entry = _entry(robot)
-    law = _law(law)
+    entry, law = entry_named(robot), _law(law)
+    given = by_declared_names(parameters, entry, simulate)
+    given |= _those({"profile": profile, "clock_offset": clock_offset or None})
+    given |= _those({"hold_at": hold_at, "hold_direction": hold_direction})
     curve = curve_of("path", path)
     chosen = Experiment(
         name="simulate",
@@ -122,16 +133,16 @@ def simulate(
         make=entry.make,
         parameters=entry.parameters(),
         schedule=Schedule(),
-        start=lambda robot, _: start_point(robot, curve, start),
+        start=lambda robot, _: start_point(robot, chosen.curve(), start),
         path=curve,
+        lifts=False,
     ).with_values(
-        {"duration": duration, "reverse_at": reverse_at, "clock_offset": clock_offset}
-        | {"hold_direction": hold_direction, "profile": profile}
-        | ({} if hold_at is None else {"hold_at": hold_at})
-        | schedule_of(velocity, hold, push, wall)
-        | _by_own_names(parameters, entry)
+        {"duration": duration, "reverse_at": reverse_at}
+        | {**schedule_of(velocity, hold, push, wall), **given}
     )
-    experiments.check_path(chosen.robot(), curve)
+    experiments.check_path(chosen.robot(), chosen.curve())
+    if text := unused_text(chosen, [law], given):
+        warnings.warn(text, UserWarning, stacklevel=2)
     return Run(chosen, experiments.run(chosen, law))
 
 
@@ -178,7 +189,7 @@ def parameters(robot: str = "five_bar") -> dict[str, str]:
     >>> onpath.parameters()["K1"]
     '400, 0 to 2500 1/s²: spring that pulls back onto the path'
     """
-    entry = _entry(robot)
+    entry = entry_named(robot)
     defaults, own = entry.parameters(), specs(entry.parameters)
     return {
         public: _described(own[name], getattr(defaults, name))
@@ -241,7 +252,12 @@ def through(points: ArrayLike, closed: bool = True) -> Curve:
     return curve
 
 
-def _entry(robot: str) -> RobotEntry:
+def entry_named(robot: str) -> RobotEntry:
+    """The robot of this name.
+
+    Raises:
+        ValueError: there is none; the message lists the nearest names.
+    """
     _check_name(robot, ROBOTS, "robot")
     return ROBOTS[robot]
 
@@ -262,9 +278,24 @@ def _names(entry: RobotEntry) -> dict[str, str]:
     return {"output" if name == "law" else name: name for name in specs(entry.parameters)}
 
 
-def _by_own_names(parameters: Mapping[str, Any], entry: RobotEntry) -> dict[str, Any]:
+def _those(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values that are given."""
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def by_declared_names(
+    parameters: Mapping[str, Any], entry: RobotEntry, function: Callable[..., Any]
+) -> dict[str, Any]:
+    """Parameters by the names that they are declared with.
+
+    Args:
+        function: whose arguments they are.
+
+    Raises:
+        ValueError: an unknown name; the message lists the nearest ones.
+    """
     names = _names(entry)
-    arguments = [name for name in signature(simulate).parameters if name != "parameters"]
+    arguments = [name for name in signature(function).parameters if name != "parameters"]
     for name in parameters:
         if name not in names:
             raise unknown_name(name, [*names, *arguments])

@@ -112,7 +112,7 @@ class LabServer:
         self._places = dict[int, str]()
         self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
         self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
-        set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.lab)))
+        set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.parameters())))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from onpath.app.common.gentle import GENTLE
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Belongings
@@ -16,8 +16,8 @@ def new_lab(store: LoopCache, course: Course) -> Lab:
     lab = Lab(store, course=course)
     session = lab.session
     for name, entry in ROBOTS.items():
-        parameters = entry.lab
-        for parameter, value in GENTLE.items():
+        parameters = entry.parameters()
+        for parameter, value in NEWCOMER.items():
             parameters = changed(parameters, parameter, value)
         session.earlier[name] = Belongings(parameters)
     session.set_parameters(session.earlier.pop(session.entry.name).parameters)

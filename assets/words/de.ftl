@@ -725,7 +725,8 @@ compare-law = Regelung
 compare-distance = größter Abstand zur Bahn  [mm]
 compare-delay = Verspätung am Ende  [s]
 compare-force = größte Kraft  [N]
-compare-stopped = * Eine Simulation ist divergiert und wurde angehalten.
+compare-stopped = angehalten
+compare-stopped_text = „angehalten“: An mindestens einer Stelle ist die Bewegung divergiert, und die Simulation wurde beendet.
 compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
 compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: Wähle eine solche Bahn und den Auftrag Tempo.
 obstruction-none = keines
@@ -819,7 +820,8 @@ help-text =
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
     - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
     - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
-      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
+      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das;
+      in Python heißt es `onpath.NEWCOMER`.
 
     Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
     Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.

@@ -673,7 +673,8 @@ compare-law = Law
 compare-distance = largest distance to the path  [mm]
 compare-delay = delay at the end  [s]
 compare-force = largest force  [N]
-compare-stopped = * A simulation diverged and was stopped.
+compare-stopped = stopped
+compare-stopped_text = “stopped”: at one of the places at least, the motion diverged and the simulation was ended.
 compare-picture = Largest distance to the path over delay at the end, for each law
 compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
 obstruction-none = nothing
@@ -764,7 +765,8 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
     - **Arrow**: the force that pulls or holds the end-point.
     - **Turn the view** with the right button or two fingers; *Reset view* restores it.
     - **A new lab begins slowly**: the wanted speed rises from 0 to 2 rad/s, so both robots are on the
-      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that.
+      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that; in Python it is
+      `onpath.NEWCOMER`.
 
     A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
     button, acts on that control only.

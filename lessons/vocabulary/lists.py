@@ -63,7 +63,7 @@ def _parameter_rows() -> Iterator[str]:
     found = defaultdict[tuple[str, ...], list[str]](list)
     for robot, entry in ROBOTS.items():
         for name, spec in specs(entry.parameters).items():
-            default = _value(getattr(entry.lab, name))
+            default = _value(getattr(entry.parameters(), name))
             found[name, spec.label, spec.unit, _values(spec), default].append(robot)
     for (name, label, unit, values, default), robots in found.items():
         where = "" if len(robots) == len(ROBOTS) else f" ({', '.join(robots)})"

@@ -125,7 +125,7 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
 
 def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
     """The faults of a scene's path, and of its start on that."""
-    name, parameters = scene.path or "circle", entry.lab
+    name, parameters = scene.path or "circle", entry.parameters()
     design = presets().get(name)
     if design is None:
         return
@@ -170,6 +170,6 @@ def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
 def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:
     for name, value in values.items():
         try:
-            changed(replace(entry.lab), name, value)
+            changed(replace(entry.parameters()), name, value)
         except ValueError as error:
             yield str(error)

@@ -28,7 +28,7 @@ class Trajectory:
         distance: from the actual end-point to the path, shape (n,), [m].
         speed: along the path, shape (n,), [m/s].
         held: whether the brake was on, shape (n,).
-        diverged_at: time at which the run was stopped as diverged, [s], or None.
+        stopped_at: time at which the run was stopped as diverged, [s], or None.
         reason: why it was stopped, or "".
         level_set: whether the first component of ξ is s(y), [m²], instead of a distance, [m].
     """
@@ -39,7 +39,7 @@ class Trajectory:
     distance: Array
     speed: Array
     held: NDArray[np.bool_]
-    diverged_at: float | None = None
+    stopped_at: float | None = None
     reason: str = ""
     level_set: bool = False
 

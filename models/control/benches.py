@@ -30,6 +30,6 @@ def checked_laws(laws: Mapping[str, str], robot: RobotEntry) -> dict[str, str]:
         if bench not in BENCHES:
             raise unknown_name(bench, list(BENCHES), "bench")
         law = law_named(name)
-        if not law.suits(robot.make(robot.lab).system):
+        if not law.suits(robot.make(robot.parameters()).system):
             raise CodedError("error.law_does_not_suit", law=law.label)
     return {bench: law_name(name) for bench, name in laws.items()}

@@ -26,9 +26,14 @@ def saddle(curve: Curve, rise: float) -> Curve:
 
     Args:
         rise: [m].
+
+    Raises:
+        ValueError: a rise of a curve that has a height of its own.
     """
     if not rise:
         return curve
+    if curve.dimension == 3:
+        raise ValueError("rise: the path is a space curve, and has a height already")
     if curve.closed:
         none = np.zeros((2, 1))
         return in_space(curve, fourier(np.zeros(1), np.array([[0.0], [rise]]), none))

@@ -16,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
@@ -99,7 +100,8 @@ class Outcome:
         energy_given_J: largest work that the end-point has done on the hand, brake or wall.
         overspeed: largest rate along the path after the release, as a share above the wanted one.
         rms_torque_Nm: over the run and all motors.
-        diverged_at_s: when the run was stopped, or None; the other numbers end there.
+        stopped_at_s: when the run was stopped as diverged, or None; all other numbers are then
+            infinity, which stands behind every number.
     """
 
     law: str
@@ -113,7 +115,11 @@ class Outcome:
     energy_given_J: float
     overspeed: float
     rms_torque_Nm: float
-    diverged_at_s: float | None
+    stopped_at_s: float | None
+
+
+MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-1]
+"""The numbers of an outcome that are the larger, the worse."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -163,13 +169,12 @@ def compare(
 
 
 def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
-    """The worst of each measure over places; `diverged_at_s` is the earliest, or None."""
-    fields = [f.name for f in dataclasses.fields(Outcome)][3:-1]
-    stops = [o.diverged_at_s for o in outcomes if o.diverged_at_s is not None]
+    """The worst of each measure over places; `stopped_at_s` is the earliest, or None."""
+    stops = [o.stopped_at_s for o in outcomes if o.stopped_at_s is not None]
     found: dict[str, float | None] = {
-        name: max((getattr(o, name) for o in outcomes), key=abs) for name in fields
+        name: max((getattr(o, name) for o in outcomes), key=abs) for name in MEASURES
     }
-    return found | {"diverged_at_s": min(stops, default=None)}
+    return found | {"stopped_at_s": min(stops, default=None)}
 
 
 def _largest_torque(contest: Contest) -> float:
@@ -184,7 +189,8 @@ def _outcome(
     log, fault = _run(contest, law, obstruction, place, torque)
     dt, speed = time_step(contest.parameters), contest.parameters.speed
     if fault is not None:
-        log = {name: values[: max(fault, 1)] for name, values in log.items()}
+        measures = dict.fromkeys(MEASURES, np.inf)
+        return Outcome(law, obstruction.name, place, **measures, stopped_at_s=fault * dt)
     seconds = len(log["theta"]) * dt
     distance = path_distance(contest.robot.frame, contest.curve, log["y"][::5])
     force = np.linalg.norm(log["force"], axis=1)
@@ -205,7 +211,7 @@ def _outcome(
         energy_given_J=max(float(given.max()), 0.0) + 0.0,
         overspeed=max(float(rates.max()) - 1, 0.0) if rates.size else 0.0,
         rms_torque_Nm=float(np.sqrt((log["u"] ** 2).mean())),
-        diverged_at_s=None if fault is None else fault * dt,
+        stopped_at_s=None,
     )
 
 
@@ -228,9 +234,9 @@ def _run(
         settings = settings_vector(robot, kernel, parameters, curve, push)
         state, log = loop.run(state, settings, curve.table(), round(seconds / dt))
         rows.append(log)
-    fields = kernel.log.unpack(np.concatenate(rows))
-    fault = robot.fault(fields["q"], fields["v"], own)
-    return fields, None if fault is None else fault[0]
+    whole = np.concatenate(rows)
+    fault = fault_in(robot, kernel.log, law, whole, own)
+    return kernel.log.unpack(whole), None if fault is None else fault[0]
 
 
 def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: float) -> Array:

@@ -36,10 +36,12 @@ from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
 from onpath.models.systems.robots import Robot, RobotEntry
 
 NEAR = 1e-9  # [m], as good as on the path
+OF_SPEED = ("speed", "ramp", "speed_profile", "profile_period")
+"""Parameters that a profile of the schedule replaces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +54,9 @@ class Experiment:
         make: the robot for given parameters.
         parameters: of the robot, the control laws and the task.
         schedule: what happens when.
-        start: r -> the end-point at rest at the start, shape (p,), [m].
-        path: the path to follow; None: the circle of the schedule, with the rise of the parameters.
+        start: (robot, r) -> the end-point at rest at the start, shape (p,), [m].
+        path: the path to follow, with the rise of the parameters; None: the circle of the schedule.
+        lifts: whether the start is lifted to the height of a path with a rise.
     """
 
     name: str
@@ -63,6 +66,7 @@ class Experiment:
     schedule: Schedule
     start: Callable[[Robot, float], Array]
     path: Curve | None = None
+    lifts: bool = True
 
     def robot(self) -> Robot:
         """The robot for the parameters."""
@@ -70,12 +74,13 @@ class Experiment:
 
     def curve(self) -> Curve:
         """The path to follow."""
-        return raised(circle(self.schedule.r), self.parameters) if self.path is None else self.path
+        path = circle(self.schedule.r) if self.path is None else self.path
+        return raised(path, self.parameters)
 
     def begin(self) -> Array:
-        """The end-point at the start, at the height of the path there, shape (p,), [m]."""
+        """The end-point at the start, shape (p,), [m]; see `lifts`."""
         y, curve = self.start(self.robot(), self.schedule.r), self.curve()
-        if self.path is not None or curve.dimension == 2:
+        if not self.lifts or not rise_of(self.parameters):
             return y
         frame = self.robot().frame
         theta, _ = curve.plan.nearest(frame.planar(y)[None])
@@ -104,7 +109,8 @@ class Experiment:
             assignments: name -> value, or value as text, of the schedule or the parameters.
 
         Raises:
-            ValueError: an unknown name or a bad value; the message names it.
+            ValueError: an unknown name, a bad value, or one that contradicts another; the message
+                names it.
         """
         parameters, own = self.parameters, dict[str, Any]()
         for name, text in assignments.items():
@@ -119,7 +125,13 @@ class Experiment:
         schedule = schedules.with_values(self.schedule, own)
         for speed in schedule.profile.speeds if schedule.profile else ():
             changed(parameters, "speed", speed)  # in range
-        return dataclasses.replace(self, parameters=parameters, schedule=schedule)
+        for name in OF_SPEED if schedule.profile else ():
+            if name in assignments:
+                raise ValueError(f"{name}: the profile says the speed already")
+        whole = dataclasses.replace(self, parameters=parameters, schedule=schedule)
+        if rise_of(parameters) != rise_of(self.parameters):
+            check_path(whole.robot(), whole.curve())
+        return whole
 
 
 def check_path(robot: Robot, path: Curve) -> None:
@@ -135,6 +147,20 @@ def check_path(robot: Robot, path: Curve) -> None:
 
 def _always(point: Array, _robot: Robot, _r: float) -> Array:
     return point
+
+
+def on_path(entry: RobotEntry, parameters: Parameters, path: Curve) -> Experiment:
+    """A robot that starts at rest on a path, at θ = 0, with nothing in its way."""
+    return Experiment(
+        name="on_path",
+        title=entry.label,
+        make=entry.make,
+        parameters=parameters,
+        schedule=Schedule(),
+        start=lambda robot, _: robot.frame.lift(raised(path, parameters).at(np.array(0.0))),
+        path=path,
+        lifts=False,
+    )
 
 
 def experiments(robot: str = "") -> dict[str, Experiment]:
@@ -196,7 +222,7 @@ def _there_and_back() -> Experiment:
         name="flexible",
         title="Flexible link: there and back along the path",
         make=FLEXIBLE.make,
-        parameters=FlexibleParameters(),
+        parameters=FlexibleParameters(law="redefined"),
         schedule=Schedule(duration=6.0, reverse_at=3.0),
         start=lambda robot, _: _off_the_ellipse(robot),
     )
@@ -219,7 +245,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     """Simulate an experiment under one control law.
 
     Returns:
-        One row per millisecond; shorter than the schedule, with `diverged_at`, if the run diverged.
+        One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
 
     Raises:
         ValueError: the controller is unknown, or the path is out of the robot's reach.
@@ -262,12 +288,20 @@ def _finished(
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt
-    return dataclasses.replace(whole.thinned(), diverged_at=end, reason=str(fault[1]))
+    return dataclasses.replace(whole.thinned(), stopped_at=end, reason=str(fault[1]))
 
 
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
-    """The content of `--json`; numbers have nine significant digits."""
-    laws = {run.controller: _summary(run) for run in runs}
+    """The content of `--json`; numbers have nine significant digits.
+
+    Of a run that was stopped, maxima and means are infinity, which stands behind every number, and
+    the final speed is None.
+    """
+    held = experiment.schedule.hold_from < experiment.schedule.hold_to
+    laws = {
+        run.controller: _summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)
+        for run in runs
+    }
     return {"experiment": experiment.name, "laws": laws}
 
 
@@ -275,13 +309,27 @@ def _summary(run: Trajectory) -> dict[str, Any]:
     def largest(values: Array) -> float | None:
         return float(f"{np.abs(values).max():.9g}") if values.size else None
 
-    empty = run.t.size == 0
     return {
         "max_distance_m": largest(run.distance),
         "max_distance_while_held_m": largest(run.distance[run.held]),
-        "rms_distance_m": None if empty else float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
-        "final_speed_rad_s": None if empty else float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
+        "rms_distance_m": float(f"{np.sqrt(np.mean(run.distance**2)):.9g}"),
+        "final_speed_rad_s": float(f"{run.fields['theta_rate'][-1, 0]:.9g}"),
         "max_torque_Nm": largest(run.fields["u"]),
-        "diverged": run.diverged_at is not None,
-        "diverged_at_s": None if run.diverged_at is None else float(f"{run.diverged_at:.9g}"),
+        "stopped_at_s": None,
+    }
+
+
+def _stopped(time: float, held: bool) -> dict[str, Any]:
+    """The summary of a run that was stopped at a time, [s].
+
+    Args:
+        held: whether there was to be a hold.
+    """
+    return {
+        "max_distance_m": np.inf,
+        "max_distance_while_held_m": np.inf if held else None,
+        "rms_distance_m": np.inf,
+        "final_speed_rad_s": None,
+        "max_torque_Nm": np.inf,
+        "stopped_at_s": float(f"{time:.9g}"),
     }

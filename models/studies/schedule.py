@@ -116,9 +116,31 @@ def with_values(schedule: Schedule, values: Mapping[str, Any]) -> Schedule:
         values: name -> value, or value as text.
 
     Raises:
-        ValueError: a bad value; the message names it.
+        ValueError: a bad value, or one that nothing uses; the message names it.
     """
-    return dataclasses.replace(schedule, **{name: _read(name, v) for name, v in values.items()})
+    found = dataclasses.replace(schedule, **{name: _read(name, v) for name, v in values.items()})
+    for name in values:
+        _check_used(found, name)
+    return found
+
+
+def _check_used(schedule: Schedule, name: str) -> None:
+    """Refuse details of something that never acts, and what begins after the end.
+
+    Raises:
+        ValueError: it is one of these.
+    """
+    what, _, detail = name.partition("_")
+    end = f"the run ends at {schedule.duration:g} s"
+    if name == "reverse_at" and schedule.reverse_at >= schedule.duration:
+        raise ValueError(f"reverse_at ({schedule.reverse_at:g} s): {end}")
+    if what not in _TIMES:
+        return
+    begin, until = getattr(schedule, f"{what}_from"), getattr(schedule, f"{what}_to")
+    if detail not in ("from", "to") and begin == until:
+        raise ValueError(f"{name}: it needs an interval, {what}_from and {what}_to")
+    if begin < until and begin >= schedule.duration:
+        raise ValueError(f"{what}_from ({begin:g} s): {end}")
 
 
 def _read(name: str, value: Any) -> Any:

@@ -190,6 +190,5 @@ ROBOT = RobotEntry(
     text="Two motors, rigid links, a pen in a vertical plane.",
     picture="five_bar.png",
     parameters=FiveBarParameters,
-    lab=FiveBarParameters(),
     make=lambda _: rigid_five_bar(),
 )

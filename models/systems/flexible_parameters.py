@@ -52,7 +52,7 @@ class FlexibleParameters(Parameters):
         label="α",
     )
     law: str = choice(
-        "redefined",
+        "composite",  # the only one that is stable under every pull
         ("redefined", "composite"),
         "what the controller puts on the path: y with a share of the deflection, or the tip itself",
         group="basic",

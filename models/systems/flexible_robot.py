@@ -322,7 +322,6 @@ ROBOT = RobotEntry(
     text="Three motors, a last link that bends: the tip is not where the motors put it.",
     picture="flexible_five_bar.png",
     parameters=FlexibleParameters,
-    lab=FlexibleParameters(law="composite"),  # the only law that is stable under every pull
     make=robot_for,
     goes_on=("payload",),
     caution=caution,

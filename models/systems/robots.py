@@ -243,8 +243,7 @@ class RobotEntry:
         name: as on the command line and in files.
         label: as shown.
         text: one sentence about the robot.
-        parameters: the type of its parameters, with the defaults of the experiments.
-        lab: parameters with which the lab starts.
+        parameters: the type of its parameters; its defaults are those of the robot everywhere.
         make: the instance for given parameters; only structural parameters select it.
         picture: name of an asset; if empty, the bars are sketched.
         goes_on: parameters that may select another instance with the same states and kinematics, so
@@ -259,7 +258,6 @@ class RobotEntry:
     label: str
     text: str
     parameters: type[Parameters]
-    lab: Parameters
     make: Callable[[Parameters], Robot]
     picture: str = ""
     flexible_link: FlexibleLink | None = None

@@ -292,6 +292,5 @@ ROBOT = RobotEntry(
     text="Three motors, a turning base: its path may leave the plane.",
     picture="spatial_arm.png",
     parameters=SpatialParameters,
-    lab=SpatialParameters(),
     make=lambda _: spatial_arm_robot(),
 )

@@ -236,6 +236,5 @@ ROBOT = RobotEntry(
     text="Two motors, one at the shoulder and one at the elbow, against gravity.",
     picture="two_link_arm.png",
     parameters=TwoLinkParameters,
-    lab=TwoLinkParameters(),
     make=lambda _: two_link_arm_robot(),
 )

@@ -171,6 +171,23 @@ def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_p
     opened.page.close()
 
 
+@pytest.mark.parametrize("robot", onpath.robots())
+@pytest.mark.parametrize("given", [{}, {"speed": 3.0}])
+def test_it_moves_as_a_run_with_the_same_arguments(
+    browser: Browser, tmp_path: Path, robot: str, given: dict[str, Any]
+) -> None:
+    file = onpath.figure(tmp_path / "a.html", robot, LAWS, "ellipse", sliders=(), **given)
+    opened = Opened(browser, file)
+    opened.press("Pause")
+    opened.do(("reset", None), ("advance", 300))
+    begin, size = opened.number("onpath.data.log.y")
+    there = [row[begin : begin + size] for row in opened.number(LOGGED)]
+    own = given or onpath.NEWCOMER
+    here = [onpath.simulate(robot, "ellipse", law, duration=0.3, **own).y[-1] for law in LAWS]
+    assert np.array(there) == pytest.approx(np.array(here), abs=CLOSE)
+    opened.page.close()
+
+
 def test_held_back_the_tracker_is_torn_off_and_the_follower_waits(opened: Opened) -> None:
     opened.press("Reset")
     opened.do(("advance", 2000))

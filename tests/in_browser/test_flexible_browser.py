@@ -12,10 +12,10 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, ViewportSize, expect
 
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.new_lab import GENTLE
 from onpath.models.control.benches import RIGHT
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
@@ -121,7 +121,7 @@ def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     tab.press(FIVE_BAR.label)
     wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for(state="detached")
-    assert tab.session.parameters == replace(FIVE_BAR.lab, **GENTLE)
+    assert tab.session.parameters == replace(FIVE_BAR.parameters(), **NEWCOMER)
 
 
 def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(

@@ -12,9 +12,9 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, Page, expect
 
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
-from onpath.app.server.new_lab import GENTLE
 from tests.support.browser import Tab, wait_for
 
 LESSON = "01-path-or-timetable"
@@ -156,8 +156,8 @@ def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
     tab.page.get_by_role("heading", name="Thirty times").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
-    usual = tab.session.entry.lab
-    wait_for(lambda: tab.session.parameters == replace(usual, **GENTLE))
+    usual = tab.session.entry.parameters()
+    wait_for(lambda: tab.session.parameters == replace(usual, **NEWCOMER))
     tab.press("Lessons")
     tab.page.get_by_role("button", name="Go on with lesson 1: ").wait_for()
     tab.page.get_by_text(re.compile("[12] of 2 tasks")).wait_for()

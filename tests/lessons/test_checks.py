@@ -51,7 +51,7 @@ class Frames:
             values={"follower": values, "tracker": {"distance": 2.0 * self.values}},
             happenings=tuple(happenings),
             run=0,
-            parameters=FIVE_BAR.lab,
+            parameters=FIVE_BAR.parameters(),
             end=times[-1],
         )
 

@@ -155,7 +155,7 @@ def test_of_the_outputs() -> None:
     """One beam, two outputs"""
     gains: list[dict[str, Any]] = [{}, {"K1": 1600.0, "K2": 80.0}]
     for gain in gains:
-        tip = onpath.simulate("flexible", duration=2.0, alpha=1.0, **gain)
-        assert tip.diverged_at is not None and tip.diverged_at < 1
-    other = onpath.simulate("flexible", duration=8.0, alpha=0.5)
-    assert other.diverged_at is None and farthest(other, 4) < 1
+        tip = onpath.simulate("flexible", output="redefined", duration=2.0, alpha=1.0, **gain)
+        assert tip.stopped_at is not None and tip.stopped_at < 1
+    other = onpath.simulate("flexible", output="redefined", duration=8.0, alpha=0.5)
+    assert other.stopped_at is None and farthest(other, 4) < 1

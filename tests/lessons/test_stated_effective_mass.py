@@ -12,7 +12,7 @@ pytestmark = pytest.mark.thorough
 
 BASE = np.array([-0.2, -0.2])  # the pivot, in the path's plane, [m]
 RADIUS = 0.05  # [m]
-ROBOT = FIVE_BAR.make(FIVE_BAR.lab)
+ROBOT = FIVE_BAR.make(FIVE_BAR.parameters())
 WAYS = np.array([[np.cos(a), np.sin(a)] for a in np.radians(np.arange(0, 180, 1))])
 
 
@@ -20,7 +20,7 @@ def masses(degrees: float) -> np.ndarray:
     """Effective mass at a place of the circle in each of the directions, [kg]."""
     place = RADIUS * np.array([np.cos(np.radians(degrees)), np.sin(np.radians(degrees))])
     q = ROBOT.rest(ROBOT.frame.lift(place))
-    return effective_masses(ROBOT, q, FIVE_BAR.lab, WAYS)
+    return effective_masses(ROBOT, q, FIVE_BAR.parameters(), WAYS)
 
 
 def test_the_ellipse_is_longest_at_the_upper_right_within_20_degrees_of_outwards() -> None:

@@ -234,7 +234,7 @@ def flexible(**settings: object) -> Trajectory:
 
 def test_how_soon_the_tip_is_lost_is_told_with_the_number_of_modes() -> None:
     texts = stated_in_readme("is stopped after # ms; with one mode it takes # ms, with six # ms,")
-    found = [flexible(alpha=1, modes=modes).diverged_at or 0.0 for modes in (3, 1, 6)]
+    found = [flexible(alpha=1, modes=modes).stopped_at or 0.0 for modes in (3, 1, 6)]
     assert_stated(texts, [1e3 * seconds for seconds in found])
 
 

@@ -131,7 +131,7 @@ def test_the_limit_is_one_of_the_pose_and_of_the_modes() -> None:
 @pytest.mark.parametrize("alpha", [0.0, 0.75, 1.0])
 def test_the_rank_is_full_on_the_path_of_the_lesson_for_mark_and_tip(alpha: float) -> None:
     """Theorem 2.1 holds for the output whose zero dynamics are unstable as well."""
-    own = replace(ROBOTS["flexible"].lab, alpha=alpha)
+    own = replace(ROBOTS["flexible"].parameters(), alpha=alpha)
     robot, path = robot_for(own), Lab(store(), ROBOTS["flexible"]).session.editor.curve
     places = path.at(np.linspace(0, 2 * np.pi, 120, endpoint=False))
     q = np.stack([robot.rest(robot.frame.lift(z)) for z in places])

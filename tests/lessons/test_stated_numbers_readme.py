@@ -47,7 +47,7 @@ def test_a_ramp_of_the_speed_removes_the_start_up_error() -> None:
 
 def test_a_wall_gives_way() -> None:
     stiffness, most = stated_in_readme("with # N for each millimetre and at most # N.")
-    grip = FIVE_BAR.make(FIVE_BAR.lab).grip
+    grip = FIVE_BAR.make(FIVE_BAR.parameters()).grip
     assert_stated([stiffness, most], [grip.wall.stiffness / 1e3, grip.wall.largest])
     (deep,) = stated_in_readme("slides along it, # mm deep in a wall through the circle's centre")
     wall = (2.0, 10.0, (0.0, 0.0), 0.0)
@@ -71,7 +71,7 @@ def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
     load = value(grams) / 1e3
     assert stated_in_readme("`--set payload=#` hangs") == [f"{load:g}"]
     half = did("flexible", FOLLOWER, alpha=0.5, payload=load)
-    found = [half.diverged_at or 0.0]
+    found = [half.stopped_at or 0.0]
     for gravity in (tip_load.GRAVITY, 0.0):
         with monkeypatch.context() as patch:
             patch.setattr(tip_load, "GRAVITY", gravity)
@@ -97,7 +97,7 @@ def test_the_comparison_under_a_brake() -> None:
         "a brake for # s, the worst of eight places is # mm for tracking, # mm for path following,"
         " and # mm for a clock that waits"
     )
-    contest = Contest(FIVE_BAR, FIVE_BAR.lab, presets()["circle"].curve)
+    contest = Contest(FIVE_BAR, FIVE_BAR.parameters(), presets()["circle"].curve)
     laws = [TRACKER, FOLLOWER, "waiting_clock"]
     found = [list(outcomes) for outcomes in compare(contest, laws, ["brake"])]
     assert [len(outcomes) for outcomes in found] == [8, 8, 8]

@@ -50,7 +50,7 @@ class Driven:
 
     def __init__(self, who: str = FOLLOWER, robot: str = "five_bar", **settings: object) -> None:
         self.who, self.push, self.time = who, FREE, 0.0
-        self.parameters = replace(ROBOTS[robot].lab, **settings)  # type: ignore[arg-type]
+        self.parameters = replace(ROBOTS[robot].parameters(), **settings)  # type: ignore[arg-type]
         self.robot = ROBOTS[robot].make(self.parameters)
         kernel = kernel_of(self.robot, kind_of(who, self.parameters, CURVE))
         begin = self.robot.frame.lift(CURVE.at(np.array(0.0)))

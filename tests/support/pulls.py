@@ -72,7 +72,7 @@ def _loop(robot: Robot, kind: Kind) -> Loop:
 
 def parameters_of(name: str, **changes: float | str) -> Parameters:
     """A robot's parameters as the lab begins with them, but for some changes."""
-    return replace(ROBOTS[name].lab, **changes)
+    return replace(ROBOTS[name].parameters(), **changes)
 
 
 def runs_untouched(name: str, parameters: Parameters, law: str, seconds: float = 10.0) -> bool:

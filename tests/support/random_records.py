@@ -33,7 +33,7 @@ def some_record(rng: np.random.Generator) -> Record:
         values=some_columns(rng, count, own),
         happenings=some_happenings(rng, times, float(steps.sum())),
         run=1,
-        parameters=replace(entry.lab, **gains, encoder_counts=counts),
+        parameters=replace(entry.parameters(), **gains, encoder_counts=counts),
         end=float(times[-1] + rng.choice([1 / 60, 0.0, 0.1])) if count else 0.0,
         path=str(rng.choice(["circle", "ellipse", "edited"])),
         laws={"left": str(rng.choice(["trajectory_tracking", "set_point"]))},

@@ -54,7 +54,7 @@ def _value(spec: Spec) -> st.SearchStrategy[Any]:
 @st.composite
 def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
     """A set-up of one robot, as `capture` makes it."""
-    lab = ROBOTS[robot].lab
+    lab = ROBOTS[robot].parameters()
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
     values = {name: draw(_value(spec)) for name, spec in some}
     own = {name: value for name, value in values.items() if value != getattr(lab, name)}

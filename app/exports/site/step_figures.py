@@ -21,7 +21,6 @@ from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import specs
 
 ALWAYS = ("pull", "run", "step", "reset", "plot")
@@ -105,15 +104,13 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     """
     scene, step = lesson.scene_at(index), lesson.steps[index]
     robot = scene.robot or lesson.front.robot
-    entry = ROBOTS[robot]
-    values = {"speed": entry.lab.speed, "ramp": entry.lab.ramp, **scene.set}
     laws = tuple({**DEFAULT_LAWS, **scene.laws.named}.values())
     first, *others = _paths(lesson, index, scene)
     curves = {first: presets()[first].curve}
     controls = (*ALWAYS, "hold") if "hold" in scene.controls else ALWAYS
     if step.kind == "predict":
         controls = ()
-    bare = chosen(robot, laws, curves, values, sliders=(), controls=controls)
+    bare = chosen(robot, laws, curves, scene.set, sliders=(), controls=controls)
     bare = replace(bare, paths={**curves, **_possible(bare, others)})
     known = specs(type(bare.parameters))
     sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))

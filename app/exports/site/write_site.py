@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.site.pages import (
     Picture,
     entry_of,
@@ -108,7 +109,8 @@ class _Writer:
 
     def _start(self, words: Words) -> None:
         curves = {name: presets()[name].curve for name in PATHS}
-        figure = self._shared_kernels(figure_data(chosen("five_bar", paths=curves), words))
+        choice = chosen("five_bar", paths=curves, values=NEWCOMER)
+        figure = self._shared_kernels(figure_data(choice, words))
         entries = [
             entry_of(
                 self._course.lesson(name, words.language),

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.common.gentle import GENTLE
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -85,10 +84,9 @@ class FigureChoice:
 
     def start(self, law: str, curve: Curve) -> Array:
         """The first state of a bench: at rest on the path at θ = 0."""
-        robot, curve = self.machine, raised(curve, self.parameters)
-        lift = robot.frame.lift
-        start = robot.rest(lift(curve.at(np.array(0.0))))
-        return first_state(robot, self.kernel(law, curve), curve, start)
+        robot, followed = self.machine, raised(curve, self.parameters)
+        start = robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
+        return first_state(robot, self.kernel(law, curve), followed, start)
 
     def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
         """The settings of a bench, with nothing in its way."""
@@ -106,11 +104,11 @@ def chosen(
     controls: Sequence[str] | None = None,
     choices: Sequence[str] = (),
 ) -> FigureChoice:
-    """Check a choice; the robot starts as gently as in a new lab.
+    """Check a choice.
 
     Args:
         robot, laws, paths, choices: see `FigureChoice`.
-        values: parameters by name, where they differ from a new lab's.
+        values: parameters by name, where they differ from the robot's defaults.
         sliders: None: the speed or the target, and the gains of the laws.
         controls: see `FigureChoice`; None: all that are possible.
 
@@ -123,8 +121,8 @@ def chosen(
     if not 1 <= len(laws) <= len(BENCHES):
         raise ValueError(f"laws: expected one or two, got {len(laws)}")
     entry = ROBOTS[robot]
-    parameters = entry.lab
-    for name, value in (GENTLE | dict(values or {})).items():
+    parameters = entry.parameters()
+    for name, value in (values or {}).items():
         parameters = changed(parameters, name, value)
     if parameters.speed_profile != "constant":
         raise ValueError("speed_profile: a figure has a constant speed")

@@ -80,8 +80,8 @@ class ResetParameters(Command):
 
     def apply(self, lab: Lab) -> None:
         """See `Command.apply`."""
-        _check_plane(lab.session, lab.session.entry.lab)
-        _set(lab, lab.session.entry.lab)
+        _check_plane(lab.session, lab.session.entry.parameters())
+        _set(lab, lab.session.entry.parameters())
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,7 @@ def _start_of(start: Start) -> dict[str, float]:
 @lru_cache(maxsize=256)
 def _differences(name: str, own: Parameters) -> dict[str, int | float | str]:
     """What differs from the parameters of a new lab with this robot."""
-    lab, found = ROBOTS[name].lab, dict[str, int | float | str]()
+    lab, found = ROBOTS[name].parameters(), dict[str, int | float | str]()
     for name, spec in specs(own).items():
         value, default = getattr(own, name), getattr(lab, name)
         if value != default and kept(spec, value) != default:

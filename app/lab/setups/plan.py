@@ -91,7 +91,7 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
     """One robot of a set-up; see `planned`."""
     if name not in ROBOTS:
         raise unknown_name(name, list(ROBOTS), "robot")
-    parameters = ROBOTS[name].lab
+    parameters = ROBOTS[name].parameters()
     for field, value in robot.parameters.items():
         tiny = isinstance(value, float) and abs(value) <= NOTHING
         parameters = changed(parameters, field, 0.0 if tiny else value)

@@ -13,6 +13,7 @@ from typing import Annotated, Any
 
 import msgspec
 
+from onpath.app.lab.setups.former_defaults import DEFAULTS
 from onpath.models.closed_loop.obstacles import ALONG
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.expressions import LONGEST
@@ -24,8 +25,6 @@ EXAGGERATIONS = (1.0, 20.0)  # minimum and maximum
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)  # simulated seconds per second
 UNIT = 1e-6  # [m]
 EDITED, DRAWN = "edited", "drawn"  # names of paths that are not presets
-
-DEFAULTS = 2  # version of a new lab's parameters; data that name none are of version 1
 
 Word = Annotated[str, msgspec.Meta(max_length=40, pattern=r"^[A-Za-z0-9_ -]*$")]
 LawName = Annotated[str, msgspec.Meta(max_length=LONGEST)]

@@ -13,6 +13,7 @@ import zlib
 import msgspec
 
 from onpath.app.common.access_codes import as_meant, is_code
+from onpath.app.lab.setups.former_defaults import DEFAULTS
 from onpath.app.lab.setups.setup import Setup, to_data
 from onpath.app.lab.setups.stored import from_data
 from onpath.models.errors import CodedError, said_by
@@ -78,6 +79,9 @@ def _setup(body: str) -> Setup:
         plain = msgspec.json.decode(data)
     except (ValueError, RecursionError, zlib.error) as error:
         raise CodedError("error.share_empty") from error
+    defaults = plain.get("defaults", 0) if isinstance(plain, dict) else 0
+    if isinstance(defaults, int) and defaults > DEFAULTS:
+        raise CodedError("error.share_newer")
     try:
         return from_data(plain)
     except msgspec.ValidationError as error:  # its message quotes the data

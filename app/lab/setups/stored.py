@@ -7,15 +7,14 @@ from typing import Any
 
 import msgspec
 
+from onpath.app.lab.setups.former_defaults import former_defaults
 from onpath.app.lab.setups.plan import planned
-from onpath.app.lab.setups.setup import DEFAULTS, Path, RobotSetup, Setup, StoredSetup
+from onpath.app.lab.setups.setup import Path, RobotSetup, Setup, StoredSetup
 from onpath.models.closed_loop.start import ON_PATH
 from onpath.models.control.benches import checked_laws
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
-
-FORMER_DEFAULTS = {"five_bar": {"K3": 0.0}, "two_link_arm": {"K3": 0.0}, "flexible": {}}
-"""Robots of version 1, and their defaults that have changed. K3 acted in the tracker, too."""
+from onpath.models.systems.catalogue import ROBOTS
 
 
 def from_data(data: Any) -> Setup:
@@ -25,22 +24,24 @@ def from_data(data: Any) -> Setup:
         ValueError: it is not a valid set-up.
     """
     stored = msgspec.convert(data, StoredSetup)
-    robots = stored.robots if stored.defaults == DEFAULTS else _brought_up(stored.robots)
+    robots = _brought_up(stored.robots, stored.defaults)
     own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
     setup = Setup(**{**own, "robots": robots})
     entry = planned(setup, presets())[setup.robot].entry
     return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
 
 
-def _brought_up(robots: Mapping[str, RobotSetup]) -> dict[str, RobotSetup]:
-    """The same set-ups of robots, as differences from the present defaults."""
+def _brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, RobotSetup]:
+    """The same set-ups of robots, as differences from the present defaults.
+
+    Args:
+        version: of the defaults that they differ from.
+    """
     found = dict(robots)
-    for name, former in FORMER_DEFAULTS.items():
-        robot = robots.get(name, RobotSetup())
-        own = {**former, **robot.parameters}
-        if own.get("K3", 0.0) != 0.0:
-            own["tracker_integral"] = "on"
-        if own:
+    for name in ROBOTS:
+        if former := former_defaults(name, version):
+            robot = robots.get(name, RobotSetup())
+            own = {**former, **robot.parameters}
             found[name] = msgspec.structs.replace(robot, parameters=own)
     return found
 

@@ -95,14 +95,18 @@ def comparison_html(results: Results, picture: bytes, words: Words) -> str:
     titles = law_titles((law for law, _ in results), words)
     for (law, _), outcomes in results.items():
         values = worst(outcomes)
+        cells = [
+            f"{1000 * (values['max_distance_m'] or 0):.1f}",
+            f"{(values['delay_s'] or 0) + 0.0:.1f}",
+            f"{values['peak_force_N'] or 0:.0f}",
+        ]
+        stopped = values["stopped_at_s"] is not None
         rows.append(
             {
                 "law": titles[law],
                 "text": law if is_text(law) else "",
-                "distance": f"{1000 * (values['max_distance_m'] or 0):.1f}",
-                "delay": f"{(values['delay_s'] or 0) + 0.0:.1f}",
-                "force": f"{values['peak_force_N'] or 0:.0f}",
-                "stopped": values["diverged_at_s"] is not None,
+                "cells": [words("compare.stopped")] * len(cells) if stopped else cells,
+                "stopped": stopped,
             }
         )
     image = base64.b64encode(picture).decode()

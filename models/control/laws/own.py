@@ -67,7 +67,11 @@ MEANINGS = (
     NamedValue(("t",), "time since the law was chosen", "s"),
     NamedValue(("theta_r",), "parameter of the point that runs by the clock", "rad"),
     NamedValue(("speed",), "wanted speed along the path", "rad/s"),
-    NamedValue(("int_xi",), "integral of xi; it stops while a torque is at its limit, and K3 int_xi is limited", "m s"),
+    NamedValue(
+        ("int_xi",),
+        "integral of xi; it stops at a torque limit, and K3 int_xi is limited",
+        "m s",
+    ),
     NamedValue(
         ("K1", "K2", "K3", "K4", "K5"), "the gains as they are set", "1/s², 1/s, 1/s³, 1/s², 1/s"
     ),

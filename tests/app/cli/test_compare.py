@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -55,6 +56,25 @@ def test_typed_laws_are_compared_like_the_others(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_law_that_stops_says_so_everywhere(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fails, rows, picture = "across = 1000; along = 0", tmp_path / "a.csv", tmp_path / "a.png"
+    arguments = ["compare", "--law", fails, "--law", "path_following", "--obstruction", "none"]
+    assert run_command([*arguments, "--csv", str(rows), "--plot", str(picture)]) == 0
+    table = capsys.readouterr().out
+    assert re.search(r"own +stopped\n", table) and "inf" not in table and "0.00!" not in table
+    assert run_command([*arguments, "--json"]) == 0
+    text = capsys.readouterr().out
+    (outcome,) = json.loads(text, parse_constant=lambda name: pytest.fail(name))["laws"][fails][
+        "none"
+    ]
+    assert outcome["max_distance_m"] is outcome["delay_s"] is None and outcome["stopped_at_s"] > 0
+    with rows.open(newline="") as file:
+        own, other = csv.DictReader(file)
+    assert float(own["max_distance_m"]) == float("inf") > float(other["max_distance_m"])
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
@@ -67,6 +87,7 @@ def test_typed_laws_are_compared_like_the_others(
         (["--obstruction", "moon"], "unknown obstruction"),
         (["--robot", "hexapod"], "unknown robot"),
         (["--radius", "nan"], "--radius"),
+        (["--robot", "spatial_arm", "--set", "rise=0.03"], "plane circle"),
         (["--set", "speed=0"], "speed along the path"),
         (["--set", "K1=inf"], "K1"),
         (["--plot", "a.gif"], "expected a name ending in"),

@@ -87,6 +87,7 @@ def test_the_modes_are_told_apart_and_all_are_seen() -> None:
         ["figure", "rank", "--set", "K1"],
         ["figure", "rank", "--set", "weight=3"],
         ["figure", "rank", "--set", "payload=heavy"],
+        ["figure", "rank", "--set", "K1=300"],
     ],
 )
 def test_errors_are_one_line(

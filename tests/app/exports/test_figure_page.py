@@ -37,9 +37,9 @@ def numbers(function: Any, *arguments: Any) -> Array:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) -> None:
     entry, rng = ROBOTS[robot], np.random.default_rng(1)
-    machine = entry.make(entry.lab)
-    curve = raised(CURVES[name], entry.lab)
-    kind = kind_of("path_following", entry.lab, curve)
+    machine = entry.make(entry.parameters())
+    curve = raised(CURVES[name], entry.parameters())
+    kind = kind_of("path_following", entry.parameters(), curve)
     functions = page_functions(machine, kind)
     table = curve.table().reshape(kind.table_shape, order="F")
     grid = grid_of(machine, curve.at(curve.sample(GRID))).T
@@ -63,9 +63,9 @@ def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) ->
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
     entry, rng = ROBOTS[robot], np.random.default_rng(2)
-    machine = entry.make(entry.lab)
+    machine = entry.make(entry.parameters())
     n = machine.system.n
-    kind = kind_of("path_following", entry.lab, CURVES["circle"])
+    kind = kind_of("path_following", entry.parameters(), CURVES["circle"])
     fault = page_functions(machine, kind)["fault"]
     home = machine.rest(machine.frame.lift(np.zeros(2)))
     size = np.where(np.arange(n) < machine.system.m, 1.0, 0.02)  # joints, and what a link bends
@@ -76,12 +76,12 @@ def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
     found = [int(numbers(fault, *each, 0.0)[0]) for each in zip(q, v, strict=True)]
     for one, rate, code in zip(q, v, found, strict=True):
         here = one if np.isfinite(one).all() else home
-        reasons = stop_reasons(machine, entry.lab, here, "path_following")
-        expected = machine.fault(one[None], rate[None], entry.lab)
+        reasons = stop_reasons(machine, entry.parameters(), here, "path_following")
+        expected = machine.fault(one[None], rate[None], entry.parameters())
         assert (expected and expected[1]) == (reasons[code - 1] if code else None)
     assert 20 < sum(map(bool, found)) < len(found) - 20
     assert len(set(found)) >= 4
-    typed = stop_reasons(machine, entry.lab, home, "across = 1; along = 1")
+    typed = stop_reasons(machine, entry.parameters(), home, "across = 1; along = 1")
     code = int(numbers(fault, home, 0 * home, np.nan)[0])
     assert typed[code - 1].code == "stop.typed_law"
 
@@ -96,7 +96,7 @@ def test_a_page_is_small_the_same_every_time_and_names_no_other_place(tmp_path: 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_page_with_all_laws_has_at_most_a_megabyte_and_a_half(robot: str, tmp_path: Path) -> None:
     """Whatever laws the author includes."""
-    system = ROBOTS[robot].make(ROBOTS[robot].lab).system
+    system = ROBOTS[robot].make(ROBOTS[robot].parameters()).system
     laws = [name for name in onpath.laws() if law_named(name).suits(system)]
     assert len(laws) > 4
     file = onpath.figure(tmp_path / "a.html", robot, choices=laws)

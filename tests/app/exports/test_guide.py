@@ -155,7 +155,7 @@ def test_a_solution_is_told_in_words() -> None:
         ),
         until=10.0,
     )
-    said = list(script_words(script, FIVE_BAR.lab, ENGLISH))
+    said = list(script_words(script, FIVE_BAR.parameters(), ENGLISH))
     assert len(said) == 7
     assert "0.5 s" in said[0] and "= 600" in said[0] and "= 50.5" in said[0]
     assert "hold back; pull by 30 mm to the right and −2.5 mm up (Follower)" in said[1]

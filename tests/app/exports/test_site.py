@@ -168,7 +168,7 @@ def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
 def test_a_bent_link_is_not_called_stable_where_its_output_changes() -> None:
     lesson = read_course([BUILT_IN])[0].lesson("07-flexible-link", "en")
     either, flexible = ENGLISH("stop.bent_or_unstable"), ROBOTS["flexible"]
-    reasons = flexible.make(flexible.lab).reasons(None, flexible.lab)
+    reasons = flexible.make(flexible.parameters()).reasons(None, flexible.parameters())
     assert [ENGLISH.sentence(reason) for reason in reasons].count(either) == 1
     said = {
         i: figure_of(step_figure(lesson, i), ENGLISH)["laws"][1]["stops"]

@@ -28,7 +28,7 @@ from onpath.models.systems.flexible_robot import (
 from tests.support.drawing import drawn
 from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
 
-STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.lab))
+STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.parameters()))
 
 
 def flexible(seconds: float = 0.0, **changes: object) -> Lab:
@@ -128,7 +128,10 @@ def test_each_robot_keeps_its_bench() -> None:
     lab = Lab(store())
     do(lab, c.SetParameter("K1", 900), c.ChoosePath("clover"))
     do(lab, c.ChooseRobot("flexible"))
-    assert lab.session.editor.design.name == "circle" and lab.session.parameters == FLEXIBLE.lab
+    assert (
+        lab.session.editor.design.name == "circle"
+        and lab.session.parameters == FLEXIBLE.parameters()
+    )
     do(lab, c.SetParameter("rho", 0.3), c.ChoosePath("ellipse"))
     run(lab, 0.2)
     do(lab, c.ChooseRobot("five_bar"))

@@ -1,22 +1,37 @@
-"""What was stored when K3 was 0 by default keeps the physics that it had then."""
+"""What was stored keeps its motion, whatever the defaults are today.
+
+`tests/data/setups_version_2.json` was written with version 2 of the defaults: the defaults of all
+robots, and share codes with what they meant and where the end-points were after 0.4 s, held from
+0.2 s on.
+"""
 
 from __future__ import annotations
 
+import dataclasses
+import json
+from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 import pytest
 
 from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.setups import former_defaults, setup
 from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.former_defaults import CHANGES, DEFAULTS, Change
 from onpath.app.lab.setups.setup import RobotSetup, Setup, to_data
+from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import do, new_lab
+from tests.support.checkout import ROOT
+from tests.support.lab import do, new_lab, run, states, y
 
+WRITTEN = json.loads((ROOT / "tests/data/setups_version_2.json").read_text("utf-8"))
+CASES = {case["name"]: case for case in WRITTEN["cases"]}
 CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
     "new lab": ("ONPATH1-VOXAKAA-XSDALPI", {}),
     "another K1": (
@@ -25,7 +40,7 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
     ),
     "K3 and encoders": (
         "ONPATH1-VNDISD44OEAPEARMLCYAOF6QVW2QA-BERF3EY",
-        {"five_bar": {"K3": 2000.0, "encoder_counts": 2000.0, "tracker_integral": "on"}},
+        {"five_bar": {"K3": 2000.0, "encoder_counts": 2000.0}},
     ),
     "two-link arm": (
         "ONPATH1-VNDI5D4S6J6GBQHEMXDSOFXFMLDAHVD3YZ5ANNMYSYRFZDEIOQKOG2QB-PBL5LVQ",
@@ -37,11 +52,12 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
     ),
     "K3 with a flexible link": (
         "ONPATH1-VPDBKH5IOEAPFARJFBKIATWCCKV3KAA-GBN4THY",
-        {"flexible": {"K3": 500.0, "tracker_integral": "on"}},
+        {"flexible": {"K3": 500.0}},
     ),
 }
-"""Made before the default changed, and what they meant then."""
-ALL = ("five_bar", "two_link_arm", "flexible")
+"""Made with version 1, when K3 was 0 and acted in the tracker, too; and what they meant then."""
+VERSION_1 = ("five_bar", "two_link_arm", "flexible")
+"""The robots that there were."""
 
 
 def parameters(lab: Lab, robot: str) -> Any:
@@ -49,16 +65,111 @@ def parameters(lab: Lab, robot: str) -> Any:
     return lab.session.parameters
 
 
-@pytest.mark.parametrize("case", CODES)
-def test_an_old_share_code_keeps_its_physics(case: str) -> None:
-    code, own = CODES[case]
+def opened(code: str) -> Lab:
     lab = new_lab()
     do(lab, c.UseShared(code))
-    assert lab.message_level != "warning"
-    for robot in ALL:
-        found, expected = parameters(lab, robot), {"K3": 0.0, **own.get(robot, {})}
+    assert lab.message == lab.words("say.set_up")
+    return lab
+
+
+def held(lab: Lab) -> dict[str, np.ndarray]:
+    """The states after 0.4 s, held from 0.2 s on."""
+    run(lab, 0.2)
+    do(lab, c.Hold(True))
+    run(lab, 0.2)
+    return states(lab.session)
+
+
+def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
+    return {**WRITTEN["defaults"][robot], **own}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_share_code_means_what_it_meant(name: str) -> None:
+    case = CASES[name]
+    lab = opened(case["code"])
+    assert lab.session.entry.name == case["robot"]
+    assert lab.session.laws == case["laws"] and lab.session.editor.design.name == case["path"]
+    assert from_data(case["data"]) == decode(case["code"]) == capture(lab.session)
+    for robot in WRITTEN["defaults"]:
+        found = dataclasses.asdict(parameters(lab, robot))
+        expected = as_then(robot, case["parameters"].get(robot, {}))
+        assert {name: found[name] for name in expected} == expected
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_share_code_moves_as_it_moved(name: str) -> None:
+    case = CASES[name]
+    lab = opened(case["code"])
+    moved = held(lab)
+    for bench, place in case["end_points"].items():
+        assert y(lab.session, bench) == pytest.approx(place, abs=1e-9)  # of another machine
+    told = opened(case["code"])
+    do(told, *(c.SetParameter(n, v) for n, v in written_out(case).items()), c.Reset())
+    for bench, state in held(told).items():
+        assert np.array_equal(state, moved[bench])
+
+
+def written_out(case: Mapping[str, Any]) -> dict[str, Any]:
+    """All parameters of a case's robot, with their values."""
+    return as_then(case["robot"], case["parameters"].get(case["robot"], {}))
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
+    data = CASES[name]["data"]
+    lab = new_lab()
+    put_back(lab, {"setup": data, "lessons": {}, "before": data})
+    assert capture(lab.session) == lab.lessons.before == decode(CASES[name]["code"])
+    sent = read_push({"setup": data})
+    assert isinstance(sent, TakeSetup) and sent.setup == from_data(data)
+
+
+@pytest.mark.parametrize("robot", WRITTEN["defaults"])
+def test_a_default_that_has_changed_has_a_line(robot: str) -> None:
+    present = dataclasses.asdict(ROBOTS[robot].parameters())
+    former = former_defaults.former_defaults(robot, WRITTEN["version"])
+    for name, value in WRITTEN["defaults"][robot].items():
+        assert former.get(name, present[name]) == value, f"add a line to CHANGES for {name}"
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_change_is_one_line(robot: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    old = {"defaults": DEFAULTS, "robot": robot, "benches": {robot: {"parameters": {"K2": 30.0}}}}
+    monkeypatch.setattr(former_defaults, "CHANGES", (*CHANGES, Change(3, "K1", 123.0)))
+    found = from_data(old)
+    assert found.robots[robot].parameters == {"K1": 123.0, "K2": 30.0}
+    others = [name for name in ROBOTS if name != robot]
+    assert all(found.robots[name].parameters == {"K1": 123.0} for name in others)
+
+
+def test_the_value_of_a_version_is_that_before_the_next_change(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    changes = (*CHANGES, Change(3, "K1", 123.0), Change(4, "K3", 77.0), Change(5, "K1", 321.0))
+    monkeypatch.setattr(former_defaults, "CHANGES", changes)
+    values = [former_defaults.former_defaults("five_bar", version) for version in range(1, 6)]
+    assert [value.get("K1") for value in values] == [123.0, 123.0, 321.0, 321.0, None]
+    assert [value.get("K3") for value in values] == [0.0, 77.0, 77.0, None, None]
+    assert [change.since for change in CHANGES] == sorted(change.since for change in CHANGES)
+
+
+def test_a_share_code_of_a_newer_version_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(setup, "DEFAULTS", DEFAULTS + 1)
+    code = encode(Setup())
+    lab = new_lab()
+    do(lab, c.UseShared(code))
+    assert lab.message == lab.words("error.share_newer")
+
+
+@pytest.mark.parametrize("case", CODES)
+def test_a_share_code_of_version_1_keeps_its_physics(case: str) -> None:
+    code, own = CODES[case]
+    lab = opened(code)
+    for robot in VERSION_1:
+        found = parameters(lab, robot)
+        expected = {"K3": 0.0, "tracker_integral": "on", **own.get(robot, {})}
         assert {name: getattr(found, name) for name in expected} == expected
-        assert found.tracker_integral == expected.get("tracker_integral", "off")
 
 
 def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
@@ -68,7 +179,7 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
     assert (lab.session.parameters.K1, lab.session.parameters.K3) == (900.0, 0.0)
     assert lab.lessons.before == from_data(old)
     keep(lab, lambda state: kept.append(state()))
-    assert kept[0]["setup"]["defaults"] == kept[0]["before"]["defaults"] == 2
+    assert kept[0]["setup"]["defaults"] == kept[0]["before"]["defaults"] == DEFAULTS
     again = new_lab()
     put_back(again, kept[0])
     assert capture(again.session) == capture(lab.session)
@@ -77,15 +188,14 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
 def test_an_old_push_of_a_teacher_is_accepted() -> None:
     sent = read_push({"setup": {"benches": {"five_bar": {"parameters": {"K2": 60.0}}}}})
     assert isinstance(sent, TakeSetup)
-    assert sent.setup.robots["five_bar"] == RobotSetup({"K2": 60.0, "K3": 0.0})
+    own = {"K2": 60.0, "K3": 0.0, "tracker_integral": "on"}
+    assert sent.setup.robots["five_bar"] == RobotSetup(own)
     assert read_push(push_data(sent)) == sent
 
 
-def test_a_robot_added_since_has_its_own_defaults(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setitem(ROBOTS, "new", ROBOTS["five_bar"])
-    assert from_data({"benches": {"new": {}}}).robots["new"] == RobotSetup()
+def test_a_robot_added_since_has_its_own_defaults() -> None:
+    assert "spatial_arm" not in VERSION_1
+    assert from_data({"benches": {"spatial_arm": {}}}).robots["spatial_arm"] == RobotSetup()
 
 
 def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:
@@ -95,7 +205,7 @@ def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:
     assert from_data(to_data(Setup())) == Setup()
 
 
-@pytest.mark.parametrize("version", [0, 3, -1, True, "2", 1.5, None])
+@pytest.mark.parametrize("version", [0, DEFAULTS + 1, -1, True, "2", 1.5, None])
 def test_an_invalid_version_is_refused(version: object) -> None:
     with pytest.raises(ValueError):
         from_data({"defaults": version})

@@ -50,7 +50,8 @@ def test_an_old_share_code_opens() -> None:
     lab = new_lab()
     do(lab, c.UseShared(SHARED))
     assert plant(lab) == NEW
-    assert capture(lab.session).robots["flexible"].parameters == {"plant": NEW, "alpha": 1.0}
+    own = {"plant": NEW, "alpha": 1.0, "tracker_integral": "on"}  # as it was then
+    assert capture(lab.session).robots["flexible"].parameters == own
 
 
 def test_an_old_stored_lab_is_restored_and_stored_under_the_new_name() -> None:

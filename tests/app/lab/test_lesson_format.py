@@ -205,7 +205,7 @@ def _record(distance: list[float], run: int, earlier: EarlierRun) -> Record:
     column = {"distance": np.array(distance)}
     end = float(len(distance) * 0.01)
     values = {"tracker": column, "follower": column}
-    return Record(times, values, (), run, FIVE_BAR.lab, end, before=earlier.values)  # type: ignore[arg-type]
+    return Record(times, values, (), run, FIVE_BAR.parameters(), end, before=earlier.values)  # type: ignore[arg-type]
 
 
 def test_the_lab_compares_a_run_with_the_one_before(lab: Lab) -> None:

@@ -55,7 +55,9 @@ def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> 
     lab = Lab(store(), FIVE_BAR, course)
     do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"))
     do(lab, c.OpenLesson(NAME))
-    assert lab.session.parameters.K1 == 300 and lab.session.parameters.K2 == FIVE_BAR.lab.K2
+    assert (
+        lab.session.parameters.K1 == 300 and lab.session.parameters.K2 == FIVE_BAR.parameters().K2
+    )
     assert lab.session.editor.design.name == "circle" and lab.session.running
     do(lab, c.CloseLesson())
     assert lab.session.parameters.K2 == 33 and lab.session.editor.design.name == "clover"

@@ -52,10 +52,10 @@ def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
     lab, lesson = new_lab(), COURSE.lesson(name, "en")
     do(lab, TakeStep(name, index))
     assert lab.lessons.index == index
-    parameters, path = ROBOTS[lesson.front.robot].lab, "circle"
+    parameters, path = ROBOTS[lesson.front.robot].parameters(), "circle"
     for scene in (step.scene for step in lesson.steps[: index + 1] if step.scene):
         if not scene.keep:
-            parameters, path = ROBOTS[lesson.front.robot].lab, "circle"
+            parameters, path = ROBOTS[lesson.front.robot].parameters(), "circle"
         for parameter, value in scene.set.items():
             parameters = changed(parameters, parameter, value)
         path = scene.path or path

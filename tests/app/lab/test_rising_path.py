@@ -45,7 +45,7 @@ def test_its_points_are_drawn_on_it_and_edited_in_its_plan_view() -> None:
     lab = risen(0.03, 1.0)
     snapshot = take_page_snapshot(lab, 1.0)
     assert_drawable(snapshot)
-    points = ARM.make(ARM.lab).unplace(snapshot.path.control_points)
+    points = ARM.make(ARM.parameters()).unplace(snapshot.path.control_points)
     assert points[:, :2] == pytest.approx(snapshot.edit.points)
     gaps = np.linalg.norm(snapshot.path.points - snapshot.path.control_points[:, None], axis=-1)
     assert gaps.min(axis=1).max() < 2e-3

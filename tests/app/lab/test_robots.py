@@ -82,7 +82,7 @@ class Gantry(PlanarRobot):
 
 ROBOT = RobotEntry(
     name="gantry", label="Gantry", text="Two sliding axes.",
-    parameters=Parameters, lab=Parameters(), make=lru_cache(lambda _: Gantry()))
+    parameters=Parameters, make=lru_cache(lambda _: Gantry()))
 '''
 NAMES_OF_ALL = [*ROBOTS, "gantry"]
 
@@ -112,7 +112,7 @@ def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
 
 
 def test_the_catalogue_finds_it_by_its_name(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     assert ROBOTS[robot.name] is entry and robot.system.n == len(robot.coordinate_names)
     assert robot.system.m >= robot.system.p == robot.frame.p
     assert entry.make(entry.parameters()) is entry.make(entry.parameters())
@@ -187,7 +187,7 @@ def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: Robo
 
 
 def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     function, counts = geometry_function(robot, closed=True)
     assert function.n_out() == 1
     sizes = [int(np.prod(shape)) for shape in counts.pose_shapes]
@@ -211,7 +211,7 @@ def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
 
 
 def test_neighbours_do_not_reach_into_each_other(entry: RobotEntry) -> None:
-    stage = stage_of(entry.make(entry.lab))
+    stage = stage_of(entry.make(entry.parameters()))
     left, right = stage.origins
     assert np.linalg.norm(right - left) >= stage.high[0] - stage.low[0]
 
@@ -337,7 +337,7 @@ def test_the_command_line_does_an_experiment_with_it(
     words = ["experiment", "position", "--robot", entry.name, "--set", "duration=0.2"]
     run_command([*words, "--csv", str(file), "--json"])
     assert json.loads(capsys.readouterr().out)["experiment"] == "position"
-    assert entry.make(entry.lab).coordinate_names[0] in file.read_text()
+    assert entry.make(entry.parameters()).coordinate_names[0] in file.read_text()
 
 
 def test_an_unknown_robot_is_told_its_nearest_names() -> None:

@@ -312,7 +312,7 @@ def test_a_pull_to_no_point_is_refused_by_its_command(command: c.Command) -> Non
 def test_parameters_within_their_ranges_are_packed_to_finite_numbers(data: st.DataObject) -> None:
     """Whatever `changed` lets in: nothing checks the vector again."""
     entry = ROBOTS[data.draw(st.sampled_from(list(ROBOTS)))]
-    parameters, structural = entry.lab, ("modes", "plant")
+    parameters, structural = entry.parameters(), ("modes", "plant")
     for name, spec in specs(parameters).items():
         if name not in structural:
             bounds = st.sampled_from([spec.low, spec.high]) | st.floats(spec.low, spec.high)

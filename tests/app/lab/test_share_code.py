@@ -230,7 +230,7 @@ def test_the_fullest_lab_fits() -> None:
         name: {
             "parameters": {
                 field: spec.options[0] if spec.options else spec.low + 0.123456 * spec.high
-                for field, spec in specs(entry.lab).items()
+                for field, spec in specs(entry.parameters()).items()
             },
             "path": {"name": "drawn", "numbers": list(path.numbers)},
         }

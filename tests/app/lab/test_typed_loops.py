@@ -28,7 +28,7 @@ from tests.support.waiting import wait_for
 
 PATIENCE = 60.0  # [s]
 
-ROBOT, CURVE = FIVE_BAR.make(FIVE_BAR.lab), circle(0.05)
+ROBOT, CURVE = FIVE_BAR.make(FIVE_BAR.parameters()), circle(0.05)
 
 
 def law(number: float) -> str:
@@ -36,7 +36,7 @@ def law(number: float) -> str:
 
 
 def key(number: float) -> Key:
-    return ROBOT, kind_of(law(number), FIVE_BAR.lab, CURVE)
+    return ROBOT, kind_of(law(number), FIVE_BAR.parameters(), CURVE)
 
 
 class Bench:
@@ -159,7 +159,7 @@ def test_what_cannot_be_made_is_an_error_and_nobody_else_is_affected(
 
 
 def test_kernels_of_typed_laws_displace_no_others() -> None:
-    known = ROBOT, kind_of(DEFAULT_LAWS[LEFT], FIVE_BAR.lab, CURVE)
+    known = ROBOT, kind_of(DEFAULT_LAWS[LEFT], FIVE_BAR.parameters(), CURVE)
     kernel = kernel_of(*known)
     for number in range(simulation.MOST + 2):
         kernel_of(*key(number))

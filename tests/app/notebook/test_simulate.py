@@ -33,7 +33,7 @@ ARGUMENTS: dict[str, dict[str, Any]] = {
         "wall": (0.2, 0.9, (0.0, 0.03), -1.5),
     },
     "position": {"duration": 0.5, "task": "position", "velocity": (0.1, 0.05), "clock_offset": 0.4},
-    "flexible": {"robot": "flexible", "duration": 0.5, "reverse_at": 0.3},
+    "flexible": {"robot": "flexible", "output": "redefined", "duration": 0.5, "reverse_at": 0.3},
 }
 SET = {
     "obstruction": {
@@ -53,6 +53,7 @@ SET = {
 PUSH = {"push_from": 0.1, "push_to": 0.2, "push_z1": 0.06, "push_z2": 0.01}
 
 
+@pytest.mark.filterwarnings("ignore:no effect under path following. clock_offset")
 @pytest.mark.parametrize("name", ARGUMENTS)
 def test_bytes_are_those_of_the_command_line(name: str, tmp_path: Path) -> None:
     assignments = {**SET[name], **PUSH, "K1": 500, "control_rate": 500}
@@ -229,9 +230,23 @@ def test_pictures_and_files_are_whole_or_refused(tmp_path: Path) -> None:
 
 def test_a_run_tells_what_happened() -> None:
     run = onpath.simulate(duration=0.3, K1=2500, K2=0, control_rate=50, start=(0.03, 0))
-    assert run.diverged_at is not None and run.t[-1] < run.diverged_at
+    assert run.stopped_at is not None and run.t[-1] < run.stopped_at
     assert run.reason in repr(run) and "max distance" in repr(run) and "path following" in repr(run)
-    assert run.summary()["diverged"] is True
+    assert run.summary()["stopped_at_s"] == pytest.approx(run.stopped_at)
+
+
+def test_a_law_that_fails_at_once_is_not_the_best_one() -> None:
+    laws = ("across = -K1*sqrt(xi); along = 0", "trajectory_tracking", "path_following")
+    runs = {law: onpath.simulate(law=law, duration=4.0, hold=(3, 3.5)) for law in laws}
+    assert min(runs, key=lambda law: runs[law].max_distance) == "path_following"
+    stopped = runs[laws[0]]
+    assert stopped.stopped_at is not None and stopped.max_distance == np.inf
+    assert np.isfinite(stopped.distance).all()  # what was recorded stays data
+    told = stopped.summary()
+    assert told["max_distance_m"] == told["max_distance_while_held_m"] == np.inf
+    assert "stopped" in repr(stopped) and "0.00 mm" not in repr(stopped)
+    for law in laws[1:]:
+        assert runs[law].max_distance == runs[law].distance.max()
 
 
 @pytest.mark.parametrize(

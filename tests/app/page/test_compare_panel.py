@@ -8,6 +8,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from onpath.app.exports.comparison import Results, compared
+from onpath.app.exports.figures_comparison import comparison_figure
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
@@ -113,3 +114,17 @@ def test_two_typed_laws_are_told_apart_in_the_table() -> None:
         label = law_label(TYPED, words)
         assert f"{label} 1" in page and f"{label} 2" in page
         assert TYPED in page and OTHER in page
+
+
+def test_a_law_that_stops_has_no_numbers_and_stands_at_the_edge_of_the_picture() -> None:
+    results: Results = {}
+    for law in ("across = 1000; along = 0", "path_following"):
+        what = FIVE_BAR.name, FIVE_BAR.parameters(), circle(0.05), results, law, "none", "en"
+        results, picture = compared(*what)
+    for language, stopped in (("en", "stopped"), ("de", "angehalten")):
+        page = comparison_html(results, picture, Words(language))
+        assert page.count(f"<td>{stopped}</td>") == 3 and "inf" not in page
+    figure = comparison_figure(results)
+    (axes,) = figure.axes
+    hollow = [line for line in axes.lines if line.get_markerfacecolor() == "none"]
+    assert len(hollow) == 1 and [text.get_text() for text in axes.texts] == ["stopped"]

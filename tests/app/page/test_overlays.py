@@ -246,9 +246,9 @@ def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
 
 @ENTRIES
 def test_the_map_is_seen_where_the_robot_reaches_and_nowhere_else(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     low, high = map_corners(stage_of(robot), robot)
-    grid = rank_grid(robot, entry.lab, low, high)
+    grid = rank_grid(robot, entry.parameters(), low, high)
     assert grid.values.shape == (64, 64)
     home = (np.zeros(2) - low) / (high - low)
     assert ((home > 0) & (home < 1)).all()
@@ -297,7 +297,7 @@ class Nameless(TwoLinkArm):
 def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None:
     entry = ROBOTS["two_link_arm"]
     motion = take_motion(Lab(store(), entry))
-    labels = RobotLabels(server.scene, stage_of(entry.make(entry.lab)), Nameless(), motion)
+    labels = RobotLabels(server.scene, stage_of(entry.make(entry.parameters())), Nameless(), motion)
     labels.update(motion)
     assert server.scene.get_handle_by_name("/show/arcs") is None
     assert server.scene.get_handle_by_name("/show/axes_0") is not None
@@ -307,8 +307,8 @@ def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None
 
 def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
     entry = ROBOTS["flexible"]
-    robot = entry.make(entry.lab)
-    grid = rank_grid(robot, entry.lab, *map_corners(stage_of(robot), robot))
+    robot = entry.make(entry.parameters())
+    grid = rank_grid(robot, entry.parameters(), *map_corners(stage_of(robot), robot))
     legend = rank_legend(grid, 0.5, ENGLISH)
     assert f"{largest(grid.values):.3g}" in legend and "(m/s²)/(N m)" in legend
     assert "α = 0.5" in legend and "α" not in rank_legend(grid, None, ENGLISH)

@@ -297,7 +297,7 @@ class CraneParameters(Parameters):
     hook: str = choice("light", ("light", "heavy"), "which hook", group="robot", label="Hook")
 
 ROBOT = RobotEntry(name="crane", label="Crane", text="A load on a rope.",
-    parameters=CraneParameters, lab=CraneParameters(), make=lambda _: rigid_five_bar())
+    parameters=CraneParameters, make=lambda _: rigid_five_bar())
 """
 
 

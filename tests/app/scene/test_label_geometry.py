@@ -39,7 +39,7 @@ def turned(line: Array, centre: Array) -> float:
 
 @ENTRIES
 def test_arcs_turn_by_the_joint_angles_that_they_name(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     count = len(robot.drawing.angles)
     for q in poses(robot):
         lines, _ = labels(robot, q)
@@ -61,7 +61,7 @@ def coordinates(robot: Robot) -> list[str]:
 
 @ENTRIES
 def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     for q in poses(robot):
         lines, ends = labels(robot, q)
         for number, angle in enumerate(robot.drawing.angles):
@@ -74,7 +74,7 @@ def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
 
 @ENTRIES
 def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     joints = sum("rad" in name for name in robot.coordinate_names)
     assert sorted(coordinates(robot)) == [f"q{'₁₂₃'[i]}" for i in range(joints)]
     each = [labels(robot, q)[1] for q in poses(robot)]
@@ -85,7 +85,7 @@ def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> No
 
 @ENTRIES
 def test_axes_begin_where_the_output_is_0_and_point_where_it_grows(entry: RobotEntry) -> None:
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     for number, (begin, end) in enumerate(axes_of(robot)):
         y = robot.unplace(np.array([begin, end]))
         assert np.allclose(y[0], 0.0)

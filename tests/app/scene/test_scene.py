@@ -37,7 +37,7 @@ from tests.support.drawing import drawn_length, evaluated
 
 FIVE_BAR = rigid_five_bar()
 RIGID = stage_of(FIVE_BAR)
-STAGES = {name: stage_of(entry.make(entry.lab)) for name, entry in ROBOTS.items()}
+STAGES = {name: stage_of(entry.make(entry.parameters())) for name, entry in ROBOTS.items()}
 
 
 def robot(

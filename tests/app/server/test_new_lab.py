@@ -33,4 +33,4 @@ def test_a_hand_can_catch_an_end_point() -> None:
 def test_the_usual_parameters_are_one_command_away() -> None:
     lab = new_lab(store(), NO_LESSONS)
     do(lab, c.ResetParameters())
-    assert lab.session.parameters == ROBOTS["five_bar"].lab
+    assert lab.session.parameters == ROBOTS["five_bar"].parameters()

@@ -28,7 +28,7 @@ def states(n: int) -> Array:
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_page_stops_every_robot_when_the_lab_does_and_says_the_same(name: str) -> None:
     entry = ROBOTS[name]
-    robot, parameters = entry.make(entry.lab), entry.lab
+    robot, parameters = entry.make(entry.parameters()), entry.parameters()
     fault, seen = _fault(robot), set[int]()
     for q, v in states(robot.system.n):
         found = robot.fault(q[None], v[None], parameters)

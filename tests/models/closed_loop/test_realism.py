@@ -66,7 +66,7 @@ def ran(
     **values: Any,
 ) -> Log:
     """The log of a run from the right-hand end of the circle, at rest."""
-    parameters = dataclasses.replace(ROBOTS[robot].lab, **values)
+    parameters = dataclasses.replace(ROBOTS[robot].parameters(), **values)
     kernel = kernel_for(robot, parameters)
     made = ROBOTS[robot].make(parameters)
     settings = settings_vector(made, kernel, parameters, CURVE, FREE)
@@ -90,11 +90,11 @@ def ran(
 )
 def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> None:
     values: dict[str, Any] = {each: EVERYTHING[each] for each in names or EVERYTHING}
-    if hasattr(ROBOTS[name].lab, "strain_noise") and "seed" in values:
+    if hasattr(ROBOTS[name].parameters(), "strain_noise") and "seed" in values:
         values["strain_noise"] = 3e-4
     if not names:
         values |= {"control_rate": 500, "encoder_counts": 20000.0}
-    parameters = dataclasses.replace(ROBOTS[name].lab, **values)
+    parameters = dataclasses.replace(ROBOTS[name].parameters(), **values)
     kernel = kernel_for(name, parameters)
     made = ROBOTS[name].make(parameters)
     settings = settings_vector(made, kernel, parameters, CURVE, FREE)
@@ -108,7 +108,7 @@ def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> 
 @pytest.mark.parametrize("name", list(ROBOTS))
 def test_the_ideal_loop_has_no_part_in_it(name: str) -> None:
     """Neither its instructions nor what it leaves alone at the end of the state."""
-    parameters = ROBOTS[name].lab
+    parameters = ROBOTS[name].parameters()
     kernel = kernel_for(name, parameters)
     parts = kernel.state.slices
     assert kernel.advance.size_in(0)[0] == parts["ticks"].start
@@ -138,7 +138,14 @@ def test_the_less_of_it_the_nearer_to_the_run_without_it(name: str) -> None:
 def stuck(robot: str, torque: Array, **values: Any) -> Log:
     """0.3 s under a constant torque besides gravity: the law is off, the joints begin at rest."""
     parameters = dataclasses.replace(
-        ROBOTS[robot].lab, K1=0.0, K2=0.0, K3=0.0, K5=0.0, delay=1.0, control_rate=50, **values
+        ROBOTS[robot].parameters(),
+        K1=0.0,
+        K2=0.0,
+        K3=0.0,
+        K5=0.0,
+        delay=1.0,
+        control_rate=50,
+        **values,
     )
     kernel = kernel_for(robot, parameters)
     made = ROBOTS[robot].make(parameters)
@@ -167,9 +174,9 @@ def test_a_joint_rests_below_the_static_level_and_moves_above_it(robot: str, sig
 
 
 def test_a_sliding_joint_feels_the_coulomb_level() -> None:
-    made = ROBOTS["five_bar"].make(ROBOTS["five_bar"].lab)
+    made = ROBOTS["five_bar"].make(ROBOTS["five_bar"].parameters())
     inertia = dict(
-        zip(made.system.parameter_names, made.plant(ROBOTS["five_bar"].lab), strict=True)
+        zip(made.system.parameter_names, made.plant(ROBOTS["five_bar"].parameters()), strict=True)
     )
     log = stuck("five_bar", np.array([0.1, 0.0]), stiction=0.08, coulomb=0.05)
     gained = log["v"][20, 0]  # viscous friction is small still
@@ -207,7 +214,7 @@ def test_with_an_integral_it_hunts_and_without_it_stays_off() -> None:
 def test_a_torque_takes_effect_after_the_delay(delay: float, rate: int) -> None:
     """The torque of the first evaluation, which is the first one that is not zero."""
     log = ran(0.06, offset=0.01, speed=0.0, delay=delay, control_rate=rate)
-    dt = time_step(dataclasses.replace(ROBOTS["five_bar"].lab, control_rate=rate))
+    dt = time_step(dataclasses.replace(ROBOTS["five_bar"].parameters(), control_rate=rate))
     ticks = delay / rate / dt
     whole, part = int(ticks + 1e-9), ticks % 1
     u, at_once = log["u"], ran(0.01, offset=0.01, speed=0.0, control_rate=rate)["u"][0]
@@ -221,7 +228,7 @@ def test_error_across_moves_as_the_poles_with_delay_say(delay: float) -> None:
     """The slow part of the error: what the first milliseconds excite has died out."""
     values: dict[str, Any] = {"K1": 400.0, "K2": 30.0, "speed": 0.0, "control_rate": 200}
     values |= {"K3": 0.0, "delay": delay}
-    pair = channels(dataclasses.replace(ROBOTS["five_bar"].lab, **values))[0].poles
+    pair = channels(dataclasses.replace(ROBOTS["five_bar"].parameters(), **values))[0].poles
     assert len(pair) == 2 and abs(pair[0].imag) > 1
     xi = ran(0.5, offset=1e-5, **values)["xi"][:, 0]
     times, late = 1e-3 * np.arange(len(xi)), slice(100, None)
@@ -237,9 +244,9 @@ def test_the_loop_becomes_unstable_where_the_poles_say(k1: float, k2: float, rat
     values: dict[str, Any] = {"K1": float(k1), "K2": float(k2), "K3": 0.0, "control_rate": rate}
 
     def stable(delay: float) -> bool:
-        return channels(dataclasses.replace(ROBOTS["five_bar"].lab, delay=delay, **values))[
-            0
-        ].stable
+        return channels(
+            dataclasses.replace(ROBOTS["five_bar"].parameters(), delay=delay, **values)
+        )[0].stable
 
     low, high = 0.0, float(LONGEST)
     assert stable(low) and not stable(high)
@@ -247,7 +254,7 @@ def test_the_loop_becomes_unstable_where_the_poles_say(k1: float, k2: float, rat
         middle = (low + high) / 2
         low, high = (middle, high) if stable(middle) else (low, middle)
     for delay in (0.9 * low, 1.1 * high):
-        own = dataclasses.replace(ROBOTS["five_bar"].lab, delay=delay, **values)
+        own = dataclasses.replace(ROBOTS["five_bar"].parameters(), delay=delay, **values)
         growth = channels(own)[0].poles.real.max()
         offset = 1e-9 if growth > 0 else 1e-6  # neither nonlinear nor rounding
         log = ran(1.6, offset=offset, viscous=False, speed=0.0, delay=delay, **values)
@@ -258,7 +265,7 @@ def test_the_loop_becomes_unstable_where_the_poles_say(k1: float, k2: float, rat
 
 
 def test_a_delay_that_is_switched_on_continues_with_the_same_torque() -> None:
-    parameters = dataclasses.replace(ROBOTS["two_link_arm"].lab, speed=1.0)
+    parameters = dataclasses.replace(ROBOTS["two_link_arm"].parameters(), speed=1.0)
     slow = dataclasses.replace(parameters, delay=3.0)
     kernel, other = (kernel_for("two_link_arm", p) for p in (parameters, slow))
     made, table = ROBOTS["two_link_arm"].make(parameters), CURVE.table()
@@ -288,7 +295,13 @@ def test_the_torque_is_a_multiple_of_the_step_within_the_limit(limit: float) -> 
 def sensed(seed: float, seconds: float = 20.0, **values: Any) -> tuple[Array, Array]:
     """Errors of the measured joint angles, and the angles; the robot is held in its place."""
     parameters = dataclasses.replace(
-        ROBOTS["five_bar"].lab, sensor_noise=1e-4, seed=seed, speed=0.0, K1=1.0, K2=1.0, **values
+        ROBOTS["five_bar"].parameters(),
+        sensor_noise=1e-4,
+        seed=seed,
+        speed=0.0,
+        K1=1.0,
+        K2=1.0,
+        **values,
     )
     kernel, made = kernel_for("five_bar", parameters), ROBOTS["five_bar"].make(parameters)
     settings = settings_vector(made, kernel, parameters, CURVE, FREE)
@@ -333,7 +346,7 @@ def test_strain_gauges_err_by_the_deflection_that_was_asked_for() -> None:
     """At rest, composite control takes the gauges' errors for a bent beam."""
     values = {"speed": 0.0, "strain_noise": 1e-4, "seed": 1}
     log = ran(4.0, "flexible", **values)
-    parameters = dataclasses.replace(ROBOTS["flexible"].lab, **values)
+    parameters = dataclasses.replace(ROBOTS["flexible"].parameters(), **values)
     robot = ROBOTS["flexible"].make(parameters)
     assert isinstance(robot, FlexibleFiveBar)
     kernel = kernel_for("flexible", parameters)

@@ -57,7 +57,7 @@ def logging_kernel(*rows: ca.SX, x: ca.SX) -> Kernel:
 @pytest.mark.parametrize("stiction", [False, True])
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_compiled_loop_keeps_the_layouts_and_not_the_graphs(name: str, stiction: bool) -> None:
-    robot = ROBOTS[name].make(ROBOTS[name].lab)
+    robot = ROBOTS[name].make(ROBOTS[name].parameters())
     kind = Kind(NAMES[0], delay=stiction, noise=stiction, stiction=stiction)
     kernel = kernel_of(robot, kind)
     layouts = translate_loop(kernel).layouts

@@ -85,7 +85,7 @@ def test_the_compiled_loop_is_the_interpreted_one() -> None:
     assert kind.level_set and kind.level == implicit_level(curve)
     experiment = experiments()["position"].along(curve)
     log = run(experiment.with_values({"duration": 0.2, "across": "level_set"}), "path_following")
-    assert log.diverged_at is None
+    assert log.stopped_at is None
     assert translate_loop(kernel_of(FIVE_BAR.make(parameters), kind)).layouts.changed > 0
 
 

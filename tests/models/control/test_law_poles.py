@@ -27,19 +27,19 @@ from onpath.models.systems.catalogue import FIVE_BAR
 from onpath.models.systems.parameters import Parameters
 
 CURVE = circle(0.05)
-HERE = place_at(FIVE_BAR.make(FIVE_BAR.lab), FIVE_BAR.lab, CURVE, 1.0, 5.0)
+HERE = place_at(FIVE_BAR.make(FIVE_BAR.parameters()), FIVE_BAR.parameters(), CURVE, 1.0, 5.0)
 ALONG = "along = -K5*(dtheta - speed)"
 
 
-def poles_of(law: str, parameters: Parameters = FIVE_BAR.lab) -> tuple[Channel, ...]:
-    found = channels_of(law, parameters)
+def poles_of(law: str, parameters: Parameters | None = None) -> tuple[Channel, ...]:
+    found = channels_of(law, parameters or FIVE_BAR.parameters())
     assert not isinstance(found, Message), found
     return found
 
 
 def moved(law: str, offset: float, ticks: int, speed: float) -> dict[str, Array]:
     """The log of a run that begins `offset` [m] outside the circle, at rest."""
-    parameters = replace(FIVE_BAR.lab, speed=speed)
+    parameters = replace(FIVE_BAR.parameters(), speed=speed)
     robot = FIVE_BAR.make(parameters)
     kernel = kernel_of(robot, kind_of(law, parameters, CURVE))
     state = first_state(robot, kernel, CURVE, robot.rest(np.array([0.05 + offset, 0.0])))
@@ -51,7 +51,7 @@ def moved(law: str, offset: float, ticks: int, speed: float) -> dict[str, Array]
 @pytest.mark.parametrize("task", ["speed", "position"])
 @pytest.mark.parametrize("k3", [0.0, 1000.0])
 def test_typed_path_following_has_the_poles_of_path_following(task: str, k3: float) -> None:
-    parameters = replace(FIVE_BAR.lab, task=task, K3=k3)
+    parameters = replace(FIVE_BAR.parameters(), task=task, K3=k3)
     for typed, known in zip(
         poles_of(PATH_FOLLOWING, parameters), channels(parameters), strict=True
     ):
@@ -73,8 +73,8 @@ def test_the_distance_moves_as_the_poles_say(across: str) -> None:
 def test_the_rate_moves_as_the_poles_say() -> None:
     law = "across = -K1*xi - K2*dxi; along = -3*(dtheta - speed/2) + 40*dxi"
     (pole,) = poles_of(law)[1].poles
-    rate = moved(law, 0.0, 400, FIVE_BAR.lab.speed)["theta_rate"][:, 0]
-    wanted = FIVE_BAR.lab.speed / 2 * (1 - np.exp(1e-3 * np.arange(400) * pole.real))
+    rate = moved(law, 0.0, 400, FIVE_BAR.parameters().speed)["theta_rate"][:, 0]
+    wanted = FIVE_BAR.parameters().speed / 2 * (1 - np.exp(1e-3 * np.arange(400) * pole.real))
     assert pole.imag == 0 and rate == pytest.approx(wanted, abs=0.01)
 
 
@@ -94,12 +94,12 @@ def test_the_rate_moves_as_the_poles_say() -> None:
     ],
 )
 def test_a_law_without_constant_poles_says_why(law: str, code: str) -> None:
-    found = channels_of(law, FIVE_BAR.lab)
+    found = channels_of(law, FIVE_BAR.parameters())
     assert isinstance(found, Message) and found.code == code and str(found)
 
 
 def test_every_law_of_the_registry_has_poles_or_says_why_not() -> None:
     for name, law in LAWS.items():
-        assert isinstance(channels_of(name, FIVE_BAR.lab), tuple) == law.linear
-        there = channels_of(name, FIVE_BAR.lab, HERE)
+        assert isinstance(channels_of(name, FIVE_BAR.parameters()), tuple) == law.linear
+        there = channels_of(name, FIVE_BAR.parameters(), HERE)
         assert isinstance(there, tuple) == (law.linear or law.channels is not None)

@@ -43,7 +43,7 @@ LIMITED = -1.0
 def robot_of(entry: RobotEntry, **changes: Any) -> tuple[Robot, Parameters]:
     if changes.get("torque_limit") == LIMITED:
         changes["torque_limit"] = 3.0 if entry is FLEXIBLE else 0.3
-    parameters = replace(entry.lab, **changes)
+    parameters = replace(entry.parameters(), **changes)
     return entry.make(parameters), parameters
 
 
@@ -147,7 +147,7 @@ def near(robot: Robot, curve: Curve, v: Array) -> dict[str, float]:
     """The names, computed from the paper's definitions, half a tick ahead of the start."""
     q, system = robot.rest(robot.frame.lift(1.1 * curve.at(np.array(0.3)))), robot.system
     inputs = [system.q, system.v, system.tau, system.parameters]
-    plant = robot.plant(FIVE_BAR.lab)
+    plant = robot.plant(FIVE_BAR.parameters())
     a = ca.Function("a", inputs, [system.acceleration])(q, v, 0, plant).full().ravel()
     half, step = 0.5e-3, 1e-5
 
@@ -358,10 +358,10 @@ def test_an_experiment_stops_where_the_typed_law_has_no_finite_number(
 ) -> None:
     stopped = run(experiments()["obstruction"], text)
     assert "the typed law" in stopped.reason
-    assert stopped.diverged_at == pytest.approx(seconds, abs=1e-9)
+    assert stopped.stopped_at == pytest.approx(seconds, abs=1e-9)
     assert all(np.isfinite(values).all() for values in stopped.fields.values())
 
 
 def test_a_law_that_tears_the_robot_apart_stops_for_that_reason() -> None:
     stopped = run(experiments()["obstruction"], "u1 = 900; u2 = 900")
-    assert stopped.diverged_at is not None and "the typed law" not in stopped.reason
+    assert stopped.stopped_at is not None and "the typed law" not in stopped.reason

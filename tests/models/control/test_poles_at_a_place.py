@@ -180,7 +180,7 @@ GAINS: list[dict[str, Any]] = [
 @pytest.mark.parametrize("integral", ["off", "on"])
 @pytest.mark.parametrize(("curve", "theta"), [(CIRCLE, 0.3), (ELLIPSE, 0.3), (ELLIPSE, 1.2)])
 def test_contouring(curve: Curve, theta: float, integral: str, gains: dict[str, Any]) -> None:
-    values = replace(FIVE_BAR.lab, tracker_integral=integral, speed=5.0, **gains)
+    values = replace(FIVE_BAR.parameters(), tracker_integral=integral, speed=5.0, **gains)
     loop = Linearized("contouring", curve, theta, values, 5.0)
     sums = 2 if integral == "on" and gains["K3"] else 0
     across, along = channels_there(loop)
@@ -195,7 +195,7 @@ def test_contouring(curve: Curve, theta: float, integral: str, gains: dict[str, 
 @pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
 def test_virtual_constraint(robot: str, curve: Curve, theta: float, k3: float) -> None:
     entry = ROBOTS[robot]
-    values = replace(entry.lab, K2=60.0, K3=k3)
+    values = replace(entry.parameters(), K2=60.0, K3=k3)
     loop = Linearized("virtual_constraint", curve, theta, values, 6.0, entry)
     across, along = channels_there(loop)
     expected = sorted_poles(np.concatenate([across.poles, along.poles]))
@@ -205,21 +205,21 @@ def test_virtual_constraint(robot: str, curve: Curve, theta: float, k3: float) -
 
 
 def test_a_bead_at_rest_stays_where_it_is_put() -> None:
-    loop = Linearized("virtual_constraint", ELLIPSE, 0.3, FIVE_BAR.lab, 0.0)
+    loop = Linearized("virtual_constraint", ELLIPSE, 0.3, FIVE_BAR.parameters(), 0.0)
     _, along = channels_there(loop)
     assert np.abs(along.poles).max() < 1e-9 and not along.stable
 
 
 def test_what_the_poles_of_the_bead_say_of_a_lap() -> None:
     """The sum of the poles is that of a motion whose energy is kept: over a lap, 0."""
-    robot, values = FIVE_BAR.make(FIVE_BAR.lab), FIVE_BAR.lab
+    robot, values = FIVE_BAR.make(FIVE_BAR.parameters()), FIVE_BAR.parameters()
     slopes = [place_at(robot, values, ELLIPSE, at, 1.0).slope for at in ELLIPSE.sample(128)]
     assert np.mean(slopes) == pytest.approx(0.0, abs=1e-4) and np.ptp(slopes) > 0.5
 
 
 def test_in_space_the_integral_mixes_both_directions_across() -> None:
     entry = ROBOTS["spatial_arm"]
-    values = replace(entry.lab, tracker_integral="on", rise=0.03, speed=3.0)
+    values = replace(entry.parameters(), tracker_integral="on", rise=0.03, speed=3.0)
     curve = saddle(circle(0.05), rise_of(values))
     place = place_at(entry.make(values), values, curve, 0.7, 3.0)
     found = channels_of("contouring", values, place)

@@ -123,7 +123,7 @@ def test_at_home_it_is_large(name: str) -> None:
 
 def test_above_its_base_the_spatial_arm_loses_rank() -> None:
     entry = ROBOTS["spatial_arm"]
-    robot, parameters = entry.make(entry.lab), entry.parameters()
+    robot, parameters = entry.make(entry.parameters()), entry.parameters()
     axis = robot.frame.planar(robot.unplace(np.zeros(3)))
     away = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     q = robot.rest(robot.frame.lift(axis + away[:, None] * [0.8, 0.6]))

@@ -36,7 +36,7 @@ from onpath.models.systems.parameters import changed
 
 pytestmark = pytest.mark.thorough
 
-RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.lab).geometry]
+RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.parameters()).geometry]
 
 
 def scanned(
@@ -92,9 +92,9 @@ def test_points_that_coincide_and_short_paths_are_refused() -> None:
 def found_faults(name: str, curve: Curve) -> dict[str, Array]:
     """Check -> where it fails, as a page finds it."""
     entry = ROBOTS[name]
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     assert robot.geometry
-    kind = kind_of("path_following", entry.lab, curve)
+    kind = kind_of("path_following", entry.parameters(), curve)
     scans, table = edit_scans(robot, kind, robot.geometry), curve.table()
     table = table.reshape(kind.table_shape, order="F")
     _, rows = scanned(scans["check"], np.zeros(4), table, np.zeros((0, SAMPLES + 1)), SAMPLES + 1)
@@ -121,7 +121,7 @@ def found_faults(name: str, curve: Curve) -> dict[str, Array]:
 @pytest.mark.parametrize("name", RIGID)
 def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
     entry, rng, seen = ROBOTS[name], np.random.default_rng(3), set[str]()
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     designs = [presets()[preset] for preset in ("clover", "segment", "figure of eight")]
     for design in designs:
         for index in range(8):
@@ -145,7 +145,7 @@ def _compared(name: str, design: PathDesign, reach: Any) -> set[str]:
 @pytest.mark.parametrize("name", RIGID)
 def test_the_symbols_of_an_arm_are_its_functions(name: str) -> None:
     entry, rng = ROBOTS[name], np.random.default_rng(0)
-    robot = entry.make(entry.lab)
+    robot = entry.make(entry.parameters())
     z, y = ca.SX.sym("z", 2), ca.SX.sym("y", robot.system.p)
     assert robot.geometry
     margin = ca.Function("margin", [z], [robot.geometry.margin(z)])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
+import math
 from functools import lru_cache
 
 import pytest
@@ -13,6 +13,7 @@ from onpath.models.paths.curves import circle
 from onpath.models.studies.comparison import (
     AFTER,
     BEFORE,
+    MEASURES,
     OBSTRUCTIONS,
     Contest,
     Outcome,
@@ -89,7 +90,7 @@ def test_every_run_lasts_as_long_as_it_says(obstruction: object) -> None:
     assert isinstance(obstruction, type(OBSTRUCTIONS["none"]))
     found = outcomes("path_following", obstruction.name)
     assert len(found) == obstruction.places
-    assert all(o.diverged_at_s is None for o in found)
+    assert all(o.stopped_at_s is None for o in found)
     seconds = BEFORE + obstruction.seconds + AFTER
     for o in found:  # the mean is over the whole run, and the largest is at least the mean
         assert 0 <= o.mean_distance_m <= o.max_distance_m
@@ -108,6 +109,18 @@ def test_the_worst_is_the_worst_of_each_measure() -> None:
     found = outcomes("path_following", "brake")
     summary = worst(found)
     assert summary["max_distance_m"] == max(o.max_distance_m for o in found)
-    assert summary["diverged_at_s"] is None
-    stopped = dataclasses.replace(found[0], diverged_at_s=0.5)
-    assert worst([*found, stopped])["diverged_at_s"] == 0.5
+    assert summary["stopped_at_s"] is None
+
+
+FAILING = ("across = 1000; along = 0", "across = -K1*sqrt(xi); along = -K5*(dtheta - speed)")
+
+
+@pytest.mark.parametrize("law", FAILING)
+def test_a_law_that_stops_is_behind_all_that_do_not(law: str) -> None:
+    (found,) = compare(CONTEST, [law], ["none"])
+    assert 0 < (worst(found)["stopped_at_s"] or 0.0) < 4.5
+    fails, works = worst(found), worst(outcomes("trajectory_tracking", "none"))
+    for measure in MEASURES:
+        assert (works[measure] or 0.0) < (fails[measure] or 0.0) == math.inf
+    distances = {"stops": fails["max_distance_m"], "tracks": works["max_distance_m"]}
+    assert min(distances, key=lambda name: distances[name] or 0.0) == "tracks"

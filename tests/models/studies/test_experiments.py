@@ -23,8 +23,7 @@ KEYS = {
     "rms_distance_m",
     "final_speed_rad_s",
     "max_torque_Nm",
-    "diverged",
-    "diverged_at_s",
+    "stopped_at_s",
 }
 RADIUS = 0.05
 
@@ -63,7 +62,7 @@ def test_held_back_the_follower_stays_on_the_circle_and_the_tracker_does_not(
         assert found[name]["max_distance_m"] == pytest.approx(radius_error(trajectory).max())
         held = trajectory.distance[trajectory.held]
         assert found[name]["max_distance_while_held_m"] == pytest.approx(held.max())
-        assert not found[name]["diverged"] and found[name]["diverged_at_s"] is None
+        assert found[name]["stopped_at_s"] is None
         assert found[name]["final_speed_rad_s"] == pytest.approx(2 * np.pi, rel=1e-3)
     # held, the follower rests and the tracker pulls
     end = obstruction["path_following"].held.nonzero()[0][-1]
@@ -82,7 +81,7 @@ def test_wherever_it_is_held_the_follower_ends_on_the_path(robot: str) -> None:
         begin = 3 + place / 8
         times = {"hold_from": begin, "hold_to": begin + 2, "duration": begin + 5}
         followed = run(chosen.with_values(times), "path_following")
-        assert followed.diverged_at is None and followed.distance.max() <= 5e-3
+        assert followed.stopped_at is None and followed.distance.max() <= 5e-3
         assert followed.distance[-2000:].max() < 0.3e-3
         ends.append(1e3 * float(followed.distance[followed.held][-1]))
     assert max(ends) <= 0.02
@@ -209,16 +208,19 @@ def test_divergence_is_reported_and_nothing_after_it_is_told() -> None:
     runs = runs_of("obstruction", K1=2500, K2=0, control_rate=50)
     for name, values in figures(runs).items():
         trajectory = runs[name]
-        assert values["diverged"] is True and 0 < values["diverged_at_s"] < 8
+        assert 0 < values["stopped_at_s"] < 8
+        largest = ("max_distance_m", "max_distance_while_held_m", "rms_distance_m", "max_torque_Nm")
+        assert [values[key] for key in largest] == [np.inf] * 4
+        assert values["final_speed_rad_s"] is None
         assert trajectory.reason
-        assert trajectory.t[-1] < values["diverged_at_s"] <= trajectory.t[-1] + 1.01e-3
+        assert trajectory.t[-1] < values["stopped_at_s"] <= trajectory.t[-1] + 1.01e-3
         for array in (*trajectory.fields.values(), trajectory.distance, trajectory.speed):
             assert np.isfinite(array).all()
 
 
 @pytest.mark.parametrize(
     ("hold_from", "hold_to", "held_ms"),
-    [(0, 0, 0), (0.1, 0.1, 0), (0.1, 0.2, 100), (0.25, 9, 50), (5, 9, 0), (0, 9, 300)],
+    [(0, 0, 0), (0.1, 0.1, 0), (0.1, 0.2, 100), (0.25, 9, 50), (0, 9, 300)],
 )
 def test_any_hold_window(hold_from: float, hold_to: float, held_ms: int) -> None:
     runs = runs_of("obstruction", duration=0.3, hold_from=hold_from, hold_to=hold_to)

@@ -215,10 +215,24 @@ def test_a_shape_is_fed_forward() -> None:
     assert trajectory.fields["theta_rate"][:, 0] == pytest.approx(wanted, abs=0.05)
 
 
-def test_a_profile_in_points_takes_the_place_of_a_shape() -> None:
-    points = {"profile": "0:3", "duration": 0.5, **FREE}
-    plain, shaped = ran(**points), ran(speed_profile="sine", **points)
-    assert np.array_equal(plain.fields["q"], shaped.fields["q"])
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"profile": "0:3", "speed_profile": "sine"}, "speed_profile: the profile says the speed"),
+        ({"profile": "0:3", "speed": 2.0}, "speed: the profile says the speed"),
+        ({"profile": "0:3", "ramp": 2.0}, "ramp: the profile says the speed"),
+        ({"hold_from": 5, "hold_to": 9}, "hold_from .5 s.: the run ends at 4 s"),
+        ({"wall_from": 4, "wall_to": 9}, "wall_from .4 s.: the run ends at 4 s"),
+        ({"reverse_at": 4}, "reverse_at .4 s.: the run ends at 4 s"),
+        ({"hold_at": 1.0}, "hold_at: it needs an interval, hold_from and hold_to"),
+        ({"hold_direction": "both"}, "hold_direction: it needs an interval"),
+        ({"push_z1": 0.01, "push_from": 1, "push_to": 1}, "push_z1: it needs an interval"),
+        ({"wall_angle": 0.5}, "wall_angle: it needs an interval"),
+    ],
+)
+def test_what_nothing_uses_is_refused(values: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        experiments()["position"].with_values(values)
 
 
 def test_the_sign_of_the_speed_turns_a_shape_round() -> None:

@@ -144,9 +144,9 @@ def ran(law: str, load: float) -> Trajectory:
 
 def test_twenty_grams_destabilise_half_of_the_deflection_and_not_composite_control() -> None:
     """α = 0.5 is stable for the plant that the controller knows, and only for that."""
-    assert ran("redefined", 0.0).diverged_at is None
-    assert (ran("redefined", 0.02).diverged_at or np.inf) < 2.5
-    assert ran("composite", 0.02).diverged_at is None
+    assert ran("redefined", 0.0).stopped_at is None
+    assert (ran("redefined", 0.02).stopped_at or np.inf) < 2.5
+    assert ran("composite", 0.02).stopped_at is None
 
 
 @pytest.fixture

@@ -187,7 +187,7 @@ def test_held_from_3_to_5_s_only_the_tracker_leaves_the_path(name: str) -> None:
     off = {}
     for law in ("path_following", "trajectory_tracking"):
         log = run(chosen, law)
-        assert log.diverged_at is None
+        assert log.stopped_at is None
         off[law] = log.distance[log.held].max()
         assert log.distance[(log.t > 1.0) & (log.t < 3.0)].max() < 1e-5
         height = np.ptp(log.fields["y"][log.t < 3.0, 2])

@@ -222,7 +222,7 @@ def test_on_the_circle_held_from_3_to_5_s_only_the_tracker_leaves_the_path() -> 
     off = {}
     for name in ("path_following", "trajectory_tracking"):
         log = run(chosen, name)
-        assert log.diverged_at is None
+        assert log.stopped_at is None
         off[name] = np.abs(log.distance[log.held]).max()
         free = np.abs(log.distance[(log.t > 1.0) & (log.t < 3.0)]).max()
         assert free < 1e-5

@@ -16,7 +16,7 @@ from onpath.models.studies.comparison import Contest, Outcome, compare
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 
-CONTEST = Contest(FIVE_BAR, FIVE_BAR.lab, presets()["circle"].curve)
+CONTEST = Contest(FIVE_BAR, FIVE_BAR.parameters(), presets()["circle"].curve)
 HELD = 2.0  # [s], by the brake
 ON_TIME = 0.01  # [s]
 

@@ -149,7 +149,7 @@ def test_every_law_moves_every_robot_that_it_suits(law: str, name: str) -> None:
     q = robot.rest(robot.frame.lift(CIRCLE.at(np.array(0.0))))
     state = first_state(robot, kernel, CIRCLE, q)
     settings = settings_vector(robot, kernel, parameters, CIRCLE, FREE)
-    log = kernel.log.unpack(InterpretedLoop(kernel).run(state, settings, CIRCLE.table(), 320)[1])
+    log = kernel.log.unpack(InterpretedLoop(kernel).run(state, settings, CIRCLE.table(), 640)[1])
     assert robot.fault(log["q"], log["v"], parameters) is None
     moved = np.abs(log["theta"] - log["theta"][0]).max()
     assert moved < 1e-3 if LAWS[law].pace == "free" else moved > 0.2
