@@ -16,7 +16,6 @@ import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
-from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,6 @@ import websockets.asyncio.server
 from viser import _gui_api, _gui_handles, _scene_api, _viser
 from viser import _messages as wire
 from viser.infra import ClientId, WebsockClientConnection
-from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
@@ -38,7 +36,6 @@ from onpath.app.viser_adapter.page_scripts import add_scripts
 from onpath.app.viser_adapter.places import place_of, redirection, without_place
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
-    add_headers,
     is_loopback,
     well,
     without_repeats,
@@ -145,26 +142,6 @@ def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
             asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
-def _to_page(connection: ServerConnection, request: Request) -> Response | None:
-    """Redirect from the folder to index.html.
-
-    viser's page opens its websocket at its own address without the trailing slash. Behind a proxy
-    that serves the lab in a folder, that is another address, while that of a file is the lab's.
-    """
-    if request.path.partition("?")[0] != "/":
-        return None
-    response = connection.respond(HTTPStatus.FOUND, "")
-    response.headers["Location"] = "index.html" + request.path[1:]
-    return response
-
-
-def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
-    """Complete a response: the headers of all of them, and only these if no more was asked for."""
-    add_headers(response)
-    if connection.is_head:
-        response.body = b""
-
-
 _patching = threading.Lock()
 
 
@@ -178,7 +155,6 @@ def _guarded_serve(
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
-    to_page = _to_page if in_folder else partial(redirection, spreads=bool(requests.allowed))
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
@@ -187,15 +163,22 @@ def _guarded_serve(
             answered = requests.refusal(request, connection.peer)  # or the health report
             if answer := answered or counts.refusal(connection, request):
                 return connection.respond(*answer)
-            if elsewhere := to_page(connection, request):
+            spreads = bool(requests.allowed)
+            if not in_folder and (elsewhere := redirection(connection, request, spreads)):
                 return elsewhere
             connection.place, request.path = place_of(request.path), without_place(request.path)
             return add_scripts(process_request(connection, request))
 
+        def finish(connection: SecureConnection, request: Request, response: Response) -> None:
+            """Complete a response: all have headers, and only these if no more was asked for."""
+            requests.add_headers(request, response)
+            if connection.is_head:
+                response.body = b""
+
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell
-        options["process_request"], options["process_response"] = answer_request, _finish
+        options["process_request"], options["process_response"] = answer_request, finish
         kept = UnfinishedMessages(limits.max_unfinished_bytes)
         own = {"limits": limits, "connections": counts, "unfinished": kept}
         options["create_connection"] = partial(SecureConnection, **own)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 from websockets import Headers
-from websockets.http11 import Request
+from websockets.http11 import Request, Response
 
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.secure_server import make_server
@@ -49,6 +49,30 @@ def test_every_response_tells_a_browser_what_it_may_do(port: int, path: str) -> 
     assert response.headers.get_all("X-Frame-Options") == ["SAMEORIGIN"]
     assert response.headers.get_all("X-Content-Type-Options") == ["nosniff"]
     assert response.getheader("Referrer-Policy") == "no-referrer"
+
+
+@pytest.mark.parametrize(
+    ("host", "sockets"),
+    [
+        ("lab.lan:8080", ["ws://lab.lan:8080", "wss://lab.lan:8080"]),
+        ("LAB.lan", ["ws://lab.lan", "wss://lab.lan"]),
+        ("[::1]:8080", []),  # a policy cannot name it; 'self' is left
+        ("evil; script-src *", []),
+        ("a b", []),
+        ("*", []),
+    ],
+)
+def test_a_page_may_connect_to_its_own_host_and_to_the_origins(
+    host: str, sockets: list[str]
+) -> None:
+    door = RequestFilter(("https://Friend.example/",), local_only=False)
+    response = Response(200, "OK", Headers())
+    door.add_headers(Request("/", Headers(Host=host)), response)
+    rules = [rule.split() for rule in response.headers["Content-Security-Policy"].split(";")]
+    (allowed,) = [rule[1:] for rule in rules if rule[0] == "connect-src"]
+    friends = ["ws://friend.example", "wss://friend.example"]
+    assert sorted(allowed) == sorted(["'self'", "blob:", "data:", *sockets, *friends])
+    assert [rule[0] for rule in rules].count("script-src") == 1
 
 
 @pytest.mark.parametrize("path", ["/", "/index.html?x=1", "/nothing", "/health"])
