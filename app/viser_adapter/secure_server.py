@@ -158,11 +158,18 @@ def _guarded_serve(
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
+            try:
+                return await answer(connection, request)
+            except Exception as error:  # answered with 500, and logged by nobody else
+                log_error(error)
+                raise
+
+        async def answer(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
             answered = requests.refusal(request, connection.peer)  # or the health report
-            if answer := answered or counts.refusal(connection, request):
-                return connection.respond(*answer)
+            if refused := answered or counts.refusal(connection, request):
+                return connection.respond(*refused)
             spreads = bool(requests.allowed)
             if not in_folder and (elsewhere := redirection(connection, request, spreads)):
                 return elsewhere
@@ -217,7 +224,8 @@ async def _opened(requests: RequestFilter) -> None:
 def _is_news(record: logging.LogRecord) -> bool:
     """Whether to log a record: not each connection on which no request, or no good one, came.
 
-    viser has the same filter, but only from the first page that is asked for.
+    viser has the same filter, but only from the first page that is asked for. Errors of our own
+    are logged where they happen.
     """
     return record.getMessage() != "opening handshake failed"
 
