@@ -133,7 +133,7 @@ class LabServer:
     def address(self) -> str:
         """URL to open in a browser."""
         host = self.server.get_host()
-        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
+        shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
         shown = f"[{shown}]" if ":" in shown else shown
         return f"http://{shown}:{self.server.get_port()}"
 
@@ -291,18 +291,21 @@ def serve(
 
     Args:
         lessons: folder of the user's own lessons.
-        database: URL of the database of labs; by default a file of the user's.
+        database: URL of the database of labs; by default a file of the user's. One that is named,
+            or is behind a proxy, must be usable; any other one may be replaced by memory.
         classrooms: see `LabServer`.
         listening: further arguments of `LabServer`.
 
     Raises:
         LessonError: a lesson has errors.
+        NotKept: the database cannot be used.
     """
     limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
-    records = Records(database)
+    in_public = listening.get("allowed_origins") or listening.get("trusted_proxies")
+    records = Records(database, needed=bool(database or in_public))
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
