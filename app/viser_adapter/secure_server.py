@@ -45,7 +45,7 @@ from onpath.app.viser_adapter.secure_connection import (
     UnfinishedMessages,
     take_decoded_messages,
 )
-from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
+from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix, open_files
 from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
 __all__ = ["Limits", "PortInUse", "disconnect", "harden", "make_server"]
@@ -54,6 +54,7 @@ _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
+BACKLOG = 100  # connections, as asyncio has it
 STARTING = 8.0  # [s] that a request waits until the server is ready; websockets gives up after 10
 
 
@@ -82,10 +83,11 @@ def make_server(
         health, trouble: see `RequestFilter`.
 
     Raises:
-        ValueError: a proxy is malformed.
+        ValueError: a proxy is malformed, or the process may not open enough files.
         PortInUse: the port is taken; viser alone would silently use the next one.
         OSError: the address cannot be bound.
     """
+    limits = limits.within(open_files())
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     share_compressors()
     keep_what_is_constant()
@@ -97,6 +99,7 @@ def make_server(
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     with _guarded_serve(listener, door, limits, connections, in_folder=unix_socket is not None):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
+    listener.listen(BACKLOG)  # as many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
     door.open = True
     return server
@@ -182,6 +185,7 @@ def _guarded_serve(
             if connection.is_head:
                 response.body = b""
 
+        options["backlog"] = min(BACKLOG, limits.max_waiting)  # accepted before one is counted
         options["max_size"] = limits.max_message_bytes
         options["ping_interval"] = options["ping_timeout"] = limits.silence
         options["close_timeout"] = limits.farewell

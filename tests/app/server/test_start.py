@@ -5,9 +5,11 @@ from __future__ import annotations
 import logging
 import socket
 import sqlite3
+import subprocess
+import sys
 import urllib.request
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +22,8 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.storage import records
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
+from tests.support.checkout import ROOT
+from tests.support.lab_process import LabProcess, free_ports
 
 
 def newer(file: Path) -> None:
@@ -95,6 +99,39 @@ def test_a_database_that_can_be_used_is(
         monkeypatch.setenv(DATABASE, url)
     options = [each.format(url=url) for each in PUBLIC[way]]
     assert run_command(["serve", *options]) == INTERRUPTED and file.is_file()
+
+
+LIMITED = """
+import resource
+resource.setrlimit(resource.RLIMIT_NOFILE, ({0}, {0}))
+from onpath.app.cli.main import main
+main()
+"""
+
+
+@pytest.mark.thorough
+@pytest.mark.skipif(sys.platform == "win32", reason="no such limit")
+def test_with_few_open_files_idle_connections_keep_nobody_away(tmp_path: Path) -> None:
+    (port,) = free_ports(1)
+    program = ("-c", LIMITED.format(80))
+    served = LabProcess(port, ["--database", "sqlite://"], {}, program, tmp_path / "log")
+    try:
+        served.wait_until_well()
+        with ExitStack() as idle:
+            for _ in range(100):
+                idle.enter_context(socket.create_connection(("127.0.0.1", port)))
+            assert served.health()[0] == 200
+    finally:
+        served.kill()
+    assert "Traceback" not in served.said and "Too many open files" not in served.said
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such limit")
+def test_too_few_open_files_are_refused(tmp_path: Path) -> None:
+    told = ["--port", "0", "--database", "sqlite://"]
+    command = [sys.executable, "-c", LIMITED.format(40), *told]
+    run = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    assert run.returncode == 2 and "ulimit -n 40: expected 64 open files" in run.stderr
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "0.0.0.0", "localhost", "::1", "::"])
