@@ -145,6 +145,42 @@ def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
             asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
+Answer = Callable[[SecureConnection, Request], Awaitable[Response | None]]
+
+
+def _logged(answer: Answer) -> Answer:
+    """Log exceptions, which websockets answers with 500 and viser keeps out of the log."""
+
+    async def logged(connection: SecureConnection, request: Request) -> Response | None:
+        try:
+            return await answer(connection, request)
+        except Exception as error:
+            log_error(error)
+            raise
+
+    return logged
+
+
+def _finish(
+    requests: RequestFilter, connection: SecureConnection, request: Request, response: Response
+) -> None:
+    """Complete a response: the headers of all of them, and only these if no more was asked for."""
+    requests.add_headers(request, response)
+    if connection.is_head:
+        response.body = b""
+
+
+def _options(limits: Limits) -> dict[str, Any]:
+    """Limits that websockets knows of."""
+    return {
+        "backlog": min(BACKLOG, limits.max_waiting),  # accepted before one of them is counted
+        "max_size": limits.max_message_bytes,
+        "ping_interval": limits.silence,
+        "ping_timeout": limits.silence,
+        "close_timeout": limits.farewell,
+    }
+
+
 _patching = threading.Lock()
 
 
@@ -158,37 +194,23 @@ def _guarded_serve(
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes."""
     library: Any = websockets.asyncio.server
+    spreads = bool(requests.allowed)
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
+        @_logged
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
-            try:
-                return await answer(connection, request)
-            except Exception as error:  # answered with 500, and logged by nobody else
-                log_error(error)
-                raise
-
-        async def answer(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
-            answered = requests.refusal(request, connection.peer)  # or the health report
-            if refused := answered or counts.refusal(connection, request):
-                return connection.respond(*refused)
-            spreads = bool(requests.allowed)
-            if not in_folder and (elsewhere := redirection(connection, request, spreads)):
-                return elsewhere
+            answer = requests.refusal(request, connection.peer)  # or the health report
+            if answer := answer or counts.refusal(connection, request):
+                return connection.respond(*answer)
+            if not in_folder and (page := redirection(connection, request, spreads)):
+                return page
             connection.place, request.path = place_of(request.path), without_place(request.path)
             return add_scripts(process_request(connection, request))
 
-        def finish(connection: SecureConnection, request: Request, response: Response) -> None:
-            """Complete a response: all have headers, and only these if no more was asked for."""
-            requests.add_headers(request, response)
-            if connection.is_head:
-                response.body = b""
-
-        options["backlog"] = min(BACKLOG, limits.max_waiting)  # accepted before one is counted
-        options["max_size"] = limits.max_message_bytes
-        options["ping_interval"] = options["ping_timeout"] = limits.silence
-        options["close_timeout"] = limits.farewell
+        options |= _options(limits)
+        finish = partial(_finish, requests)
         options["process_request"], options["process_response"] = answer_request, finish
         kept = UnfinishedMessages(limits.max_unfinished_bytes)
         own = {"limits": limits, "connections": counts, "unfinished": kept}

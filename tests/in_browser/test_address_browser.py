@@ -221,7 +221,7 @@ def test_the_lab_in_a_folder_as_the_readme_says_with_tls(
         place = tab.page.url.removeprefix(f"{site}{FOLDER}/l/")
         assert place.partition("/")[2].startswith("?fixedDpr")
         (cookie,) = context.cookies()
-        assert cookie["path"] == f"{FOLDER}/"
+        assert cookie.get("path") == f"{FOLDER}/"
         tab.reload()
         assert tab.page.url.endswith(place) and tab.errors == []
         context.close()

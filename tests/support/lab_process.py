@@ -57,8 +57,7 @@ class LabProcess:
     def _started(self) -> subprocess.Popen[bytes]:
         with ExitStack() as stack:
             stderr = None if self._log is None else stack.enter_context(self._log.open("ab"))
-            own = {"cwd": ROOT, "env": self._environment, "stderr": stderr}
-            return subprocess.Popen(self._command, **own)
+            return subprocess.Popen(self._command, cwd=ROOT, env=self._environment, stderr=stderr)
 
     @property
     def said(self) -> str:
