@@ -19,7 +19,7 @@ from playwright.sync_api import Browser
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import Tab, wait_for
+from tests.support.browser import COARSER, Tab, wait_for
 from tests.support.checkout import ROOT
 from tests.support.free_lab import fresh
 from tests.support.lab_process import free_ports
@@ -226,3 +226,30 @@ def test_the_lab_in_a_folder_as_the_readme_says_with_tls(
         assert tab.page.url.endswith(place) and tab.errors == []
         context.close()
     server.stop()
+
+
+# When nobody answers.
+
+
+@needs_nginx
+@pytest.mark.parametrize(
+    ("locale", "said"), [("de-AT", "antwortet nicht"), ("fr", "does not answer")]
+)
+def test_who_waits_in_vain_is_told_so_and_then_shown_the_lab(
+    browser: Browser, server: LabServer, tmp_path: Path, locale: str, said: str
+) -> None:
+    """A proxy passes no websockets on, and is mended."""
+    (port,) = free_ports(1)
+    location = GUIDE.replace("8080", str(server.server.get_port()))
+    mended = f"server {{ listen 127.0.0.1:{port}; {location} }}"
+    broken = mended.replace("proxy_set_header Upgrade $http_upgrade;", "")
+    context = browser.new_context(locale=locale)
+    page = context.new_page()
+    told = page.get_by_role("alert").filter(has_text=said)
+    with nginx(tmp_path, port, broken):
+        page.goto(f"http://localhost:{port}{FOLDER}/?{COARSER}")
+        told.wait_for(timeout=60e3)
+    with nginx(tmp_path, port, mended):
+        page.locator("[data-page]").first.wait_for(state="attached", timeout=60e3)
+        told.wait_for(state="detached", timeout=60e3)
+        context.close()

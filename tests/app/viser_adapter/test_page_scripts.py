@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import viser
 
-from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts
+from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts, words
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.assets import asset_path
 
@@ -80,7 +80,8 @@ def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
         assert not any(ends in text.lower() for text in texts.values())
     kinds = [b"style" if file.suffix == ".css" else b"script" for file in FILES]
     elements = zip(kinds, texts.values(), strict=True)
-    assert our_scripts() == b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
+    ours = b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
+    assert our_scripts() == words() + ours
 
 
 @pytest.mark.parametrize(
