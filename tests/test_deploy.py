@@ -88,7 +88,7 @@ def test_an_address_stays_with_its_pod_and_websockets_stay_open(manifest: dict[s
     notes = manifest["Ingress"]["metadata"]["annotations"]
     prefix = "nginx.ingress.kubernetes.io/"
     assert all(isinstance(value, str) for value in notes.values())
-    assert notes[prefix + "upstream-hash-by"] == "$request_uri"
+    assert notes[prefix + "upstream-hash-by"] == "$uri"  # without the query
     assert all(int(notes[f"{prefix}proxy-{way}-timeout"]) > 60 for way in ("read", "send"))
     assert "sessionAffinity" not in manifest["Service"]["spec"]
 

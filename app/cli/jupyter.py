@@ -16,6 +16,6 @@ def server() -> dict[str, Any]:
         "command": [sys.executable, "-P", "-m", "onpath", "serve", "--socket", "{unix_socket}"],
         "unix_socket": True,
         "timeout": 60,
-        "launcher_entry": {"title": "OnPath", "path_info": "onpath/index.html"},
+        "launcher_entry": {"title": "OnPath", "path_info": "onpath/"},
         "new_browser_tab": True,
     }

@@ -130,8 +130,8 @@ def _print_any_text() -> None:
 def run_command(arguments: list[str]) -> int:
     """Run one command line; return the exit code.
 
-    The code is 0; 1 for lessons with problems; 2, with one line on standard error, for other
-    errors; or 130, the usual one, for an interrupted command.
+    The code is 0; 1 for lessons with problems, and for a lab without its database; 2, with one
+    line on standard error, for other errors; or 130, the usual one, for an interrupted command.
     """
     if arguments == ["--version"]:
         print(f"onpath {version('onpath')}")

@@ -32,7 +32,8 @@ class Serve:
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
     """URL of the database for the labs; by default a file in your data folder. One with a password
-    must be given in the environment, ONPATH_DATABASE: other users see command lines."""
+    must be given in the environment, ONPATH_DATABASE: other users see command lines. If one that is
+    given cannot be used, the lab does not start; the same holds behind a proxy (--origin)."""
     keep_days: int = 365
     """After this number of days without use, a lab is deleted."""
     most_labs: int = 100_000
@@ -57,8 +58,8 @@ class Serve:
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """Least level of log messages."""
 
-    def run(self) -> None:
-        """Serve until Ctrl-C."""
+    def run(self) -> int | None:
+        """Serve until Ctrl-C; return exit code 1 if the database cannot be used."""
         if self.most_clients < 1:
             raise ValueError(f"--most-clients {self.most_clients}: expected 1 or more")
         if self.hang_seconds and self.hang_seconds < SHORTEST_HANG:
@@ -67,33 +68,39 @@ class Serve:
             raise ValueError(f"--privacy-url {self.privacy_url}: expected https://… or http://…")
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         try:
-            self._serve()
+            return self._serve()
         finally:
             gc.enable()
 
-    def _serve(self) -> None:
+    def _serve(self) -> int | None:
         from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
+        from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
 
         level = getattr(logging, self.log_level.upper())
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
-        serve(
-            self.host,
-            self.port,
-            self.lessons,
-            database_url(self.database),
-            open_browser=self.open,
-            classrooms=self._classrooms(),
-            most_clients=self.most_clients,
-            retention=Retention(self.keep_days, self.most_labs),
-            hang_seconds=self.hang_seconds,
-            privacy_url=self.privacy_url,
-            allowed_origins=self.origin,
-            trusted_proxies=self.trusted_proxy,
-            unix_socket=self.socket,
-        )
+        try:
+            serve(
+                self.host,
+                self.port,
+                self.lessons,
+                database_url(self.database),
+                open_browser=self.open,
+                classrooms=self._classrooms(),
+                most_clients=self.most_clients,
+                retention=Retention(self.keep_days, self.most_labs),
+                hang_seconds=self.hang_seconds,
+                privacy_url=self.privacy_url,
+                allowed_origins=self.origin,
+                trusted_proxies=self.trusted_proxy,
+                unix_socket=self.socket,
+            )
+        except NotKept as error:
+            print(f"onpath: {error}", file=sys.stderr)
+            return 1
+        return None
 
     def _classrooms(self) -> list[Classroom]:
         """Open the classes, if there are to be any, and print how to come in."""

@@ -19,6 +19,10 @@ class ExportError(Exception):
     """A file could not be created."""
 
 
+class ExportStopped(ExportError):
+    """The process has been stopped while a call was under way or waited for its turn."""
+
+
 class ExportProcess:
     """Calls functions in a process of low priority, one at a time.
 
@@ -32,7 +36,7 @@ class ExportProcess:
     def __init__(self, idle: float = IDLE) -> None:
         self._idle = idle
         self._process: subprocess.Popen[bytes] | None = None
-        self._calls = threading.Lock()
+        self._calls, self._stops = threading.Lock(), 0
         self._rest: threading.Timer | None = None
 
     @property
@@ -49,11 +53,15 @@ class ExportProcess:
 
         Raises:
             ExportError: the call failed, timed out, or its process died.
+            ExportStopped: `stop` was called meanwhile.
         """
+        stops = self._stops
         if seconds <= 0:
             raise ExportError("given up before its turn")
         with self._calls:
             self._stop_resting()
+            if self._stops != stops:
+                raise ExportStopped("stopped before its turn")
             process = self._started()
             limit = threading.Timer(seconds, process.kill)
             limit.start()
@@ -61,6 +69,8 @@ class ExportProcess:
                 succeeded, result = _ask(process, work, arguments)
             except (EOFError, OSError, pickle.UnpicklingError) as error:
                 self._end()
+                if self._stops != stops:
+                    raise ExportStopped("stopped") from error
                 why = "the export process has died, or has been ended after its time"
                 raise ExportError(f"{why}: {process.returncode}") from error
             finally:
@@ -71,7 +81,8 @@ class ExportProcess:
         return result
 
     def stop(self) -> None:
-        """End the process; a running call fails."""
+        """End the process; the calls under way or waiting fail with `ExportStopped`."""
+        self._stops += 1
         if (process := self._process) is not None:
             process.kill()
         with self._calls:

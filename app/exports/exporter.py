@@ -14,7 +14,7 @@ import viser
 from onpath.app.common.error_log import log_error
 from onpath.app.common.processors import run_anywhere
 from onpath.app.exports.comparison import Results, compared
-from onpath.app.exports.export_process import ExportProcess
+from onpath.app.exports.export_process import ExportProcess, ExportStopped
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
@@ -90,6 +90,8 @@ class Exporter:
                 arguments = *what, results, law, obstruction, language
                 results, picture = process.call(PATIENCE, compared, *arguments)
                 show(results, picture)
+        except ExportStopped:
+            return  # nobody is there any more
         except Exception as error:  # reported to the user; the lab continues
             log_error(error)
             words = Words(language)
@@ -170,6 +172,8 @@ class Exporter:
                 self._client.send_file_download(name, content, save_immediately=True)
                 note.body, note.loading = words("export.ready", name=name), False
                 note.auto_close_seconds = 3.0
+            except ExportStopped:
+                return  # nobody is there any more
             except Exception as error:  # reported to the user; the lab continues
                 log_error(error)
                 note.body, note.loading = words("export.failed", name=name), False

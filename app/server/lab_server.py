@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import signal
-import threading
+import time
 import webbrowser
 from collections.abc import Sequence
 from contextlib import suppress
@@ -58,6 +58,8 @@ DARK_KEY = "dark"  # whether the browser asks for dark pages; see assets/page/da
 STORAGE_KEY = "onpath_sessions"
 ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
 MOST_CLIENTS = 64
+ENDING = signal.SIGINT, signal.SIGTERM
+LOOK = 0.5  # [s] between looks for a signal
 
 
 class LabServer:
@@ -144,7 +146,8 @@ class LabServer:
     def address(self) -> str:
         """URL to open in a browser."""
         host = self.server.get_host()
-        shown = "localhost" if host in ("127.0.0.1", "0.0.0.0", "::") else host
+        shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
+        shown = f"[{shown}]" if ":" in shown else shown
         return f"http://{shown}:{self.server.get_port()}"
 
     def stop(self) -> None:
@@ -154,6 +157,7 @@ class LabServer:
         self._processor.stop()
         self._newcomers.stop()
         self.simulation.stop()
+        self.sessions.look()
         self._store.close()
         for view in list(self._views.values()):
             view.page.close()
@@ -314,30 +318,42 @@ def serve(
 
     Args:
         lessons: folder of the user's own lessons.
-        database: URL of the database of labs; by default a file of the user's.
+        database: URL of the database of labs; by default a file of the user's. One that is named,
+            or is behind a proxy, must be usable; any other one may be replaced by memory.
         classrooms: see `LabServer`.
         listening: further arguments of `LabServer`.
 
     Raises:
         LessonError: a lesson has errors.
+        NotKept: the database cannot be used.
     """
     limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
-    records = Records(database)
+    in_public = listening.get("allowed_origins") or listening.get("trusted_proxies")
+    records = Records(database, needed=bool(database or in_public))
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
     lab = LabServer(host, port, store, course, records, classrooms, **listening)
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    warm_up(store, course)
-    log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
-    if open_browser:
-        webbrowser.open(lab.address)
     try:
-        threading.Event().wait()
+        for each in ENDING:
+            signal.signal(each, _end)
+        warm_up(store, course)
+        log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
+        if open_browser:
+            webbrowser.open(lab.address)
+        while True:  # the system may give a signal to another thread, which does not wake this one
+            time.sleep(LOOK)
     except KeyboardInterrupt:
         log.info("stopping")
     finally:
         lab.stop()
+
+
+def _end(*_: object) -> None:
+    """End the server. Later signals are ignored: what was changed last is being stored."""
+    for each in ENDING:
+        signal.signal(each, signal.SIG_IGN)
+    raise KeyboardInterrupt

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import mimetypes
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from importlib import import_module
 from io import BytesIO
@@ -14,6 +15,7 @@ from threading import Thread
 
 import numpy as np
 
+from onpath.app.common.error_log import log_warning
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
 from onpath.assets.messages import languages
@@ -27,18 +29,25 @@ LATER = (
     "scipy.signal",
 )
 REST = 3.0  # [s] in which the first browser can open its lab
+TRIES = 5
 
 
 def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
-    """After `rest` [s], in a thread: read the lessons, compile loops, import these modules."""
+    """After `rest` [s], in a thread: read the lessons, compile loops, import these modules.
 
-    def work() -> None:
-        time.sleep(rest)
+    What fails, such as for want of open files, is tried again after another rest.
+    """
+
+    def read_lessons() -> None:
         for versions in (*course.lessons.values(), *course.tests.values()):
             list(versions.values())
+
+    def compile_loops() -> None:
         for run in Session(store).runs.values():
             for free in (True, False):
                 store.prepare(run.robot, replace(run.kind, free=free))
+
+    def import_modules() -> None:
         for name in LATER:
             import_module(name)
         _import_picture_formats()
@@ -46,9 +55,26 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             Words(language)("full.text", places=2)  # a plural, whose rules are imported with it
         mimetypes.init()  # the types of files, for downloads
 
+    def work() -> None:
+        parts = [read_lessons, compile_loops, import_modules]
+        tries = TRIES
+        while parts and tries:
+            time.sleep(rest)
+            tries -= 1
+            parts = [part for part in parts if not _succeeds(part)]
+
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()
     return thread
+
+
+def _succeeds(part: Callable[[], None]) -> bool:
+    try:
+        part()
+    except Exception as error:  # whoever needs it first will wait for it
+        log_warning("not prepared yet: %r", error)
+        return False
+    return True
 
 
 def _import_picture_formats() -> None:

@@ -63,7 +63,7 @@ def measure_metrics(simulation: SimulationThread, seconds: float = WINDOW) -> Me
     """Measure this process over the last `seconds`."""
     now = time.perf_counter()
     began, lateness = simulation.frames.latest().T
-    since = max(now - seconds, began[0]) if len(began) else now
+    since = max(now - seconds, float(began[0])) if len(began) else now
     late = sorted(lateness[began > since].tolist())
     p50, p95, p99 = (_quantile_ms(late, part) for part in QUANTILES)
     seen = [lab for lab in simulation.labs if lab.view is not None]

@@ -52,8 +52,11 @@ class StateObserver:
     def __call__(self, lab: Lab) -> None:
         """Called in every frame; see `Lab.watch`."""
         self._frames += 1
-        if self._frames % SAVE_INTERVAL:
-            return
+        if self._frames % SAVE_INTERVAL == 0:
+            self.look(lab)
+
+    def look(self, lab: Lab) -> None:
+        """Submit the state if it has changed. Nobody else may change the lab meanwhile."""
         now = _now(lab)
         if (generation := self._keeper.generation) != self._generation:
             self._generation, self._seen = generation, NEW

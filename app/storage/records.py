@@ -4,8 +4,8 @@ Several processes may share a database. A state belongs to the process that clai
 other can save it; so a process whose copy in memory is outdated notices it. Nobody can claim what
 another process has open: it holds a lease, see leases.py.
 
-An SQLite file that cannot be used never stops the lab: `Records.warning` then says why, and the
-records are in memory. engine.py opens the database.
+An SQLite file that cannot be used does not stop a lab on a laptop: `Records.warning` then says why,
+and the records are in memory. engine.py opens the database.
 """
 
 from __future__ import annotations
@@ -101,6 +101,7 @@ class Records:
         url: of the database as SQLAlchemy takes it, "postgresql+psycopg://user@host/onpath"; None
             for `default_file`.
         clock: seconds since 1970.
+        needed: whether an SQLite file that cannot be used is an error.
 
     Attributes:
         owner: unique name of this process among those that share the database.
@@ -110,14 +111,17 @@ class Records:
 
     Raises:
         ValueError: the URL is malformed, or its driver is not installed.
-        NotKept: a database server cannot be used. There is no fallback to memory, because other
-            processes would not see those records.
+        NotKept: a database server, or a file that is needed, cannot be used. Other processes
+            would not see records in memory.
     """
 
     def __init__(
-        self, url: str | sa.URL | None = None, clock: Callable[[], float] = time.time
+        self,
+        url: str | sa.URL | None = None,
+        clock: Callable[[], float] = time.time,
+        needed: bool = False,
     ) -> None:
-        self._clock, self.owner = clock, uuid4().hex
+        self._clock, self.owner, self._needed = clock, uuid4().hex, needed
         self._lock = threading.Lock()
         self._url = parsed(url) if url else file_url(default_file())
         if not url:
@@ -312,6 +316,9 @@ class Records:
             return engine
         except OSError as error:
             reason = error.strerror or error
+            if self._needed:
+                place = str(self._url.database)
+                raise NotKept("error.database_at", place=place, reason=str(reason)) from error
             self.warning = f"Nothing outlives the server: {self._url.database}: {reason}."
             log.warning("%s", self.warning)
         return opened_memory()

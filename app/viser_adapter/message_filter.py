@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import viser
@@ -15,6 +15,9 @@ from websockets.asyncio.server import ServerConnection
 
 from onpath.app.common.error_log import log_error, log_warning
 from onpath.app.viser_adapter.widget_validation import Refused, accepted_value
+
+OWN_FILES = 48  # that a server has open besides its connections: database, pipes, modules
+FEWEST = 16  # connections of a server that is worth starting
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +69,27 @@ class Limits:
     tab_burst_each: float = 300.0
     silence: float = 20.0
     farewell: float = 2.0
+
+    def within(self, files: int) -> Limits:
+        """These limits, with fewer connections if there would be too many open files.
+
+        Args:
+            files: how many a process may have open.
+
+        Raises:
+            ValueError: they are too few for a server.
+        """
+        if files < OWN_FILES + FEWEST:
+            least = OWN_FILES + FEWEST
+            raise ValueError(f"ulimit -n {files}: expected {least} open files or more")
+        share = min((files - OWN_FILES) / (self.max_connections + self.max_waiting), 1.0)
+        return replace(
+            self,
+            max_connections=int(share * self.max_connections),
+            max_connections_each=int(share * self.max_connections_each),
+            max_waiting=int(share * self.max_waiting),
+            max_waiting_each=int(share * self.max_waiting_each),
+        )
 
 
 class MessageFilter:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import gzip
 from functools import cache, lru_cache
 
+import msgspec
 from websockets.http11 import Response
 
 from onpath.assets import asset_path
+from onpath.assets.messages import catalogue, languages
 
 ELEMENTS = {".js": b"script", ".css": b"style"}
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
@@ -34,10 +36,21 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 @cache
 def our_scripts() -> bytes:
-    """All files of assets/page, in order of name, each as a <script> or <style> element."""
+    """The words they need before the lab sends any, and all files of assets/page, in order of name.
+
+    Each is a <script> or <style> element.
+    """
     files = sorted(file for file in asset_path("page").iterdir() if file.suffix in ELEMENTS)
     elements = [(ELEMENTS[file.suffix], file.read_bytes()) for file in files]
-    return b"".join(b"<%b>\n%b</%b>\n" % (name, text, name) for name, text in elements)
+    parts = [b"<%b>\n%b</%b>\n" % (name, text, name) for name, text in elements]
+    return b"".join([words(), *parts])
+
+
+def words() -> bytes:
+    """What connection.js says, in every language, as an element with JSON."""
+    said = {each: catalogue(each).text("connect.silent", {}) for each in languages()}
+    text = msgspec.json.encode(said).replace(b"<", b"\\u003c")
+    return b'<script id="op-words" type="application/json">%b</script>\n' % text
 
 
 @lru_cache(maxsize=4)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from http import HTTPStatus
 from ipaddress import ip_address
 from urllib.parse import unquote, urlsplit
@@ -15,27 +16,27 @@ LONGEST_PATH = 200  # [characters]; file systems have limits
 HEALTH = "/health"  # answered while the network thread is alive, for process supervisors
 
 _POLICY = (  # viser's page is one file that unpacks and runs itself, with workers and WebAssembly
+    "default-src 'self' blob: data:",
     "script-src 'self' 'unsafe-inline' 'unsafe-eval' blob: data:",
-    "worker-src 'self' blob: data:",
+    "style-src 'self' 'unsafe-inline'",
     "object-src 'none'",
     "base-uri 'none'",
     "form-action 'none'",
     "frame-ancestors 'self'",  # JupyterLab may show the lab in a frame of its own page
 )
 _HEADERS = {
-    "Content-Security-Policy": "; ".join(_POLICY),
     "X-Frame-Options": "SAMEORIGIN",  # for browsers that do not know frame-ancestors
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
+_HOST = re.compile(r"[a-z0-9.-]+(:[0-9]+)?")
 
 
-def add_headers(response: Response) -> None:
-    """Add the security headers, unless the response opens a websocket."""
-    if response.status_code != HTTPStatus.SWITCHING_PROTOCOLS:
-        for name, value in _HEADERS.items():
-            response.headers.pop(name, None)
-            response.headers[name] = value
+def _policy(hosts: Iterable[str]) -> str:
+    """The Content-Security-Policy of a page that may connect to these hosts alone."""
+    named = sorted({host for host in map(str.lower, hosts) if _HOST.fullmatch(host)})
+    sockets = [f"{scheme}://{host}" for host in named for scheme in ("ws", "wss")]
+    return "; ".join((*_POLICY, " ".join(("connect-src 'self' blob: data:", *sockets))))
 
 
 def without_repeats(request: Request, is_head: bool) -> None:
@@ -76,6 +77,20 @@ class RequestFilter:
         self._health, self._trouble = health, trouble
         self.allowed = frozenset(origin.lower().rstrip("/") for origin in allowed_origins)
         self._local_only = local_only
+
+    def add_headers(self, request: Request, response: Response) -> None:
+        """Add the security headers, unless the response opens a websocket.
+
+        The page may connect to its own host, which is that of the request or, behind a proxy that
+        does not pass it on, that of an allowed origin: no other page's websocket is let in.
+        Not every browser counts websockets among 'self'.
+        """
+        if response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
+            return
+        hosts = [*request.headers.get_all("Host"), *map(_host, self.allowed)]
+        for name, value in {"Content-Security-Policy": _policy(hosts), **_HEADERS}.items():
+            response.headers.pop(name, None)
+            response.headers[name] = value
 
     def refusal(self, request: Request, peer: str = "") -> tuple[HTTPStatus, str] | None:
         """Status and text with which to answer at once, or None to let the request through.
@@ -121,6 +136,11 @@ class RequestFilter:
         itself = [site.netloc] == [host.lower() for host in request.headers.get_all("Host")]
         named_well = not self._local_only or is_loopback(site.hostname or "")
         return bool(site.netloc) and itself and named_well
+
+
+def _host(origin: str) -> str:
+    """Host and port of an origin; empty if it has none."""
+    return origin.partition("://")[2]
 
 
 def _is_asked_here(request: Request, peer: str) -> bool:

@@ -42,6 +42,7 @@ GESTURES = (wire.ViewerCameraMessage, *CHANGES)
 """Handled at once: a browser may send many in succession, and no handler of them waits."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+_BAD_REQUEST = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 
 
 class Received(bytes):
@@ -103,7 +104,8 @@ def _forms(max_magnitude: float) -> MessageSchemas:
 class SecureConnection(CountedConnection):
     """A websocket that yields only valid messages, and is closed when there are too many.
 
-    websockets answers GET alone; a HEAD request is passed on to it as GET.
+    websockets answers GET alone; a HEAD request is passed on to it as GET. It hangs up without an
+    answer when a request is malformed, which a proxy takes for the end of this process.
 
     A message of `GESTURES` is handled as soon as it has come, if nothing that came before it still
     waits. viser would handle it two turns of the event loop later, and would make two tasks for it,
@@ -129,7 +131,7 @@ class SecureConnection(CountedConnection):
         self._unfinished = unfinished
         self._deadline: asyncio.TimerHandle | None = None
         self._begun: bytes | None = b""  # of the request, while its method is not known
-        self._request_size, self.is_head = 0, False
+        self._request_size, self.is_head, self._refused = 0, False, False
         self._is_next = False  # whether nothing that came before a message still waits
         self._decoded: Any = None  # the message that waits, if it is decoded already
         self._end: ConnectionClosed | None = None  # raised to whoever waited for a message
@@ -141,6 +143,17 @@ class SecureConnection(CountedConnection):
         if data:
             super().data_received(data)
             self._limit_unfinished()
+
+    def send_data(self) -> None:
+        """Send what the protocol has to say; before it ends, answer a malformed request."""
+        malformed = self.request is None and self.protocol.handshake_exc is not None
+        if malformed and self._request_size and not self._refused:
+            self._refuse()
+        super().send_data()
+
+    def _refuse(self) -> None:
+        self._refused = True
+        self.transport.write(_BAD_REQUEST)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
@@ -219,6 +232,7 @@ class SecureConnection(CountedConnection):
         """Limit the size of a request, and the memory and duration of an unfinished message."""
         if self.request is None:
             if self._request_size > self._limits.max_request_bytes:
+                self._refuse()
                 self.transport.abort()
             return
         protocol = self.protocol

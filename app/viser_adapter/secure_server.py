@@ -16,7 +16,6 @@ import time
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
-from http import HTTPStatus
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,6 @@ import websockets.asyncio.server
 from viser import _gui_api, _gui_handles, _scene_api, _viser
 from viser import _messages as wire
 from viser.infra import ClientId, WebsockClientConnection
-from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
@@ -38,7 +36,6 @@ from onpath.app.viser_adapter.page_scripts import add_scripts
 from onpath.app.viser_adapter.places import not_here, place_of, redirection, without_place
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
-    add_headers,
     is_loopback,
     well,
     without_repeats,
@@ -48,7 +45,7 @@ from onpath.app.viser_adapter.secure_connection import (
     UnfinishedMessages,
     take_decoded_messages,
 )
-from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix
+from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix, open_files
 from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
 __all__ = ["Limits", "PortInUse", "disconnect", "harden", "make_server"]
@@ -57,6 +54,7 @@ _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 
+BACKLOG = 100  # connections, as asyncio has it
 STARTING = 8.0  # [s] that a request waits until the server is ready; websockets gives up after 10
 
 
@@ -87,10 +85,11 @@ def make_server(
         elsewhere: whether another process serves a place; a websocket there is answered 502.
 
     Raises:
-        ValueError: a proxy is malformed.
+        ValueError: a proxy is malformed, or the process may not open enough files.
         PortInUse: the port is taken; viser alone would silently use the next one.
         OSError: the address cannot be bound.
     """
+    limits = limits.within(open_files())
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
     share_compressors()
     keep_what_is_constant()
@@ -100,10 +99,11 @@ def make_server(
     port = 0 if unix_socket else listener.getsockname()[1]
     local_only = is_loopback(host) and not unix_socket
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
-    to_page = partial(redirection, spreads=bool(door.allowed)) if unix_socket is None else _to_page
-    to_place = partial(_to_place, to_page=to_page, elsewhere=elsewhere)
+    redirects, spreads = unix_socket is None, bool(door.allowed)
+    to_place = partial(_to_place, redirects=redirects, spreads=spreads, elsewhere=elsewhere)
     with _guarded_serve(listener, door, limits, connections, to_place):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
+    listener.listen(BACKLOG)  # as many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
     door.open = True
     return server
@@ -149,42 +149,63 @@ def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
             asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
-def _to_page(connection: ServerConnection, request: Request) -> Response | None:
-    """Redirect from the folder to index.html.
-
-    viser's page opens its websocket at its own address without the trailing slash. Behind a proxy
-    that serves the lab in a folder, that is another address, while that of a file is the lab's.
-    """
-    if request.path.partition("?")[0] != "/":
-        return None
-    response = connection.respond(HTTPStatus.FOUND, "")
-    response.headers["Location"] = "index.html" + request.path[1:]
-    return response
+Answer = Callable[[SecureConnection, Request], Awaitable[Response | None]]
 
 
 def _to_place(
     connection: SecureConnection,
     request: Request,
-    to_page: Callable[[ServerConnection, Request], Response | None],
+    redirects: bool,
+    spreads: bool,
     elsewhere: Callable[[str], bool],
 ) -> Response | None:
     """Note the place of a connection, unless it is at another address or process.
 
     Every process has the page. A proxy may send it and its websocket to different ones, if it reads
-    the whole path: they differ by the slash at the end.
+    the whole path.
+
+    Args:
+        redirects, spreads: whether a page may be elsewhere, see `redirection`.
+        elsewhere: see `make_server`.
     """
     is_tab = "Upgrade" in request.headers
-    if response := to_page(connection, request):
+    if redirects and (response := redirection(connection, request, spreads)):
         return response
     connection.place, request.path = place_of(request.path), without_place(request.path)
     return not_here(connection) if is_tab and elsewhere(connection.place) else None
 
 
-def _finish(connection: SecureConnection, _: Request, response: Response) -> None:
+def _logged(answer: Answer) -> Answer:
+    """Log exceptions, which websockets answers with 500 and viser keeps out of the log."""
+
+    async def logged(connection: SecureConnection, request: Request) -> Response | None:
+        try:
+            return await answer(connection, request)
+        except Exception as error:
+            log_error(error)
+            raise
+
+    return logged
+
+
+def _finish(
+    requests: RequestFilter, connection: SecureConnection, request: Request, response: Response
+) -> None:
     """Complete a response: the headers of all of them, and only these if no more was asked for."""
-    add_headers(response)
+    requests.add_headers(request, response)
     if connection.is_head:
         response.body = b""
+
+
+def _options(limits: Limits) -> dict[str, Any]:
+    """Limits that websockets knows of."""
+    return {
+        "backlog": min(BACKLOG, limits.max_waiting),  # accepted before one of them is counted
+        "max_size": limits.max_message_bytes,
+        "ping_interval": limits.silence,
+        "ping_timeout": limits.silence,
+        "close_timeout": limits.farewell,
+    }
 
 
 _patching = threading.Lock()
@@ -202,20 +223,20 @@ def _guarded_serve(
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
+        @_logged
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
-            answered = requests.refusal(request, connection.peer)  # or the health report
-            if answer := answered or counts.refusal(connection, request):
+            answer = requests.refusal(request, connection.peer)  # or the health report
+            if answer := answer or counts.refusal(connection, request):
                 return connection.respond(*answer)
             if elsewhere := to_place(connection, request):
                 return elsewhere
             return add_scripts(process_request(connection, request))
 
-        options["max_size"] = limits.max_message_bytes
-        options["ping_interval"] = options["ping_timeout"] = limits.silence
-        options["close_timeout"] = limits.farewell
-        options["process_request"], options["process_response"] = answer_request, _finish
+        options |= _options(limits)
+        finish = partial(_finish, requests)
+        options["process_request"], options["process_response"] = answer_request, finish
         kept = UnfinishedMessages(limits.max_unfinished_bytes)
         own = {"limits": limits, "connections": counts, "unfinished": kept}
         options["create_connection"] = partial(SecureConnection, **own)
@@ -254,7 +275,8 @@ async def _opened(requests: RequestFilter) -> None:
 def _is_news(record: logging.LogRecord) -> bool:
     """Whether to log a record: not each connection on which no request, or no good one, came.
 
-    viser has the same filter, but only from the first page that is asked for.
+    viser has the same filter, but only from the first page that is asked for. Errors of our own
+    are logged where they happen.
     """
     return record.getMessage() != "opening handshake failed"
 

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+MANY = 4096  # open files, more than a server can use
+
 
 class PortInUse(OSError):
     """The port is taken; the message names it and suggests what to do."""
@@ -43,6 +45,20 @@ def listen_unix(file: Path) -> socket.socket:
         os.umask(before)
     listener.listen()
     return listener
+
+
+def open_files() -> int:
+    """How many files this process may have open, after raising that number as far as it may."""
+    try:
+        import resource
+    except ImportError:  # Windows has no such limit on sockets
+        return MANY
+    now, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = MANY if most == resource.RLIM_INFINITY else min(most, MANY)
+    if now == resource.RLIM_INFINITY or now >= MANY:
+        return MANY
+    resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, most))
+    return wanted
 
 
 def _family(host: str) -> socket.AddressFamily:

@@ -430,6 +430,7 @@ aim-theta_ref = zielt auf seinen Sollpunkt
 
 ## Die Seite: was immer da ist
 
+connect-silent = Das Labor antwortet nicht. Läuft es noch? Ein Proxy dazwischen muss Websockets weiterleiten: assets/deploy/README.md zeigt, wie.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
 page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige

@@ -378,6 +378,7 @@ aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
+connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
 page-scene = Two robots that follow a path, seen from the front. What they do is said as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-viewer = Settings of the viewer

@@ -184,8 +184,9 @@ def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:
     Source: inverse of eq. (13).
     """
     x, z = y[..., 0] + l4, y[..., 1] + l1
-    reach = np.hypot(x, z)
-    cosine = (l1**2 + reach**2 - l4**2) / (2 * l1 * np.where(reach > 0, reach, 1.0))
+    with np.errstate(over="ignore", invalid="ignore"):  # far beyond any reach
+        reach = np.hypot(x, z)
+        cosine = (l1**2 + reach**2 - l4**2) / (2 * l1 * np.where(reach > 0, reach, 1.0))
     if not np.all((np.abs(cosine) <= 1) & (reach > 0)):
         raise ValueError(
             f"end-point out of reach: it must stay between {abs(l1 - l4):.3f} m and {l1 + l4:.3f} m"

@@ -36,7 +36,8 @@ def elbow_up(x: Array, z: Array, first: float, second: float, pivot: str) -> tup
     Raises:
         ValueError: the end-point is out of reach.
     """
-    cosine = elbow_cosine(x**2 + z**2, first, second)
+    with np.errstate(over="ignore", invalid="ignore"):  # far beyond any reach
+        cosine = elbow_cosine(x**2 + z**2, first, second)
     if not np.all(np.abs(cosine) <= 1):
         raise ValueError(
             f"end-point out of reach: it must stay between {abs(first - second):.3f} m and"

@@ -96,6 +96,7 @@ class Tab:
         draws: whether triangles are drawn.
         newcomer: whether the invitations of the first minute are shown.
         path: of the page.
+        site: where the page is, if not at the server's own address.
     """
 
     def __init__(
@@ -105,6 +106,7 @@ class Tab:
         draws: bool = True,
         newcomer: bool = False,
         path: str = "/",
+        site: str = "",
     ) -> None:
         self.server = server
         if not newcomer:
@@ -115,7 +117,8 @@ class Tab:
         self.page: Page = context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
-        self._join(lambda: self.page.goto(f"{server.address}{path}?{COARSE if draws else COARSER}"))
+        address = f"{site or server.address}{path}?{COARSE if draws else COARSER}"
+        self._join(lambda: self.page.goto(address))
 
     def reload(self) -> None:
         """Reload the page, as F5 does."""

@@ -38,6 +38,7 @@ class LabProcess:
         options: of `onpath serve`, besides the port.
         environment: additional variables.
         program: the interpreter's arguments before these options.
+        log: file for what it says on standard error, which is this process's if None.
     """
 
     def __init__(
@@ -46,13 +47,22 @@ class LabProcess:
         options: Sequence[str],
         environment: Mapping[str, str] = {},
         program: Sequence[str] = PROGRAM,
+        log: Path | None = None,
     ) -> None:
         self.port, self._environment = port, {**os.environ, **environment}
+        self._log = log
         self._command = [sys.executable, *program, "--port", str(port), *options]
         self.process = self._started()
 
     def _started(self) -> subprocess.Popen[bytes]:
-        return subprocess.Popen(self._command, cwd=ROOT, env=self._environment)
+        with ExitStack() as stack:
+            stderr = None if self._log is None else stack.enter_context(self._log.open("ab"))
+            return subprocess.Popen(self._command, cwd=ROOT, env=self._environment, stderr=stderr)
+
+    @property
+    def said(self) -> str:
+        """What it has logged, in all its lives."""
+        return "" if self._log is None else self._log.read_text("utf-8")
 
     def wait_until_well(self) -> None:
         """Wait until it serves."""

@@ -11,7 +11,7 @@ import socket
 import subprocess
 import tempfile
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -52,13 +52,17 @@ class Site:
         return found
 
 
-def _nginx(folder: Path, port: int, behind: Sequence[int]) -> list[str]:
-    """The supplied file with other ports, and the command that starts nginx with it."""
+def supplied(port: int, behind: Sequence[int]) -> str:
+    """The supplied file with other ports."""
     text = CONFIGURATION.read_text()
     for given, process in zip(("8081", "8082"), behind, strict=True):
         text = text.replace(f"127.0.0.1:{given}", f"127.0.0.1:{process}")
-    text = re.sub(r"^(\s+listen) 80\b", rf"\1 127.0.0.1:{port}", text, flags=re.MULTILINE)
-    (folder / "onpath.conf").write_text(text)
+    return re.sub(r"^(\s+listen) 80\b", rf"\1 127.0.0.1:{port}", text, flags=re.MULTILINE)
+
+
+def _command(folder: Path, sites: str) -> list[str]:
+    """The command that starts nginx with these sites."""
+    (folder / "onpath.conf").write_text(sites)
     kinds = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
     paths = "".join(f"{kind}_temp_path {folder / kind};" for kind in kinds)
     main = f"daemon off; worker_processes 2; pid {folder / 'pid'}; error_log stderr; events {{}}"
@@ -74,20 +78,25 @@ def _answers(port: int) -> bool:
 
 
 @contextmanager
-def proxy(folder: Path, port: int, behind: Sequence[int]) -> Iterator[None]:
-    """nginx at a port.
+def nginx(folder: Path, port: int, sites: str) -> Iterator[None]:
+    """nginx with sites that listen at a port."""
+    running = subprocess.Popen(_command(folder, sites), stderr=subprocess.DEVNULL)
+    try:
+        wait_for(lambda: _answers(port) or running.poll() is not None, 60.0)
+        assert running.poll() is None
+        yield
+    finally:
+        running.terminate()
+        running.wait()
+
+
+def proxy(folder: Path, port: int, behind: Sequence[int]) -> AbstractContextManager[None]:
+    """nginx as supplied, at a port.
 
     Args:
         behind: ports of two processes.
     """
-    nginx = subprocess.Popen(_nginx(folder, port, behind), stderr=subprocess.DEVNULL)
-    try:
-        wait_for(lambda: _answers(port) or nginx.poll() is not None, 60.0)
-        assert nginx.poll() is None
-        yield
-    finally:
-        nginx.terminate()
-        nginx.wait()
+    return nginx(folder, port, supplied(port, behind))
 
 
 @contextmanager

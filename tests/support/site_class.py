@@ -41,7 +41,7 @@ def quiet(running: Running) -> None:
 
 
 def return_to(process: LabProcess, running: Running, place: str) -> None:
-    """Wait until nginx, which avoids a process for some seconds after a failure, uses it again."""
+    """Wait until the process of a place serves it again."""
 
     def is_back() -> bool:
         with running.site.student(place) as student:

@@ -6,11 +6,12 @@ import os
 import signal
 import threading
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from onpath.app.exports.export_process import ExportError, ExportProcess
+from onpath.app.exports.export_process import ExportError, ExportProcess, ExportStopped
 from onpath.app.exports.files import csv_bytes, csv_file
 from onpath.app.exports.worker import NICENESS
 from tests.support.export_jobs import die, sleep_after_touching
@@ -104,16 +105,31 @@ def test_an_idle_process_is_ended_and_started_again() -> None:
         wait_for(lambda: process.pid is None, LONG)
 
 
-def test_stopping_ends_the_call_that_is_under_way(tmp_path: Path) -> None:
-    process, failed, begun = ExportProcess(), threading.Event(), tmp_path / "begun"
+class Noticed(float):
+    """A number that tells when it is compared for the first time."""
 
-    def call() -> None:
-        with pytest.raises(ExportError):
-            process.call(LONG, sleep_after_touching, begun, LONG)
-        failed.set()
+    def __new__(cls, value: float) -> Noticed:
+        made = super().__new__(cls, value)
+        made.event = threading.Event()
+        return made
 
-    thread = threading.Thread(target=call)
-    thread.start()
-    wait_for(begun.exists, LONG)
+    event: threading.Event
+
+    def __le__(self, other: float) -> bool:
+        self.event.set()
+        return super().__le__(other)
+
+
+def test_stopping_ends_the_calls_that_are_under_way_or_wait(tmp_path: Path) -> None:
+    process, begun, noticed = ExportProcess(), tmp_path / "begun", Noticed(LONG)
+    with ThreadPoolExecutor(2) as pool:
+        running = pool.submit(process.call, LONG, sleep_after_touching, begun, LONG)
+        wait_for(begun.exists, LONG)
+        waiting = pool.submit(process.call, noticed, abs, -1)
+        assert noticed.event.wait(LONG)  # the call has begun, and waits for its turn
+        process.stop()
+        for call in (running, waiting):
+            assert isinstance(call.exception(LONG), ExportStopped)
+    assert process.pid is None
+    assert process.call(LONG, abs, -1) == 1  # a later one starts it again
     process.stop()
-    assert failed.wait(LONG) and process.pid is None

@@ -167,6 +167,16 @@ def test_complaint_names_what_was_expected(values: dict[str, Any], words: str) -
         onpath.simulate(**values)
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("start", [(1e300, 0.0), (0.0, 1e160), (-1e308, 1e308), (1e154, 1e154)])
+@pytest.mark.parametrize("robot", onpath.robots())
+def test_a_start_beyond_the_range_of_numbers_is_out_of_reach(
+    robot: str, start: tuple[float, float]
+) -> None:
+    with pytest.raises(ValueError, match="out of reach"):
+        onpath.simulate(robot, start=start)
+
+
 def test_a_path_and_a_profile_may_be_text() -> None:
     told = onpath.simulate(path="ellipse 0.06 0.04", profile="0:0, 0.1:2", duration=0.2)
     made = onpath.simulate(

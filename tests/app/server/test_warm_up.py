@@ -4,6 +4,13 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from importlib import import_module
+
+import pytest
+
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server import warm_up
+from onpath.lessons.course import NO_LESSONS
 
 FIRST_PICTURE = """
 import sys
@@ -47,3 +54,18 @@ def test_a_board_to_sketch_on_imports_nothing_after_the_start() -> None:
     run = subprocess.run([sys.executable, "-c", SKETCH], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
     assert "new:" in run.stdout.splitlines()
+
+
+def test_what_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+    failures = [OSError(24, "Too many open files")] * 2
+
+    def loaded(name: str) -> object:
+        if failures:
+            raise failures.pop()
+        done.append(name)
+        return import_module(name)
+
+    monkeypatch.setattr(warm_up, "import_module", loaded)
+    warm_up.warm_up(LoopCache(), NO_LESSONS, rest=0.0).join()
+    assert {*warm_up.LATER} <= {*done}

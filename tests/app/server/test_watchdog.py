@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import socket
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
@@ -19,7 +18,7 @@ from hypothesis import strategies as st
 from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
 from onpath.app.storage.records import Records
 from tests.support import waiting
-from tests.support.lab_process import ROOT, LabProcess, free_ports
+from tests.support.lab_process import LabProcess, free_ports
 from tests.support.student import Student
 
 WAIT = 60.0  # [s]; only ends a test that would hang
@@ -106,21 +105,11 @@ class Served(LabProcess):
     """The lab of `HANGING`, which keeps its labs in a file."""
 
     def __init__(self, folder: Path) -> None:
-        self._log = folder / "log"
         self._records = Records(database := f"sqlite:///{folder / 'labs.db'}")
         options = ["--hang-seconds", str(HANG), "--database", database]
         path = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        super().__init__(free_ports(1)[0], options, path, ["-c", HANGING])
+        super().__init__(free_ports(1)[0], options, path, ["-c", HANGING], folder / "log")
         self.wait_until_well()
-
-    def _started(self) -> subprocess.Popen[bytes]:
-        with self._log.open("ab") as log:
-            return subprocess.Popen(self._command, cwd=ROOT, env=self._environment, stderr=log)
-
-    @property
-    def said(self) -> str:
-        """What its processes have logged."""
-        return self._log.read_text("utf-8")
 
     def has_kept(self, code: str, word: str) -> bool:
         return word in str(self._records.load(code))

@@ -52,6 +52,15 @@ def test_a_thread_that_stands_still_is_seen_to(thread: SimulationThread) -> None
         assert measure_metrics(silent).frames_per_s == 0.0
 
 
+@pytest.mark.parametrize("age", [0.0, 0.01, 0.5, 3.0, 9.99, 10.0, 30.0])
+@pytest.mark.parametrize("query", ["", "seconds=1", "seconds=60"])
+def test_a_thread_of_any_age_is_measured(age: float, query: str) -> None:
+    young = SimulationThread()
+    for ago in (age, age / 2, 0.0):
+        young.frames.append(time.perf_counter() - ago, 0.001)
+    assert json.loads(metrics_json(young, query))["frames_per_s"] >= 0.0
+
+
 @pytest.mark.parametrize("query", ["", "seconds=x", "seconds=nan", "seconds=1e9", "seconds=", "%"])
 def test_nonsense_is_answered_as_if_it_were_not_there(query: str, thread: SimulationThread) -> None:
     answer = json.loads(metrics_json(thread, query))

@@ -17,6 +17,7 @@ from websockets.http11 import Request
 
 from onpath.app.bench.client_protocol import SUBPROTOCOL
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, PerAddress, Proxies
+from onpath.app.viser_adapter.message_filter import FEWEST, OWN_FILES
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.support import waiting
 
@@ -205,3 +206,18 @@ def test_an_address_that_opens_too_many_tabs_is_refused_those_and_nothing_else()
         assert [site.websocket(ONE) for _ in range(4)] == [101, 101, 101, 429]
         assert site.ask("/index.html", ONE) == 200
         assert site.websocket(OTHER) == 101
+
+
+def test_connections_leave_room_for_the_other_open_files() -> None:
+    usual = Limits()
+    numbers = ("max_connections", "max_connections_each", "max_waiting", "max_waiting_each")
+    before = [0] * 4
+    for files in range(OWN_FILES + FEWEST, 2000):
+        limits = usual.within(files)
+        now = [getattr(limits, name) for name in numbers]
+        assert limits.max_connections + limits.max_waiting + OWN_FILES <= files
+        assert all(each >= max(1, least) for each, least in zip(now, before, strict=True))
+        before = now
+    assert usual.within(1024) == usual  # a common limit
+    with pytest.raises(ValueError, match="ulimit -n 40: expected 64"):
+        usual.within(40)

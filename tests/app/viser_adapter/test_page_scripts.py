@@ -4,19 +4,37 @@ from __future__ import annotations
 
 import gzip
 import http.client
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 import viser
 
-from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts
+from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts, words
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.assets import asset_path
 
 SCRIPTS = sorted(asset_path("page").glob("*.js"))
 FILES = sorted(asset_path("page").glob("*.*s"))
-INDEX = Path(viser.__file__).parent / "client" / "build" / "index.html"
+CLIENT = Path(viser.__file__).parent / "client"
+INDEX = CLIENT / "build" / "index.html"
+PARAMETER = re.compile(r"""earchParams\.(?:get|has)\("(\w+)"\)|: parse\w+\("(\w+)"\)""")
+PICTURE = {  # what they change is how the lab is shown
+    "showStats",
+    "fixedDpr",
+    "logCamera",
+    "darkMode",
+    "hideViserLogo",
+    "forceOrbitOriginTool",
+    *(f"initialCamera{what}" for what in ("Position", "LookAt", "Up", "Fov", "Near", "Far")),
+}
+FOREIGN = {  # servers and files, and a title that would be the link's author's
+    "websocket",
+    "playbackPath",
+    "dummyWindowDimensions",
+    "dummyWindowTitle",
+}
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +80,8 @@ def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
         assert not any(ends in text.lower() for text in texts.values())
     kinds = [b"style" if file.suffix == ".css" else b"script" for file in FILES]
     elements = zip(kinds, texts.values(), strict=True)
-    assert our_scripts() == b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
+    ours = b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
+    assert our_scripts() == words() + ours
 
 
 @pytest.mark.parametrize(
@@ -76,3 +95,19 @@ def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
 )
 def test_scripts_come_first_in_whatever_page(page: bytes, expected: bytes) -> None:
     assert with_scripts(page, b"!").startswith(expected)
+
+
+def test_all_parameters_of_visers_page_are_known() -> None:
+    """A new one might name a server, too; address.js must know those that do."""
+    sources = [file for file in (CLIENT / "src").rglob("*.ts*") if "dock" not in file.parts]
+    text = "".join(source.read_text() for source in sources)
+    found = {name or parsed for name, parsed in PARAMETER.findall(text)}
+    assert found == (PICTURE | FOREIGN) - {"websocket"}
+    assert 'searchParamKey = "websocket"' in text
+    assert text.count("location.search") == text.count(
+        "new URLSearchParams(window.location.search)"
+    )
+    by_variable = text.count("earchParams.get(") - text.count('earchParams.get("')
+    assert by_variable == 2  # parseVec3, parseScalar
+    known = re.findall(r'"(\w+)"', (asset_path("page") / "address.js").read_text())
+    assert {*known} >= FOREIGN

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 import pytest
 from websockets import Headers
-from websockets.http11 import Request
+from websockets.http11 import Request, Response
 
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.secure_server import make_server
@@ -49,6 +49,30 @@ def test_every_response_tells_a_browser_what_it_may_do(port: int, path: str) -> 
     assert response.headers.get_all("X-Frame-Options") == ["SAMEORIGIN"]
     assert response.headers.get_all("X-Content-Type-Options") == ["nosniff"]
     assert response.getheader("Referrer-Policy") == "no-referrer"
+
+
+@pytest.mark.parametrize(
+    ("host", "sockets"),
+    [
+        ("lab.lan:8080", ["ws://lab.lan:8080", "wss://lab.lan:8080"]),
+        ("LAB.lan", ["ws://lab.lan", "wss://lab.lan"]),
+        ("[::1]:8080", []),  # a policy cannot name it; 'self' is left
+        ("evil; script-src *", []),
+        ("a b", []),
+        ("*", []),
+    ],
+)
+def test_a_page_may_connect_to_its_own_host_and_to_the_origins(
+    host: str, sockets: list[str]
+) -> None:
+    door = RequestFilter(("https://Friend.example/",), local_only=False)
+    response = Response(200, "OK", Headers())
+    door.add_headers(Request("/", Headers(Host=host)), response)
+    rules = [rule.split() for rule in response.headers["Content-Security-Policy"].split(";")]
+    (allowed,) = [rule[1:] for rule in rules if rule[0] == "connect-src"]
+    friends = ["ws://friend.example", "wss://friend.example"]
+    assert sorted(allowed) == sorted(["'self'", "blob:", "data:", *sockets, *friends])
+    assert [rule[0] for rule in rules].count("script-src") == 1
 
 
 @pytest.mark.parametrize("path", ["/", "/index.html?x=1", "/nothing", "/health"])
@@ -156,3 +180,54 @@ def test_a_connection_without_a_request_is_not_logged_before_the_first_page_eith
         assert raw.recv(1) == b""
     server.stop()
     assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
+
+
+# Requests that are none.
+
+MALFORMED = {
+    "a body": b"GET / HTTP/1.1\r\nHost: x\r\nContent-Length: 1\r\n\r\nx",
+    "a length that is no number": b"GET / HTTP/1.1\r\nHost: x\r\nContent-Length: x\r\n\r\n",
+    "chunks": b"GET / HTTP/1.1\r\nHost: x\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+    "200 headers": b"GET / HTTP/1.1\r\nHost: x\r\n" + b"a: b\r\n" * 200 + b"\r\n",
+    "a control byte": b"GET / HTTP/1.1\r\nHost: x\r\nA: b\x01\r\n\r\n",
+    "a name with a space": b"GET / HTTP/1.1\r\nHost: x\r\nA b: c\r\n\r\n",
+    "a long line": b"GET /" + b"x" * 10_000 + b" HTTP/1.1\r\n\r\n",
+    "another method": b"POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n\r\n",
+    "another version": b"GET / HTTP/1.0\r\n\r\n",
+    "no request": b"hello\r\n\r\n",
+    "binary": bytes(range(256)) + b"\r\n",
+    "a request without end": b"GET / HTTP/1.1\r\nHost: x\r\nA: ",
+    "a byte": b"G",
+}
+
+
+@pytest.mark.parametrize("text", MALFORMED.values(), ids=MALFORMED.keys())
+@pytest.mark.parametrize("bytewise", [False, True])
+def test_a_malformed_request_is_answered(port: int, text: bytes, bytewise: bool) -> None:
+    """A proxy would take a connection that is closed without an answer for a dead process."""
+    with socket.create_connection(("127.0.0.1", port), WAIT) as raw:
+        raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for part in [bytes([each]) for each in text[:300]] if bytewise else [text]:
+            raw.sendall(part)
+        raw.shutdown(socket.SHUT_WR)
+        answer = b"".join(iter(lambda: raw.recv(1 << 16), b""))
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert head.startswith(b"HTTP/1.1 400 ") and b"\r\nConnection: close" in head and not body
+    assert answer.count(b"HTTP/1.1") == 1
+
+
+def test_an_error_of_our_own_is_logged(
+    caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(logging.getLogger("websockets.server"), "filters", [])
+
+    def fails(_: str) -> str:
+        raise ZeroDivisionError("in the health report")
+
+    server = make_server(port=0, health=fails)
+    ask(server.get_port())  # viser's filter begins with the first page
+    assert ask(server.get_port(), path="/health")[0].status == 500
+    server.stop()
+    assert [type(each.exc_info[1]) for each in caplog.records if each.exc_info] == [
+        ZeroDivisionError
+    ]
