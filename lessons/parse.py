@@ -16,7 +16,7 @@ from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
-from onpath.lessons.formulas import FormulaError, reader
+from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
@@ -147,7 +147,7 @@ class _Reader:
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)
-            except FormulaError as error:
+            except TextError as error:
                 self._complain(2, str(error))
         return front, ends[1] + 1
 
@@ -226,7 +226,7 @@ class _Reader:
             return
         try:
             draft.blocks.append(rendered(block))
-        except FormulaError as error:
+        except TextError as error:
             self._complain(line, str(error))
 
     def _scene_faults(self, scene: StepSetup) -> Iterator[str]:
