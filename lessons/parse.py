@@ -36,6 +36,7 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.task_schema import Task
+from onpath.lessons.text_files import FileError, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
 from onpath.lessons.vocabulary.blocks import (
     number_faults,
@@ -85,11 +86,11 @@ def read_lesson(path: Path) -> Lesson:
     try:
         if path.stat().st_size > LARGEST:
             raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
-        text = path.read_text("utf-8-sig")  # Windows Notepad writes a byte-order mark
+        text = read_text(path)
     except OSError as error:
         raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
-    except UnicodeDecodeError as error:
-        raise LessonError([Problem(str(path), 1, f"not UTF-8 text: {error.reason}")]) from None
+    except FileError as error:
+        raise LessonError([error.problem]) from None
     return _Reader(path, text).lesson()
 
 

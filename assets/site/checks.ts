@@ -1,6 +1,6 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import { filled, type Bound, type Check, type Compare, type Robot, type Said, type Setting, type SettingCheck, type Window } from "./data"
+import { filled, type Bound, type Check, type Compare, type Only, type Robot, type Said, type Setting, type SettingCheck, type Window } from "./data"
 import { fixed, general, sum } from "./numbers"
 
 export interface Happening {
@@ -19,6 +19,8 @@ export interface RunRecord {
     happenings: Happening[]
     run: number
     settings: Record<string, Setting>
+    /** Names of the settings that are not as the step began. */
+    changed: string[]
 }
 
 export interface Verdict {
@@ -39,6 +41,7 @@ function verdict(check: Check, record: RunRecord, words: Words): Verdict {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)
     if (check.kind === "setting") return setting(check, record, words)
+    if (check.kind === "only") return only(check, record, words)
     const happens = (each: { name: string; detail: string }, wanted: { event: string; name: string }) =>
         each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
     if (check.kind === "event") {
@@ -98,6 +101,13 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
     const shown =
         typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : general(value, 4).replace(".", words["point"]!)
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
+}
+
+function only({ names, said, labels }: Only, record: RunRecord, words: Words): Verdict {
+    const others = record.changed.filter(name => !names.includes(name))
+    const key = others.length ? "check.only_changed" : "check.only"
+    const told = others.map(name => labels[name] ?? name).join(", ")
+    return { passed: !others.length, words: filled(words[key]!, { ...said, others: told }) }
 }
 
 function same(value: Setting, wanted: Setting, whole: boolean): boolean {

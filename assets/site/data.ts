@@ -85,7 +85,14 @@ export interface SettingCheck {
     labels: Record<string, string>
 }
 
-export type Check = Bound | Compare | EventCheck | Order | SettingCheck
+export interface Only {
+    kind: "only"
+    names: string[]
+    said: Said
+    labels: Record<string, string>
+}
+
+export type Check = Bound | Compare | EventCheck | Order | SettingCheck | Only
 
 export interface TaskData {
     kind: "task"

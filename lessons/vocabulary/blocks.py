@@ -8,7 +8,19 @@ from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import NumberQuestion, Option, Prediction, Sketch
-from onpath.lessons.task_schema import Better, Bound, Check, Compare, Event, Order, Setting, Task
+from onpath.lessons.task_schema import (
+    Better,
+    Bound,
+    Check,
+    Compare,
+    Event,
+    Once,
+    Only,
+    Order,
+    Setting,
+    Task,
+)
+from onpath.lessons.vocabulary.kinds import kind_faults
 from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
@@ -98,13 +110,19 @@ def _limit_faults(below: float | None, above: float | None, equals: object) -> I
 def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     """The names of a check that are unknown."""
     parameters = None if entry is None else specs(entry.parameters)
-    if isinstance(check, Setting) and check.name in BENCHES and check.equals is not None:
-        yield from one_of(str(check.equals), [*LAWS, OWN], "law")
-    others = "path", "robot", "length", *BENCHES
-    if isinstance(check, Setting) and check.name not in others and parameters is not None:
-        yield from one_of(check.name, parameters, "parameter")
+    if isinstance(check, Setting | Once) and check.equals is not None:
+        values = {"path": [*presets(), OWN], **{bench: [*LAWS, OWN] for bench in BENCHES}}
+        if check.name in values:
+            yield from one_of(str(check.equals), values[check.name], check.name)
+        elif parameters is not None and check.name in parameters:
+            yield from kind_faults(check.name, check.equals, parameters[check.name])
+    if isinstance(check, Setting | Once | Only) and parameters is not None:
+        others = ("path", "robot", *BENCHES)
+        others = (*others, "start", "wall") if isinstance(check, Only) else (*others, "length")
+        for name in check.names if isinstance(check, Only) else (check.name,):
+            yield from one_of(name, [*parameters, *others], "parameter")
     events = ()
-    if isinstance(check, Order | Event):
+    if isinstance(check, Order | Event | Once):
         events = check.events if isinstance(check, Order) else check.since
     for event in events:
         yield from one_of(event.partition(":")[0], EVENTS, "event")
