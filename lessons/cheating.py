@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from onpath.lessons.action_schema import Action, Laws, RunStart, Script, Value
 from onpath.lessons.schema import Lesson
 from onpath.lessons.task_schema import Reference
+from onpath.lessons.vocabulary.names import one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.path_design import presets
@@ -27,6 +28,8 @@ HOLD = (Action(at=1.5, hold=True), Action(at=5.0, hold=False))
 """The brake, for longer than any task of the course asks."""
 DONE = ("hold", "pull", "move", "path", "identify", "laws")
 """What a solution does, besides settings, and without which it must not pass."""
+OTHERS = ("path", "laws", "start", "settings")
+"""Names of controls other than parameters; "settings": a solution without them."""
 STARTS = {
     "start across": RunStart(across=10.0),
     "start lead": RunStart(lead=3.14),
@@ -58,6 +61,12 @@ def cheats(lesson: Lesson, index: int, reference: Reference) -> list[Cheat]:
     solution = reference.solution
     tried = [*_with_another_control(solution, entry), *_otherwise(solution, entry)]
     return [cheat for cheat in tried if cheat.control not in reference.fair]
+
+
+def fair_faults(reference: Reference, entry: RobotEntry) -> Iterator[str]:
+    """The names in `Reference.fair` that no cheat has."""
+    for name in reference.fair:
+        yield from one_of(name, [*specs(entry.parameters), *OTHERS, *DONE], "control")
 
 
 def _with_another_control(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
@@ -119,4 +128,4 @@ def _otherwise(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
                     own = replace(action, set={**(action.set or {}), name: other})
                     script = replace(solution, do=(*before, own, *after))
                     words = f"{name} = {other} in place of {value} at {action.at:g} s"
-                    yield Cheat(f"{name} = {other}", words, script)
+                    yield Cheat(name, words, script)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import singledispatch
 
@@ -54,8 +54,12 @@ class Verdict:
 
 
 def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
-    """The verdicts on all checks of a task; the task is passed when all of them are."""
-    return [verdict(check, record, words) for check in task.check]
+    """The verdicts on the checks of a task; the task is passed when all of them are.
+
+    A check that has nothing to say, an `Only` that holds, is left out.
+    """
+    verdicts = [verdict(check, record, words) for check in task.check]
+    return [each for each in verdicts if each.words]
 
 
 @singledispatch
@@ -170,13 +174,11 @@ def keeps(check: Once, record: Record) -> float | None:
 
 @verdict.register
 def _(check: Only, record: Record, words: Words) -> Verdict:
-    def labels(names: Iterable[str]) -> str:
-        return ", ".join(setting_label(name, record.parameters, words) for name in names)
-
     others = [name for name in record.changed() if name not in check.names]
-    key = "check.only_changed" if others else "check.only"
-    said = words(key, names=labels(check.names), others=labels(others))
-    return Verdict(not others, said)
+    if not others:
+        return Verdict(True, "")
+    labels = (setting_label(name, record.parameters, words) for name in others)
+    return Verdict(False, words("check.only", others=", ".join(labels)))
 
 
 @verdict.register

@@ -12,6 +12,7 @@ import msgspec
 from msgspec.structs import replace
 
 from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.cheating import fair_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
@@ -23,6 +24,7 @@ from onpath.lessons.text_files import FileError, read_text, toml_fault
 from onpath.lessons.toml_blocks import nearest
 from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
+from onpath.models.systems.catalogue import ROBOTS
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
@@ -217,6 +219,9 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
             told = f"{error}{nearest(str(error), Reference)}"
             problems.append(problem(f"task {name!r}: {told}", line_of(told, own, line)))
     for name, reference in read.items():
+        entry = ROBOTS.get(lesson.front.robot)
+        for fault in fair_faults(reference, entry) if entry else ():
+            problems.append(problem(f"{name}: fair: {fault}", begins[name]))
         for script in (reference.solution, reference.failure):
             for fault in script_faults(script, lesson.front.robot):
                 own = "\n".join(lines[begins[name] - 1 :])

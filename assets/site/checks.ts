@@ -34,7 +34,7 @@ const INSTANT = 1e-6 // [s]
 const BAND = 0.05 // of the largest value, within which a quantity has settled
 
 export function judge(checks: Check[], record: RunRecord, words: Words): Verdict[] {
-    return checks.map(check => verdict(check, record, words))
+    return checks.map(check => verdict(check, record, words)).filter(each => each.words)
 }
 
 function verdict(check: Check, record: RunRecord, words: Words): Verdict {
@@ -103,11 +103,12 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
 }
 
-function only({ names, said, labels }: Only, record: RunRecord, words: Words): Verdict {
+/** Nothing is said of what holds. */
+function only({ names, labels }: Only, record: RunRecord, words: Words): Verdict {
     const others = record.changed.filter(name => !names.includes(name))
-    const key = others.length ? "check.only_changed" : "check.only"
+    if (!others.length) return { passed: true, words: "" }
     const told = others.map(name => labels[name] ?? name).join(", ")
-    return { passed: !others.length, words: filled(words[key]!, { ...said, others: told }) }
+    return { passed: false, words: filled(words["check.only"]!, { others: told }) }
 }
 
 function same(value: Setting, wanted: Setting, whole: boolean): boolean {

@@ -88,7 +88,6 @@ export interface SettingCheck {
 export interface Only {
     kind: "only"
     names: string[]
-    said: Said
     labels: Record<string, string>
 }
 

@@ -54,8 +54,7 @@ check-robot = robot
 check-start = start
 check-wall = wall
 check-own_path = your own
-check-only = Only this is changed: { $names }
-check-only_changed = Changed besides { $names }: { $others }. Set it back, or open the step again
+check-only = Changed besides what the task is about: { $others }. Set it back, or open the step again
 check-once = { $robot }: while { $setting } is { $equals }, { $stat }{ $during } { $value } { $unit } for { $least } s; wanted: { $wanted }
 check-stopped = { $robot } has stopped: press Reset and try again
 

@@ -73,7 +73,7 @@ def task_faults(task: Task, robot: str) -> Iterator[str]:
     """The faults of a task."""
     if not task.id.replace("-", "").isalnum():
         yield f"id {task.id!r}: letters, digits and hyphens"
-    if not task.check:
+    if all(isinstance(check, Only) for check in task.check):
         yield f"task {task.id!r} has no check"
     if task.best:
         yield from one_of(task.best, QUANTITIES, "quantity")
@@ -91,7 +91,8 @@ def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     if isinstance(check, Better) and not 0 < check.share <= 1:
         yield f"share = {check.share:g}: above 0, and at most 1"
     if isinstance(check, Bound | Setting):
-        yield from _limit_faults(check.below, check.above, getattr(check, "equals", None))
+        equals = check.equals if isinstance(check, Setting) else None
+        yield from _limit_faults(check.below, check.above, equals)
     yield from _name_faults(check, entry)
 
 

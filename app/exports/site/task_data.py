@@ -35,8 +35,7 @@ SAID = {
     "check.event": ("event", "have", "need"),
     "check.order": ("events",),
     "check.setting": ("name", "value", "wanted"),
-    "check.only": ("names",),
-    "check.only_changed": ("names", "others"),
+    "check.only": ("others",),
     "check.stopped": ("robot",),
 }
 """Messages, and the values that the page fills in."""
@@ -112,10 +111,8 @@ def _(check: Order, parameters: Parameters, robots: dict[Any, str], words: Words
 
 @_more.register
 def _(check: Only, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
-    names = ", ".join(setting_label(name, parameters, words) for name in check.names)
     every = (*specs(parameters), *DEFAULT_LAWS, "path", "robot")
-    labels = {name: setting_label(name, parameters, words) for name in every}
-    return {"said": {"names": names}, "labels": labels}
+    return {"labels": {name: setting_label(name, parameters, words) for name in every}}
 
 
 @_more.register

@@ -13,12 +13,13 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.cheating import Cheat, cheats
-from onpath.lessons.checks import Verdict
+from onpath.lessons.checks import verdict
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.problems import Problem
+from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Step
-from onpath.lessons.task_schema import Event, Setting, Task
+from onpath.lessons.task_schema import Event, Only, Setting, Task
 from onpath.lessons.words import DEFAULT, ENGLISH
 
 FRAME = 1 / 30  # [s]
@@ -105,13 +106,14 @@ class _Trying:
         record = record_of(lab.session, self._begin)
         verdicts = judged(task, record, self._earlier, ENGLISH)
         self.passed = not refused and all(verdict.passed for verdict in verdicts)
-        self.over = self.passed or refused or lab.script is None or self._is_lost(verdicts)
+        self.over = self.passed or refused or lab.script is None or self._is_lost(record)
 
-    def _is_lost(self, verdicts: list[Verdict]) -> bool:
+    def _is_lost(self, record: Record) -> bool:
         """Whether a check fails that only another action could satisfy."""
-        if self.lab.session.time <= self._last or self.lab.session.run_number != self._begin.run:
+        if self.lab.session.time <= self._last or record.run != self._begin.run:
             return False
         return any(
-            not verdict.passed and isinstance(check, Setting | Event)
-            for check, verdict in zip(self.attempt.task.check, verdicts, strict=True)
+            not verdict(check, record, ENGLISH).passed
+            for check in self.attempt.task.check
+            if isinstance(check, Setting | Event | Only)
         )
