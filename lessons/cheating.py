@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from onpath.lessons.action_schema import Action, Laws, RunStart, Script, Value
 from onpath.lessons.schema import Lesson
-from onpath.lessons.task_schema import Reference
+from onpath.lessons.task_schema import Only, Reference, Task
 from onpath.lessons.vocabulary.names import one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import LAWS
@@ -54,13 +54,23 @@ class Cheat:
     script: Script
 
 
-def cheats(lesson: Lesson, index: int, reference: Reference) -> list[Cheat]:
-    """All cheats at a task of a step that its author has not declared fair."""
+def cheats(lesson: Lesson, index: int, task: Task, reference: Reference) -> list[Cheat]:
+    """All cheats at a task of a step but those that are declared fair, or cannot pass an `Only`."""
     scene = lesson.scene_at(index)
     entry = ROBOTS[scene.robot or lesson.front.robot]
     solution = reference.solution
-    tried = [*_with_another_control(solution, entry), *_otherwise(solution, entry)]
+    others = [each for each in _with_another_control(solution, entry) if _may_pass(each, task)]
+    tried = [*others, *_otherwise(solution, entry)]
     return [cheat for cheat in tried if cheat.control not in reference.fair]
+
+
+def _may_pass(cheat: Cheat, task: Task) -> bool:
+    """Whether no check forbids the control of a cheat."""
+    if cheat.control == "settings":
+        return True
+    names = BENCHES if cheat.control == "laws" else (cheat.control,)
+    only = [check.names for check in task.check if isinstance(check, Only)]
+    return all(set(names) & set(allowed) for allowed in only)
 
 
 def fair_faults(reference: Reference, entry: RobotEntry) -> Iterator[str]:

@@ -65,7 +65,7 @@ def _attempts(course: Course, folder: Path) -> Iterator[Attempt]:
         references = read_references(lesson, file)[0]
         for index, step in enumerate(lesson.steps):
             for task in step.tasks():
-                for cheat in cheats(lesson, index, references[task.id]):
+                for cheat in cheats(lesson, index, task, references[task.id]):
                     yield Attempt(lesson, step, task, cheat, file)
 
 
@@ -97,6 +97,8 @@ class _Trying:
         self._earlier, self._begin = EarlierRun(), Beginning.now(self.lab.session)
         script = attempt.cheat.script
         self._last = max((action.at for action in script.do), default=0.0)
+        changes = [action.at for action in script.do if action.what not in ("hold", "pull")]
+        self._settled = max(changes, default=0.0)
         self.lab.script, self.lab.session.running = player_of(script), True
 
     def look(self) -> None:
@@ -110,10 +112,9 @@ class _Trying:
 
     def _is_lost(self, record: Record) -> bool:
         """Whether a check fails that only another action could satisfy."""
-        if self.lab.session.time <= self._last or record.run != self._begin.run:
+        if record.run != self._begin.run:
             return False
-        return any(
-            not verdict(check, record, ENGLISH).passed
-            for check in self.attempt.task.check
-            if isinstance(check, Setting | Event | Only)
-        )
+        final = Setting | Only if record.end > self._settled else ()
+        final = Setting | Only | Event if record.end > self._last else final
+        checks = [check for check in self.attempt.task.check if isinstance(check, final)]
+        return not all(verdict(check, record, ENGLISH).passed for check in checks)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from onpath.app.cli.main import run_command
 from onpath.app.lab.dry_runs.course_check import lab_at, solved
@@ -13,6 +14,7 @@ from onpath.lessons import cheating
 from onpath.lessons.action_schema import Action, Script
 from onpath.lessons.cheating import cheats
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
+from onpath.lessons.task_schema import Only
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
 from onpath.models.systems.parameters import specs
@@ -87,13 +89,13 @@ def test_no_cheat_passes_a_task_of_the_course(name: str) -> None:
     assert run_command(["lessons", "check", str(BUILT_IN / name), "--cheat"]) == 0
 
 
-def test_every_control_is_tried_at_its_extremes_unless_the_solution_uses_it() -> None:
+def test_every_control_is_tried_at_its_extremes_unless_the_task_forbids_it() -> None:
     name = "06b-friction-and-the-integral"
     lesson = COURSE.lesson(name, "en")
     references = read_references(lesson, BUILT_IN / name / REFERENCE)[0]
-    index = next(i for i, step in enumerate(lesson.steps) if step.tasks())
-    reference = references[lesson.steps[index].tasks()[0].id]
-    tried = cheats(lesson, index, reference)
+    index, task = next((i, step.tasks()[0]) for i, step in enumerate(lesson.steps) if step.tasks())
+    free = replace(task, check=tuple(c for c in task.check if not isinstance(c, Only)))
+    tried = cheats(lesson, index, free, references[task.id])
     known = specs(FIVE_BAR.parameters)
     assert {cheat.control for cheat in tried} == {*known, "path", "laws", "start"} - {"K1", "K2"}
     values = {
@@ -105,6 +107,7 @@ def test_every_control_is_tried_at_its_extremes_unless_the_solution_uses_it() ->
     }
     spec = known["speed"]
     assert values == {spec.low, 0.0, spec.high}
+    assert {cheat.control for cheat in cheats(lesson, index, task, references[task.id])} == {"K3"}
 
 
 TASK = LESSON.replace(
