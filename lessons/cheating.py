@@ -119,19 +119,17 @@ def _extremes(spec: Spec) -> tuple[Value, ...]:
 
 
 def _otherwise(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
-    """A solution in which one thing is left out, or another option chosen."""
+    """A solution without one kind of action, with a preset path, or with another option."""
+    for what in dict.fromkeys(action.what for action in solution.do if action.what in DONE):
+        others = tuple(action for action in solution.do if action.what != what)
+        yield Cheat(what, f"the solution without {what}", replace(solution, do=others))
+        for name in presets() if what == "move" else ():
+            path = Action(path=name)
+            script = replace(solution, do=(path, *others))
+            yield Cheat("path", f"path = {name} in place of {what}", script)
     known = specs(entry.parameters)
     for place, action in enumerate(solution.do):
         before, after = solution.do[:place], solution.do[place + 1 :]
-        what = action.what
-        if what in DONE and action.hold is not False:
-            script = replace(solution, do=(*before, *after))
-            yield Cheat(what, f"the solution without {what} at {action.at:g} s", script)
-        if what == "move":
-            for name in presets():
-                path = Action(at=action.at, path=name)
-                others = tuple(each for each in (*before, path, *after) if each.move is None)
-                yield Cheat("path", f"path = {name} in place of move", replace(solution, do=others))
         for name, value in (action.set or {}).items():
             for other in known[name].options if name in known else ():
                 if str(other) != str(value):

@@ -219,14 +219,17 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
             told = f"{error}{nearest(str(error), Reference)}"
             problems.append(problem(f"task {name!r}: {told}", line_of(told, own, line)))
     for name, reference in read.items():
-        entry = ROBOTS.get(lesson.front.robot)
-        for fault in fair_faults(reference, entry) if entry else ():
-            problems.append(problem(f"{name}: fair: {fault}", begins[name]))
-        for script in (reference.solution, reference.failure):
-            for fault in script_faults(script, lesson.front.robot):
-                own = "\n".join(lines[begins[name] - 1 :])
-                problems.append(problem(f"{name}: {fault}", line_of(fault, own, begins[name])))
+        own = "\n".join(lines[begins[name] - 1 :])
+        for fault in _reference_faults(reference, lesson.front.robot):
+            problems.append(problem(f"{name}: {fault}", line_of(fault, own, begins[name])))
     return read, problems
+
+
+def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
+    if robot in ROBOTS:
+        yield from fair_faults(reference, ROBOTS[robot])
+    for script in (reference.solution, reference.failure):
+        yield from script_faults(script, robot)
 
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:

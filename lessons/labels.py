@@ -9,7 +9,13 @@ from onpath.models.control.laws.own import OWN
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, specs
 
-OTHERS = {name: f"check.{name}" for name in ("path", "robot", "length", "start", "wall")}
+OTHERS = {
+    "path": "check.path",
+    "robot": "check.robot",
+    "length": "check.length",
+    "start": "check.start",
+    "wall": "check.wall",
+}
 """Settings other than parameters and laws: name -> key of its label."""
 
 

@@ -42,8 +42,7 @@ class CheckLessons:
     folder: Annotated[Path | None, tyro.conf.Positional] = None
     """Folder of lessons, or of one lesson; by default the built-in ones."""
     cheat: bool = False
-    """Try to pass every task without what it asks: minutes for a lesson, a quarter of an hour for
-    the built-in course."""
+    """Try to pass every task without what it asks, which takes minutes."""
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
