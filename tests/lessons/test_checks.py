@@ -211,7 +211,7 @@ def test_a_bound_was_kept_once_if_any_run_with_the_setting_kept_it(course: list[
         for count in range(1, len(run.values) + 1):
             shown = run.values[:count]
             record = Record(
-                times=np.arange(count) * 0.01,
+                times=np.array([0.01 * i for i in range(count)]),
                 values={"tracker": {}, "follower": {"distance": np.array(shown)}},
                 happenings=happenings,
                 run=number,

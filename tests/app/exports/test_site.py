@@ -24,7 +24,7 @@ from tests.support.site_export import LESSON, exported_site
 
 pytestmark = pytest.mark.thorough
 
-LINES = 1800
+LINES = 1900
 FIGURE = 600_000  # [B]
 EVENTS = re.compile(r"^on[a-z]+$")
 
