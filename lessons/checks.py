@@ -20,22 +20,25 @@ from onpath.lessons.measures.responses import (
     settling_time,
     unit_of,
 )
-from onpath.lessons.record import Mask, Record
+from onpath.lessons.record import Happening, Mask, Record
 from onpath.lessons.task_schema import (
     Better,
     Bound,
     Check,
     Compare,
     Event,
+    Once,
+    Only,
     Order,
     Setting,
     Stat,
     Task,
     Window,
 )
-from onpath.lessons.words import Words
+from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
-from onpath.models.control.laws.own import short_name
+from onpath.models.control.laws.own import OWN, short_name
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.parameters import Parameters, specs
 
 TINY = 1e-9  # smallest divisor of a ratio
@@ -51,8 +54,12 @@ class Verdict:
 
 
 def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
-    """The verdicts on all checks of a task; the task is passed when all of them are."""
-    return [verdict(check, record, words) for check in task.check]
+    """The verdicts on the checks of a task; the task is passed when all of them are.
+
+    A check that has nothing to say, an `Only` that holds, is left out.
+    """
+    verdicts = [verdict(check, record, words) for check in task.check]
+    return [each for each in verdicts if each.words]
 
 
 @singledispatch
@@ -127,8 +134,8 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
     return Verdict(passed, said + seconds)
 
 
-def measured(check: Better, record: Record) -> float | None:
-    """What a run must be better than in the next one; None if it was too short for that."""
+def measured(check: Better | Once, record: Record) -> float | None:
+    """The statistic of a check in a run; None if it was too short for that."""
     chosen = record.chosen(check.robot, check)
     if record.stopped(check.robot) or record.seconds(chosen) < check.least - INSTANT:
         return None
@@ -136,13 +143,52 @@ def measured(check: Better, record: Record) -> float | None:
 
 
 @verdict.register
+def _(check: Once, record: Record, words: Words) -> Verdict:
+    setting = Setting(name=check.name, equals=check.equals)
+    robots = robot_names(record.laws, words)
+    kept, now = record.before.get(check), None
+    if kept is None and verdict(setting, record, words).passed:
+        now = statistic(
+            record, check.robot, check.quantity, check.stat, record.chosen(check.robot, check)
+        )
+    shown = now if kept is None else kept
+    names = bound_words(check, robots, words)
+    said = words(
+        "check.once",
+        **names,
+        value="–" if shown is None else _rounded(shown, check.below, check.above, words),
+        setting=setting_label(check.name, record.parameters, words),
+        equals=value_label(check.name, check.equals, words),
+        least=words.number(check.least),
+    )
+    return Verdict(kept is not None, said)
+
+
+def keeps(check: Once, record: Record) -> float | None:
+    """The value with which a run keeps a bound while the setting is as it should be, or None."""
+    if not verdict(Setting(name=check.name, equals=check.equals), record, ENGLISH).passed:
+        return None
+    value = measured(check, record)
+    return value if value is not None and _within(value, check.below, check.above) else None
+
+
+@verdict.register
+def _(check: Only, record: Record, words: Words) -> Verdict:
+    others = [name for name in record.changed() if name not in check.names]
+    if not others:
+        return Verdict(True, "")
+    labels = (setting_label(name, record.parameters, words) for name in others)
+    return Verdict(False, words("check.only", others=", ".join(labels)))
+
+
+@verdict.register
 def _(check: Event, record: Record, words: Words) -> Verdict:
     have = 0
     undone = [event_named(text) for text in check.since]
     for event in record.happenings:
-        if any(_matches(event.name, event.detail, each) for each in undone):
+        if any(happens(event, each) for each in undone):
             have = 0
-        have += _matches(event.name, event.detail, check)
+        have += happens(event, check)
     said = words(
         "check.event",
         event=event_words(check, record.parameters, words),
@@ -157,7 +203,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
     wanted = [event_named(text) for text in check.events]
     found = 0
     for event in record.happenings:
-        if found < len(wanted) and _matches(event.name, event.detail, wanted[found]):
+        if found < len(wanted) and happens(event, wanted[found]):
             found += 1
     marked = [
         ("✓ " if i < found else "") + event_words(event, record.parameters, words)
@@ -170,6 +216,7 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
     own |= {"length": record.length()}
+    own["path"] = record.path if record.path in presets() else OWN
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
     equals, wanted = setting_wanted(check, record.parameters, words)
@@ -243,9 +290,9 @@ def event_named(text: str) -> Event:
     return msgspec.convert({"kind": "event", "event": event, "name": name}, Event)
 
 
-def _matches(name: str, detail: str, wanted: Event) -> bool:
-    """Whether an event with this name and detail counts as the wanted one."""
-    return name == wanted.event and wanted.name in ("", detail)
+def happens(event: Happening, wanted: Event) -> bool:
+    """Whether an event counts as the wanted one."""
+    return event.name == wanted.event and wanted.name in ("", event.detail)
 
 
 def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple[bool, str]:

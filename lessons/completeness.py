@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Iterator, Sequence
 
-from markupsafe import Markup
-
+from onpath.lessons.safe_html import safe
 from onpath.lessons.schema import (
     Choice,
     Front,
@@ -79,7 +78,7 @@ def order_faults(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterato
 def first_page_faults(front: Front, steps: Sequence[Step]) -> Iterator[str]:
     """The faults of facts about a lesson that tell what a prediction hides."""
     for name in ("title", "summary", "needs", "goals"):
-        words = Markup(getattr(front, name)).striptags()
+        words = safe(getattr(front, name)).striptags()
         for step in steps:
             for told in (each for asked in step.predictions() for each in asked.hidden):
                 if _says(words, told):
@@ -104,7 +103,7 @@ def _told_before(told: str, steps: Sequence[Step], asked: Step) -> Iterator[tupl
     """The steps up to a prediction whose text tells what it hides."""
     for step in steps:
         blocks = [block.html for block in step.blocks if isinstance(block, Text)]
-        words = Markup(FOLDED.sub(" ", "".join(blocks))).striptags()
+        words = safe(FOLDED.sub(" ", "".join(blocks))).striptags()
         if _says(f"{step.title} {words}", told):
             yield (
                 step,

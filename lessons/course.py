@@ -12,6 +12,7 @@ import msgspec
 from msgspec.structs import replace
 
 from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.cheating import fair_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError, Problem, line_of, near
@@ -19,9 +20,11 @@ from onpath.lessons.routes import FOLDER as ROUTES
 from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.text_files import FileError, read_text, toml_fault
 from onpath.lessons.toml_blocks import nearest
 from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
+from onpath.models.systems.catalogue import ROBOTS
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
@@ -92,7 +95,9 @@ def read_course(
     lessons, routes, tests = dict(first.lessons), first.routes, first.tests
     problems: list[Problem] = []
     for folder in folders:
-        found = sorted({file.parent for file in folder.glob("*/*.md") if file.stem != "README"})
+        found = sorted(
+            {file.parent for file in folder.glob("[!.]*/[!.]*.md") if file.stem != "README"}
+        )
         if not found:
             text = "no lessons: a lesson is a folder in it with en.md"
             if _is_lesson(folder):
@@ -152,7 +157,7 @@ def read_versions(home: Path) -> tuple[dict[str, Lesson], list[Problem]]:
     """
     versions: dict[str, Lesson] = {}
     problems: list[Problem] = []
-    for file in sorted(home.glob("*.md"), key=lambda f: (f.stem != DEFAULT, f.stem)):
+    for file in sorted(home.glob("[!.]*.md"), key=lambda f: (f.stem != DEFAULT, f.stem)):
         if file.stem == "README":
             continue
         if not LANGUAGE.fullmatch(file.stem):
@@ -184,30 +189,47 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
     def problem(text: str, line: int = 1) -> Problem:
         return Problem(str(file), line, text)
 
+    if not file.exists():
+        return {}, [problem("there must be one")]
+    content = ""
     try:
-        content = file.read_text("utf-8-sig")
+        content = read_text(file)
         tables = tomllib.loads(content)
-    except (OSError, ValueError) as error:
-        text = "there must be one" if isinstance(error, FileNotFoundError) else str(error)
-        return {}, [problem(text)]
+    except FileError as error:
+        return {}, [error.problem]
+    except tomllib.TOMLDecodeError as error:
+        below, fault = toml_fault(error, content)
+        return {}, [problem(fault, 1 + below)]
     ids = [task.id for task in lesson.tasks()]
     problems = [problem(f"no solution of task {task!r}") for task in ids if task not in tables]
     read: dict[str, Reference] = {}
+    lines = content.split("\n")
+    begins = {
+        name: next((i for i, each in enumerate(lines, 1) if f"[{name}" in each), 1)
+        for name in tables
+    }
     for name, table in tables.items():
-        line = next((i for i, each in enumerate(content.split("\n"), 1) if f"[{name}" in each), 1)
+        line = begins[name]
         if name not in ids:
             problems.append(problem(f"there is no task {name!r}{near(name, ids)}", line))
         try:
             read[name] = msgspec.convert(table, Reference)
         except msgspec.ValidationError as error:
-            own = "\n".join(content.split("\n")[line - 1 :])
+            own = "\n".join(lines[line - 1 :])
             told = f"{error}{nearest(str(error), Reference)}"
             problems.append(problem(f"task {name!r}: {told}", line_of(told, own, line)))
     for name, reference in read.items():
-        for script in (reference.solution, reference.failure):
-            faults = script_faults(script, lesson.front.robot)
-            problems += [problem(f"{name}: {fault}") for fault in faults]
+        own = "\n".join(lines[begins[name] - 1 :])
+        for fault in _reference_faults(reference, lesson.front.robot):
+            problems.append(problem(f"{name}: {fault}", line_of(fault, own, begins[name])))
     return read, problems
+
+
+def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
+    if robot in ROBOTS:
+        yield from fair_faults(reference, ROBOTS[robot])
+    for script in (reference.solution, reference.failure):
+        yield from script_faults(script, robot)
 
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
@@ -222,7 +244,7 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
         yield Problem(str(file), 1, text)
     if first.front.robot != other.front.robot:
         robots = f"robot is {other.front.robot!r}, and {first.front.robot!r} in {first.language}.md"
-        front = file.read_text("utf-8-sig").partition("\n+++")[0]
+        front = read_text(file).partition("\n+++")[0]
         yield Problem(str(file), line_of(robots, front, 1), robots)
     for own, theirs in zip(first.steps, other.steps, strict=False):
         ours, others = _structure(own), _structure(theirs)

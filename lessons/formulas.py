@@ -1,21 +1,27 @@
-"""Converts Markdown to safe HTML: typed HTML is escaped, LaTeX becomes MathML."""
+"""Converts Markdown to safe HTML: typed HTML is escaped, LaTeX becomes MathML.
+
+All of it leaves through `onpath.lessons.safe_html`.
+"""
 
 from __future__ import annotations
 
 import base64
+import html
 import re
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.etree.ElementTree import tostring
 from xml.parsers.expat import ExpatError, ParserCreate
 
-from latex2mathml.converter import convert
+from latex2mathml.converter import convert_to_element
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
+from onpath.lessons.safe_html import refused, safe
 from onpath.lessons.vocabulary.latex import brace_faults, latex_faults
 
 MIME = {
@@ -25,14 +31,14 @@ MIME = {
     ".jpeg": "image/jpeg",
     ".webp": "image/webp",
 }
-COMMA = re.compile(r"<mn>(\d+)</mn><mrow><mo>&#x0002C;</mo></mrow><mn>(\d+)</mn>")
+COMMA = re.compile(r"<mn>(\d+)</mn><mrow><mo>,</mo></mrow><mn>(\d+)</mn>")
 """A decimal comma, 0{,}5 in LaTeX, as the converter writes it: an operator with space around it."""
 LARGEST = 400_000
 """Largest size of a picture, [B]."""
 
 
-class FormulaError(ValueError):
-    """LaTeX that cannot be converted."""
+class TextError(ValueError):
+    """A formula that cannot be converted, or a link or picture that must not be shown."""
 
 
 def mathml(latex: str, options: dict[str, Any]) -> str:
@@ -43,18 +49,25 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
         options: `display_mode` for a formula on a line of its own.
 
     Raises:
-        FormulaError: the LaTeX cannot be converted.
+        TextError: the LaTeX cannot be converted.
     """
-    display = "block" if options.get("display_mode") else "inline"
     if faults := list(brace_faults(latex)):
-        raise FormulaError(f"formula {latex!r}: {'; '.join(faults)}")
+        raise TextError(f"formula {latex!r}: {'; '.join(faults)}")
     try:
-        written = convert(latex, display=display)
+        written = _converted(latex, "block" if options.get("display_mode") else "inline")
     except Exception as error:  # the library raises many kinds
-        raise FormulaError(f"formula {latex!r}: {error or type(error).__name__}") from None
-    if faults := list(latex_faults(latex, written)):
-        raise FormulaError(f"formula {latex!r}: {'; '.join(faults)}")
+        raise TextError(f"formula {latex!r}: {error or type(error).__name__}") from None
+    if faults := [*latex_faults(latex, written), *refused(written)]:
+        raise TextError(f"formula {latex!r}: {'; '.join(faults)}")
     return COMMA.sub(r"<mn>\1,\2</mn>", written)
+
+
+def _converted(latex: str, display: str) -> str:
+    """MathML in which every text is text: the library's own writer lets `<` in \\text through."""
+    formula = convert_to_element(latex, display=display)
+    for element in formula.iter():
+        element.text = html.unescape(element.text or "")  # it writes symbols as &#x003B8;
+    return tostring(formula, encoding="unicode")
 
 
 @cache
@@ -76,28 +89,34 @@ def _table_close(*_: object) -> str:
 
 
 def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:
-    """The HTML of parsed Markdown; it is markup, since `reader` lets no HTML through.
+    """The HTML of parsed Markdown.
 
     Raises:
-        FormulaError: see `mathml`.
+        TextError: see `mathml`; or there is a link or a picture that `safe` would remove.
     """
-    return Markup(markdown.renderer.render(tokens, markdown.options, {}))
+    written = markdown.renderer.render(tokens, markdown.options, {})
+    if faults := list(refused(written)):
+        raise TextError("; ".join(faults))
+    return safe(written)
 
 
 def folded(title: str, content: Markup) -> Markup:
     """Content that is shown when its title is pressed."""
-    summary = Markup("<summary>{}</summary>").format(title)
-    return Markup("<details>{}{}</details>").format(summary, content)
+    return safe(f"<details><summary>{html.escape(title)}</summary>{content}</details>")
 
 
 def to_html(text: str) -> Markup:
     """The HTML of a short text such as a question or a hint; a single paragraph loses its <p>.
 
     Raises:
-        FormulaError: see `mathml`.
+        TextError: see `render`; or there is a picture, whose place is the text of a step.
     """
     markdown = reader()
     tokens = markdown.parse(text)
+    for child in (child for token in tokens for child in token.children or ()):
+        if child.type == "image":
+            source = child.attrGet("src")
+            raise TextError(f"picture {source!r}: a picture stands in the text of a step")
     if len(tokens) == 3 and tokens[0].type == "paragraph_open":
         tokens = tokens[1:2]
     return render(markdown, tokens)

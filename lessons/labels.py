@@ -5,15 +5,22 @@ from __future__ import annotations
 from onpath.lessons.benches import law_label
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.laws.own import OWN
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, specs
 
-OTHERS = {"path": "check.path", "robot": "check.robot", "length": "check.length"}
+OTHERS = {
+    "path": "check.path",
+    "robot": "check.robot",
+    "length": "check.length",
+    "start": "check.start",
+    "wall": "check.wall",
+}
 """Settings other than parameters and laws: name -> key of its label."""
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
-    """Displayed name of a setting: a parameter, path, robot, length, or the law of a bench."""
+    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a bench."""
     spec = specs(parameters).get(name)
     if spec is not None:
         return words.get(f"parameter.{name}.label", spec.label)
@@ -28,7 +35,7 @@ def value_label(name: str, value: object, words: Words) -> str:
     if name in DEFAULT_LAWS:
         return law_label(text, words)
     if name == "path":
-        return words.get(f"path.{text}", text)
+        return words("check.own_path") if text == OWN else words.get(f"path.{text}", text)
     if name == "robot" and text in ROBOTS:
         return words.get(f"machine.{text}.label", ROBOTS[text].label)
     return words.get(f"parameter.{name}.option.{text}", text)

@@ -16,7 +16,7 @@ from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
-from onpath.lessons.formulas import FormulaError, reader
+from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import keys_of
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
@@ -36,6 +36,7 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.task_schema import Task
+from onpath.lessons.text_files import FileError, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
 from onpath.lessons.vocabulary.blocks import (
     number_faults,
@@ -85,11 +86,11 @@ def read_lesson(path: Path) -> Lesson:
     try:
         if path.stat().st_size > LARGEST:
             raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
-        text = path.read_text("utf-8-sig")  # Windows Notepad writes a byte-order mark
+        text = read_text(path)
     except OSError as error:
         raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
-    except UnicodeDecodeError as error:
-        raise LessonError([Problem(str(path), 1, f"not UTF-8 text: {error.reason}")]) from None
+    except FileError as error:
+        raise LessonError([error.problem]) from None
     return _Reader(path, text).lesson()
 
 
@@ -147,7 +148,7 @@ class _Reader:
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)
-            except FormulaError as error:
+            except TextError as error:
                 self._complain(2, str(error))
         return front, ends[1] + 1
 
@@ -226,7 +227,7 @@ class _Reader:
             return
         try:
             draft.blocks.append(rendered(block))
-        except FormulaError as error:
+        except TextError as error:
             self._complain(line, str(error))
 
     def _scene_faults(self, scene: StepSetup) -> Iterator[str]:

@@ -14,7 +14,7 @@ from markupsafe import Markup
 
 from onpath.lessons.action_schema import Action
 from onpath.lessons.adaptive.own_numbers import own_faults
-from onpath.lessons.formulas import FormulaError, embedded, folded, render
+from onpath.lessons.formulas import TextError, embedded, folded, render
 from onpath.lessons.links import SCHEME, SIMPLE, read_link
 from onpath.lessons.problems import near
 from onpath.lessons.schema import LabLink, Text
@@ -30,6 +30,17 @@ HTML = re.compile(
 """Typed tags; they are shown, which nobody wants."""
 CODE = re.compile(r"`[^`]*`|(?<!\\)\$[^$]*\$|<https?://[^\s<>]*>")
 """Where a block of TOML has code, a formula or an address, in which `<` is no tag."""
+
+
+ELSEWHERE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|[/\\]")
+"""How addresses begin that are no file of the lesson."""
+OWN = "a picture is a file in the lesson's folder"
+
+
+NO_LINK = re.compile(
+    r"\]\(\s*<?((?:javascript:|vbscript:|file:|data:(?!image/))[^\s)]{0,40})", re.IGNORECASE
+)
+"""What the parser takes for no address, and shows as it is typed."""
 
 
 @dataclass(slots=True)
@@ -71,7 +82,7 @@ def read_prose(
         prose.faults += [(below, fault) for fault in faults]
     try:
         prose.html = render(markdown, tokens)
-    except FormulaError as error:
+    except TextError as error:
         prose.faults.append((0, str(error)))
         return prose
     if prose.links and not _has_prose(tokens):
@@ -85,6 +96,8 @@ def text_faults(text: str) -> Iterator[str]:
     """What is wrong with the words of a text in Markdown, apart from formulas that can be read."""
     if match := HTML.search(text):
         yield f"{match[0]}: HTML is shown as it is typed; write Markdown, or `{match[0]}` as code"
+    if match := NO_LINK.search(text):
+        yield f"{match[1]!r}: an address begins with https:// or {SCHEME}, and {OWN}"
     yield from own_faults(text)
 
 
@@ -129,14 +142,20 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
         source = str(image.attrGet("src") or "")
         if not image.content.strip():
             yield f"picture {source!r}: say what it shows, for those who cannot see it: ![…](…)"
+        if "{{" in image.content:
+            yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
         picture = (home / source).resolve()
         try:
+            if ELSEWHERE.match(source):
+                raise ValueError(f"picture {source[:40]!r}: {OWN}")
             if not picture.is_relative_to(home.resolve()):
                 raise ValueError(f"picture {source!r} is not in the lesson's folder")
             image.attrSet("src", embedded(picture))
         except OSError:
-            yield f"no picture {source!r}"
+            image.type = "text"
+            yield f"no picture {source!r}: {OWN}"
         except ValueError as error:
+            image.type = "text"
             yield str(error)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.task_schema import Better, Window
+from onpath.lessons.task_schema import Better, Once, Window
 from onpath.models.arrays import Array
 from onpath.models.systems.parameters import Parameters
 
@@ -70,7 +70,8 @@ class Record:
         path, robot: names of the path and of the robot model.
         laws: current control law of each bench; a bench without one has that of a new lab.
         length: measures the path, [mm].
-        before: what the run before this one must be better than; see `lessons.checks.measured`.
+        changed: names the settings that differ from the step's set-up, as in `Only`.
+        before: what was measured earlier; see `lessons.measures.earlier_run`.
     """
 
     times: Array
@@ -83,7 +84,8 @@ class Record:
     robot: str = "five_bar"
     laws: dict[str, str] = field(default_factory=dict[str, str])
     length: Callable[[], float] = float
-    before: Mapping[Better, float] = field(default_factory=dict[Better, float])
+    changed: Callable[[], tuple[str, ...]] = tuple
+    before: Mapping[Better | Once, float] = field(default_factory=dict[Better | Once, float])
     _masks: dict[tuple[RobotName, str], Mask] = field(
         default_factory=dict[tuple[RobotName, str], Mask]
     )

@@ -18,7 +18,7 @@ def rendered(part: Any) -> Any:
     """The same part with its texts as HTML.
 
     Raises:
-        FormulaError: LaTeX that cannot be converted.
+        TextError: see `onpath.lessons.formulas.to_html`.
         TypeError: no part of a lesson.
     """
     raise TypeError(f"no part of a lesson: {part!r}")

@@ -12,6 +12,7 @@ import msgspec
 from onpath.lessons.action_schema import Data
 from onpath.lessons.problems import Problem, line_of
 from onpath.lessons.schema import Lesson
+from onpath.lessons.text_files import FileError, read_text
 from onpath.lessons.toml_blocks import read_toml
 from onpath.lessons.words import DEFAULT
 from onpath.models.systems.parameter_specs import unknown_name
@@ -90,16 +91,16 @@ def read_routes(folder: Path, lessons: Lessons | None = None) -> ReadRoutes:
         lessons: of the course; None: the routes are known to be sound, and not checked.
     """
     read = ReadRoutes({}, [])
-    for file in sorted((folder / FOLDER).glob("*.toml")):
+    for file in sorted((folder / FOLDER).glob("[!.]*.toml")):
         found: list[Problem] = []
 
         def complain(line: int, text: str, file: Path = file, found: list[Problem] = found) -> None:
             found.append(Problem(str(file), line, text))
 
         try:
-            content = file.read_text("utf-8-sig")
-        except (OSError, UnicodeDecodeError) as error:
-            read.problems.append(Problem(str(file), 1, str(error)))
+            content = read_text(file)
+        except FileError as error:
+            read.problems.append(error.problem)
             continue
         route = read_toml(content, 1, Route, complain)
         if route is not None and lessons is not None:

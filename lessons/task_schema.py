@@ -105,7 +105,30 @@ class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
     above: float | None = None
 
 
-Check = Bound | Compare | Better | Event | Order | Setting
+class Only(Data, frozen=True, tag="only", tag_field="kind"):
+    """No setting other than these differs from the step's set-up.
+
+    Attributes:
+        names: as in `Setting`, without "length"; or "start", or "wall".
+    """
+
+    names: tuple[str, ...]
+
+
+class Once(Bound, frozen=True, tag="once", tag_field="kind"):
+    """A bound that was kept at some time since the step began, while a setting had a value.
+
+    Attributes:
+        name, equals: the setting, as in `Setting`.
+        since: events, as in `Order`; only what was kept after the latest of them counts.
+    """
+
+    name: str = ""
+    equals: Value = 0
+    since: tuple[str, ...] = ()
+
+
+Check = Bound | Compare | Better | Event | Order | Setting | Only | Once
 
 
 class Task(Data, frozen=True):
@@ -128,7 +151,13 @@ class Task(Data, frozen=True):
 
 
 class Reference(Data, frozen=True):
-    """Scripts for one task: one that solves it, and one that does not."""
+    """Scripts for one task: one that solves it, and one that does not.
+
+    Attributes:
+        fair: controls with which the task may be passed besides those of the solution; see
+            `lessons.cheating`.
+    """
 
     solution: Script
     failure: Script
+    fair: tuple[str, ...] = ()

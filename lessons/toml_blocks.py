@@ -10,17 +10,13 @@ from typing import Any, TypeVar, get_args
 import msgspec
 
 from onpath.lessons.problems import line_of, near
+from onpath.lessons.text_files import BACKSLASH, STRING, toml_fault
 
 T = TypeVar("T")
 Complain = Callable[[int, str], None]
 """Callback for an error: the line of the file, and a description."""
 
 
-BACKSLASH = "in TOML a backslash is written \\\\, or the text stands between single quotes"
-STRING = re.compile(
-    r"""\"{3}(?P<long>(?:[^\\]|\\.)*?)\"{3}|'{3}.*?'{3}|"(?P<short>(?:[^"\\\n]|\\.)*)"|'[^'\n]*'|#[^\n]*""",
-    re.DOTALL,
-)
 ESCAPE = re.compile(r"\\(.)([A-Za-z]*)", re.DOTALL)
 
 
@@ -52,9 +48,8 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
     try:
         return msgspec.convert(tomllib.loads(content), kind)
     except tomllib.TOMLDecodeError as error:
-        place = re.search(r"at line (\d+)", str(error))
-        hint = f"; {BACKSLASH}" if re.search("escape|hex", str(error), re.I) else ""
-        complain(line + (int(place[1]) - 1 if place else 0), f"TOML: {error}{hint}")
+        below, fault = toml_fault(error, content)
+        complain(line + below, fault)
     except msgspec.ValidationError as error:
         complain(line_of(str(error), content, line), f"{error}{nearest(str(error), kind)}")
     except RecursionError:

@@ -4,7 +4,7 @@ Colours are those of the palette, but for where a page in the dark has others: s
 assets/page/dark_colours.css.
 
 `Markup` is only made in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
-markdown, in `lessons.formulas`.
+words, by `lessons.safe_html.safe`.
 """
 
 from __future__ import annotations

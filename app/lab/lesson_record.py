@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from onpath.lessons.benches import ROLES
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS, Truth
 from onpath.lessons.record import ROBOTS, Happening, Record
-from onpath.lessons.task_schema import Better
+from onpath.lessons.task_schema import Better, Once
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT
 from onpath.models.layout import Layout
@@ -25,20 +26,38 @@ MOST_SAMPLES = 3600
 
 @dataclass(frozen=True, slots=True)
 class Beginning:
-    """The beginning of a step: the run, and its simulated time, [s]."""
+    """The beginning of a step.
+
+    Attributes:
+        run, time: the run, and its simulated time, [s].
+        given: the lab's settings, see `settings_of`; empty if nobody compares them.
+    """
 
     run: int
     time: float
+    given: Mapping[str, object] = field(default_factory=dict[str, object])
 
     @staticmethod
     def now(session: Session) -> Beginning:
         """The current instant; earlier events are ignored."""
         session.events.clear()
-        return Beginning(session.run_number, session.time)
+        return Beginning(session.run_number, session.time, settings_of(session))
+
+
+def settings_of(session: Session) -> dict[str, object]:
+    """Everything that a task may ask to be left as it is, by the names of `Only`."""
+    return {
+        **dataclasses.asdict(session.parameters),
+        **session.chosen_laws,
+        "path": session.editor.design.name,
+        "robot": session.entry.name,
+        "start": session.start,
+        "wall": session.wall,
+    }
 
 
 def record_of(
-    session: Session, since: Beginning, before: Mapping[Better, float] | None = None
+    session: Session, since: Beginning, before: Mapping[Better | Once, float] | None = None
 ) -> Record:
     """Record since the beginning of a step or, if later, since the last reset.
 
@@ -57,6 +76,7 @@ def record_of(
         path=session.editor.design.name,
         robot=session.entry.name,
         laws=session.laws,
+        changed=lambda: _changed(session, since.given),
         length=lambda: 1e3 * session.editor.design.curve.length(),
         before={} if before is None else before,
     )
@@ -95,6 +115,12 @@ class Trace:
         kept = peaks(curves, MOST_POINTS)
         columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
         return Truth(self._quantity, *columns)
+
+
+def _changed(session: Session, given: Mapping[str, object]) -> tuple[str, ...]:
+    """Names of the settings that are not as they were given, if anything was."""
+    now = settings_of(session)
+    return tuple(name for name, value in given.items() if now.get(name) != value)
 
 
 def _happening(event: LabEvent) -> Happening:

@@ -1,6 +1,6 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import { filled, type Bound, type Check, type Compare, type Robot, type Said, type Setting, type SettingCheck, type Window } from "./data"
+import { filled, type Bound, type Check, type Compare, type Only, type Robot, type Said, type Setting, type SettingCheck, type Window } from "./data"
 import { fixed, general, sum } from "./numbers"
 
 export interface Happening {
@@ -19,6 +19,8 @@ export interface RunRecord {
     happenings: Happening[]
     run: number
     settings: Record<string, Setting>
+    /** Names of the settings that are not as the step began. */
+    changed: string[]
 }
 
 export interface Verdict {
@@ -32,13 +34,14 @@ const INSTANT = 1e-6 // [s]
 const BAND = 0.05 // of the largest value, within which a quantity has settled
 
 export function judge(checks: Check[], record: RunRecord, words: Words): Verdict[] {
-    return checks.map(check => verdict(check, record, words))
+    return checks.map(check => verdict(check, record, words)).filter(each => each.words)
 }
 
 function verdict(check: Check, record: RunRecord, words: Words): Verdict {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)
     if (check.kind === "setting") return setting(check, record, words)
+    if (check.kind === "only") return only(check, record, words)
     const happens = (each: { name: string; detail: string }, wanted: { event: string; name: string }) =>
         each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
     if (check.kind === "event") {
@@ -98,6 +101,14 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
     const shown =
         typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : general(value, 4).replace(".", words["point"]!)
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
+}
+
+/** Nothing is said of what holds. */
+function only({ names, labels }: Only, record: RunRecord, words: Words): Verdict {
+    const others = record.changed.filter(name => !names.includes(name))
+    if (!others.length) return { passed: true, words: "" }
+    const told = others.map(name => labels[name] ?? name).join(", ")
+    return { passed: false, words: filled(words["check.only"]!, { others: told }) }
 }
 
 function same(value: Setting, wanted: Setting, whole: boolean): boolean {

@@ -85,7 +85,13 @@ export interface SettingCheck {
     labels: Record<string, string>
 }
 
-export type Check = Bound | Compare | EventCheck | Order | SettingCheck
+export interface Only {
+    kind: "only"
+    names: string[]
+    labels: Record<string, string>
+}
+
+export type Check = Bound | Compare | EventCheck | Order | SettingCheck | Only
 
 export interface TaskData {
     kind: "task"

@@ -99,7 +99,13 @@ export class Recorded extends Simulation {
 
     record(): RunRecord {
         const { times, happenings, run, settings } = this
-        return { times, end: this.time, values: this.samples, happenings, run, settings }
+        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.changed() }
+    }
+
+    private changed(): string[] {
+        const given = { ...this.begun, path: this.begun.paths[0]! } as Record<string, unknown>
+        const compared = Object.keys(this.settings).filter(name => name !== "length")
+        return compared.filter(name => this.settings[name] !== given[name])
     }
 
     /** A quantity of both robots up to now. */

@@ -49,6 +49,11 @@ check-equals = { $value }
 check-path = Bahn
 check-length = Länge der Bahn in mm
 check-robot = Roboter
+check-start = Start
+check-wall = Wand
+check-own_path = eigene
+check-only = Außer dem, worum es geht, ist verändert: { $others }. Stelle es zurück oder öffne den Schritt noch einmal
+check-once = { $robot }: bei { $setting } = { $equals } ist { $stat }{ $during } { $least } s lang { $value } { $unit }; verlangt: { $wanted }
 check-stopped = { $robot } ist stehen geblieben: Drücke Zurücksetzen und versuche es noch einmal
 
 event-hold = festhalten

@@ -51,6 +51,11 @@ check-equals = { $value }
 check-path = path
 check-length = length of the path in mm
 check-robot = robot
+check-start = start
+check-wall = wall
+check-own_path = your own
+check-only = Changed besides what the task is about: { $others }. Set it back, or open the step again
+check-once = { $robot }: while { $setting } is { $equals }, { $stat }{ $during } { $value } { $unit } for { $least } s; wanted: { $wanted }
 check-stopped = { $robot } has stopped: press Reset and try again
 
 event-hold = hold back

@@ -9,6 +9,7 @@ from operator import itemgetter
 from markupsafe import Markup
 
 from onpath.lessons.progress import Notes
+from onpath.lessons.safe_html import safe
 from onpath.lessons.schema import Block, Choice, NumberQuestion, Sketch, Step, Text
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
@@ -79,9 +80,9 @@ def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words:
 
     def own(match: re.Match[str]) -> str:
         kind, other = _parts(match[1])
-        return str(Markup("{}").format(_value(kind, steps, index, notes, words) or other))
+        return _value(kind, steps, index, notes, words) or other
 
-    return Markup(OWN.sub(own, str(html)))
+    return safe(OWN.sub(own, str(html)))
 
 
 def marked(html: Markup, steps: Sequence[Step], index: int) -> Markup:
@@ -96,22 +97,20 @@ def marked(html: Markup, steps: Sequence[Step], index: int) -> Markup:
         kind, other = _parts(match[1])
         if not kind.startswith("sketch") or not before:
             return match[0]
-        place = Markup('<span data-own="{}" data-step="{}">{}</span>')
-        return str(place.format(kind.removeprefix("sketch "), before[-1], other))
+        stat = kind.removeprefix("sketch ")
+        return f'<span data-own="{stat}" data-step="{before[-1]}">{other}</span>'
 
-    return Markup(OWN.sub(own, str(html)))
+    return safe(OWN.sub(own, str(html)))
 
 
-def _parts(said: str) -> tuple[str, Markup]:
+def _parts(said: str) -> tuple[str, str]:
     """What is wanted, and what is shown without it, which is part of a safe text."""
     kind, _, other = said.partition(" or ")
-    return " ".join(kind.split()), Markup(other.strip() or NOTHING)
+    return " ".join(kind.split()), other.strip() or NOTHING
 
 
-def _value(
-    kind: str, steps: Sequence[Step], index: int, notes: Notes, words: Words
-) -> str | Markup:
-    """The latest such answer up to a step; empty if there is none."""
+def _value(kind: str, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> str:
+    """The latest such answer up to a step, as HTML; empty if there is none."""
     for at in range(index, -1, -1):
         for place, block in enumerate(steps[at].blocks):
             answer = (notes.second if str(at) in notes.asked_again else notes.answers).get(str(at))
@@ -124,7 +123,7 @@ def _value(
             if isinstance(block, Choice) and kind == "choice":
                 chosen = None if answer is None or str(at) in notes.unknown else answer.option
                 known = chosen is not None and chosen in range(len(block.options))
-                return Markup(block.options[chosen or 0].text) if known else ""
+                return str(block.options[chosen or 0].text) if known else ""
         for task in steps[at].tasks():
             if task.best and kind == "best":
                 best = notes.tasks.get(task.id)

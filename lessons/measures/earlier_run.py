@@ -1,25 +1,27 @@
-"""What a run is compared with: the run before it, which ended with a reset."""
+"""What was measured before the present instant: in the run before, and once in a step."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from onpath.lessons.checks import measured
+from onpath.lessons.checks import event_named, happens, keeps, measured
 from onpath.lessons.record import Record
-from onpath.lessons.task_schema import Better, Task
+from onpath.lessons.task_schema import Better, Once, Task
 
 
 class EarlierRun:
-    """What the checks of some tasks measured in the latest run that was long enough for them.
+    """What the checks of some tasks measured.
 
     Attributes:
-        values: of the run before the present one, by check; the same dictionary all the time.
+        values: by check; the same dictionary all the time. Of `Better`, in the latest run before
+            the present one that was long enough; of `Once`, when it was kept last.
     """
 
     def __init__(self) -> None:
-        self.values: dict[Better, float] = {}
-        self._now: dict[Better, float] = {}
+        self.values: dict[Better | Once, float] = {}
+        self._now: dict[Better | Once, float] = {}
         self._run = -1
+        self._undone: dict[Once, int] = {}  # events that have undone it
 
     def follow(self, record: Record, tasks: Iterable[Task]) -> None:
         """Measure the present run; call it again and again, until it is reset."""
@@ -29,3 +31,14 @@ class EarlierRun:
         for check in (check for task in tasks for check in task.check):
             if isinstance(check, Better) and (value := measured(check, record)) is not None:
                 self._now[check] = value
+            elif isinstance(check, Once):
+                self._follow_once(check, record)
+
+    def _follow_once(self, check: Once, record: Record) -> None:
+        undoing = [event_named(text) for text in check.since]
+        undone = sum(happens(event, each) for event in record.happenings for each in undoing)
+        if undone != self._undone.get(check, 0):
+            self._undone[check] = undone
+            self.values.pop(check, None)
+        if (value := keeps(check, record)) is not None:
+            self.values[check] = value

@@ -8,7 +8,19 @@ from onpath.lessons.measures.responses import WITH_SIGN
 from onpath.lessons.measures.stated import zero_faults
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import NumberQuestion, Option, Prediction, Sketch
-from onpath.lessons.task_schema import Better, Bound, Check, Compare, Event, Order, Setting, Task
+from onpath.lessons.task_schema import (
+    Better,
+    Bound,
+    Check,
+    Compare,
+    Event,
+    Once,
+    Only,
+    Order,
+    Setting,
+    Task,
+)
+from onpath.lessons.vocabulary.kinds import kind_faults
 from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
@@ -61,7 +73,7 @@ def task_faults(task: Task, robot: str) -> Iterator[str]:
     """The faults of a task."""
     if not task.id.replace("-", "").isalnum():
         yield f"id {task.id!r}: letters, digits and hyphens"
-    if not task.check:
+    if all(isinstance(check, Only) for check in task.check):
         yield f"task {task.id!r} has no check"
     if task.best:
         yield from one_of(task.best, QUANTITIES, "quantity")
@@ -79,7 +91,8 @@ def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     if isinstance(check, Better) and not 0 < check.share <= 1:
         yield f"share = {check.share:g}: above 0, and at most 1"
     if isinstance(check, Bound | Setting):
-        yield from _limit_faults(check.below, check.above, getattr(check, "equals", None))
+        equals = check.equals if isinstance(check, Setting) else None
+        yield from _limit_faults(check.below, check.above, equals)
     yield from _name_faults(check, entry)
 
 
@@ -98,13 +111,19 @@ def _limit_faults(below: float | None, above: float | None, equals: object) -> I
 def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     """The names of a check that are unknown."""
     parameters = None if entry is None else specs(entry.parameters)
-    if isinstance(check, Setting) and check.name in BENCHES and check.equals is not None:
-        yield from one_of(str(check.equals), [*LAWS, OWN], "law")
-    others = "path", "robot", "length", *BENCHES
-    if isinstance(check, Setting) and check.name not in others and parameters is not None:
-        yield from one_of(check.name, parameters, "parameter")
+    if isinstance(check, Setting | Once) and check.equals is not None:
+        values = {"path": [*presets(), OWN], **{bench: [*LAWS, OWN] for bench in BENCHES}}
+        if check.name in values:
+            yield from one_of(str(check.equals), values[check.name], check.name)
+        elif parameters is not None and check.name in parameters:
+            yield from kind_faults(check.name, check.equals, parameters[check.name])
+    if isinstance(check, Setting | Once | Only) and parameters is not None:
+        others = ("path", "robot", *BENCHES)
+        others = (*others, "start", "wall") if isinstance(check, Only) else (*others, "length")
+        for name in check.names if isinstance(check, Only) else (check.name,):
+            yield from one_of(name, [*parameters, *others], "parameter")
     events = ()
-    if isinstance(check, Order | Event):
+    if isinstance(check, Order | Event | Once):
         events = check.events if isinstance(check, Order) else check.since
     for event in events:
         yield from one_of(event.partition(":")[0], EVENTS, "event")

@@ -16,6 +16,7 @@ from onpath.lessons.action_schema import (
     Value,
 )
 from onpath.lessons.record import PLOTS
+from onpath.lessons.vocabulary.kinds import kind_faults
 from onpath.lessons.vocabulary.names import (
     CONTROLS,
     DRAWINGS,
@@ -168,8 +169,11 @@ def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
 
 
 def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:
+    known = specs(entry.parameters)
     for name, value in values.items():
         try:
             changed(replace(entry.parameters()), name, value)
         except ValueError as error:
             yield str(error)
+        else:
+            yield from kind_faults(name, value, known[name])

@@ -20,7 +20,8 @@ from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_referen
 from onpath.lessons.record import Record
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
-from onpath.models.control.laws.own import short_name
+from onpath.models.control.laws.own import OWN, short_name
+from onpath.models.paths.path_design import presets
 from tests.support.random_records import some_check, some_record
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_reader import WAIT, SiteReader
@@ -162,7 +163,8 @@ def judging(browser: Browser) -> Iterator[Page]:
 
 JUDGE_ALL = """text => {
     const {cases, words} = JSON.parse(text)
-    return cases.map(({check, record}) => judge([check], record, words)[0])
+    const nothing = {passed: true, words: ""}  // is left out
+    return cases.map(({check, record}) => judge([check], record, words)[0] ?? nothing)
 }"""
 
 
@@ -193,7 +195,8 @@ def as_data(record: Record) -> dict[str, Any]:
     gains = {
         name: getattr(record.parameters, name) for name in ("K1", "K2", "task", "encoder_counts")
     }
-    own = {"path": record.path, "robot": record.robot, "length": record.length()}
+    path = record.path if record.path in presets() else OWN
+    own = {"path": path, "robot": record.robot, "length": record.length()}
     return {
         "times": record.times.tolist(),
         "end": record.end,
@@ -201,4 +204,5 @@ def as_data(record: Record) -> dict[str, Any]:
         "happenings": [asdict(event) for event in record.happenings],
         "run": record.run,
         "settings": gains | laws | own,
+        "changed": list(record.changed()),
     }

@@ -11,9 +11,20 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from onpath.lessons.checks import verdict
+from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.record import Happening, Record
-from onpath.lessons.task_schema import Bound, Compare, During, Event
+from onpath.lessons.task_schema import (
+    Bound,
+    Compare,
+    During,
+    Event,
+    Once,
+    Only,
+    Setting,
+    Task,
+)
 from onpath.lessons.words import Words
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
 
 DT = 1e-3  # [s], a tick
@@ -154,3 +165,70 @@ def test_an_event_counts_only_after_the_latest_of_those_that_undo_it(names: list
     check = Event(event="identify", since=("set:K1", "set:K2"))
     assert verdict(check, record, WORDS).passed == (since == ["identify"])
     assert verdict(Event(event="identify"), record, WORDS).passed == ("identify" in names)
+
+
+NAMES = ("K1", "stiction", "path", "left", "start", "wall")
+some_names = st.lists(st.sampled_from(NAMES), unique=True).map(tuple)
+
+
+@given(some_names, some_names)
+def test_only_what_is_named_may_be_changed(allowed: tuple[str, ...], done: tuple[str, ...]) -> None:
+    record = replace(frames(16, 17).record(), changed=lambda: done)
+    found = verdict(Only(allowed), record, WORDS)
+    others = set(done) - set(allowed)
+    assert found.passed == (not others) == (not found.words)
+    assert ("Static friction" in found.words) == ("stiction" in others)
+
+
+@dataclass(frozen=True)
+class Run:
+    """A run with one value of K1, and what undid the check before it began."""
+
+    k1: float
+    values: tuple[float, ...]
+    undone: bool
+
+
+runs = st.builds(
+    Run,
+    k1=st.sampled_from([400.0, 600.0]),
+    values=st.lists(st.sampled_from([0.5, 2.0]), min_size=1, max_size=6).map(tuple),
+    undone=st.booleans(),
+)
+
+
+@given(st.lists(runs, min_size=1, max_size=5))
+def test_a_bound_was_kept_once_if_any_run_with_the_setting_kept_it(course: list[Run]) -> None:
+    """Frame by frame, through resets, and only since the latest event that undoes it."""
+    least = 3  # frames
+    check = Once(
+        quantity="distance", below=1.0, least=least * 0.01, name="K1", equals=600, since=("path",)
+    )
+    task, earlier, happenings, kept = Task("t", "", (check,)), EarlierRun(), (), False
+    for number, run in enumerate(course):
+        if run.undone:
+            happenings, kept = (*happenings, Happening(number, 0.0, "path", "ellipse")), False
+        for count in range(1, len(run.values) + 1):
+            shown = run.values[:count]
+            record = Record(
+                times=np.array([0.01 * i for i in range(count)]),
+                values={"tracker": {}, "follower": {"distance": np.array(shown)}},
+                happenings=happenings,
+                run=number,
+                parameters=replace(FIVE_BAR.lab, K1=run.k1),
+                end=count * 0.01,
+                before=earlier.values,
+            )
+            earlier.follow(record, [task])
+            kept |= run.k1 == 600.0 and count >= least and max(shown) <= 1.0
+            found = verdict(check, record, WORDS)
+            assert found.passed == kept, found.words
+            assert "below 1 mm" in found.words and "600" in found.words
+
+
+def test_an_edited_path_and_a_drawn_one_are_the_student_s_own() -> None:
+    check = Setting(name="path", equals="own")
+    record = frames(16, 17).record()
+    for path in (*presets(), "edited", "drawn"):
+        own = verdict(check, replace(record, path=path), WORDS)
+        assert own.passed == (path in ("edited", "drawn")) and "your own" in own.words

@@ -298,3 +298,93 @@ def test_the_whole_lesson_of_the_readme_passes(tmp_path: Path, capsys: Capture) 
     write_lesson(tmp_path, lesson, reference)
     assert run_command(["lessons", "check", str(tmp_path)]) == 0, capsys.readouterr().err
     assert "1 lesson, 1 solution and 1 failure played" in capsys.readouterr().out
+
+
+def curly(part: str) -> str:
+    """The lesson with curly quotes around a text, as a Mac types them."""
+    return LESSON.replace(f'"{part}"', f"“{part}”")
+
+
+@pytest.mark.parametrize("part", ["A lesson", "Draw the distance.", "The key H.", "H", "ellipse"])
+def test_curly_quotes_are_told_once_and_at_their_line(tmp_path: Path, part: str) -> None:
+    text = curly(part)
+    told = faults(write_lesson(tmp_path, text))
+    line = text[: text.index("“")].count("\n") + 1
+    assert [(at, said) for at, said in told if "straight quotes" in said] == [
+        (line, '“: in TOML a text stands between straight quotes, "…"')
+    ]
+    assert not [said for _, said in told if "Invalid value" in said or "at line" in said]
+
+
+def test_curly_quotes_within_a_text_are_text(tmp_path: Path) -> None:
+    text = LESSON.replace('"Draw the distance."', '"Draw “the” distance: it’s easy. # “"')
+    read_lesson(write_lesson(tmp_path, text))
+
+
+def test_a_fault_of_toml_has_one_line(tmp_path: Path) -> None:
+    """That of the file, and not also that of the block."""
+    text = LESSON.replace("below = 5.0", "below = = 5.0")
+    ((line, said),) = [each for each in faults(write_lesson(tmp_path, text)) if "TOML" in each[1]]
+    assert line == text[: text.index("below = =")].count("\n") + 1
+    assert "column 9" in said and "line" not in said
+
+
+@pytest.mark.parametrize(
+    ("encoding", "said"),
+    [("utf-16", "this is UTF-16"), ("utf-16-le", "this is UTF-16"), ("latin-1", "not in UTF-8")],
+)
+@pytest.mark.parametrize("name", ["01-a/en.md", "01-a/reference.toml", "routes/1.toml"])
+def test_another_encoding_is_told_as_an_author_can_mend_it(
+    tmp_path: Path, encoding: str, said: str, name: str
+) -> None:
+    write_lesson(tmp_path)
+    file = tmp_path / name
+    file.parent.mkdir(exist_ok=True)
+    text = file.read_text() if file.exists() else "[title]\n"
+    file.write_bytes((text + "\n# Maß\n").encode(encoding))
+    (problem,) = read_course([tmp_path])[1]
+    assert problem.path == str(file) and said in problem.text and "save it as UTF-8" in problem.text
+    assert problem.line == (1 if "16" in encoding else text.count("\n") + 2)
+    assert "codec" not in problem.text
+
+
+def test_what_a_system_puts_beside_the_files_is_ignored(tmp_path: Path, capsys: Capture) -> None:
+    lesson = write_lesson(tmp_path)
+    (tmp_path / "routes").mkdir()
+    for folder in (tmp_path, lesson.parent, tmp_path / "routes"):
+        for name in ("._en.md", ".DS_Store", "Thumbs.db", "._1.toml", "desktop.ini"):
+            (folder / name).write_bytes(b"\x00\x05\x16\x07\x00\x02\x00\x00Mac OS X")
+    (tmp_path / "__MACOSX" / "01-a").mkdir(parents=True)
+    (tmp_path / "__MACOSX" / "01-a" / "._en.md").write_bytes(b"\x00\x05")
+    (tmp_path / ".git").mkdir()
+    (tmp_path / ".git" / "notes.md").write_bytes(b"x")
+    course, problems = read_course([tmp_path])
+    assert problems == [] and list(course.lessons) == ["01-a"]
+    assert read_course([tmp_path / "01-a" / ".."])[1] == []
+    assert run_command(["lessons", "check", str(lesson.parent)]) == 0
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong"),
+    [
+        ("K1 = 300", 'K1 = "300"'),
+        ("K1 = 300", 'torque_limit = "2"'),
+        ("K1 = 300", 'control_rate = "200"'),
+        ("until = 1.0", 'until = 1.0\ndo = [{ at = 0.5, set = { K1 = "300" } }]'),
+        (
+            "below = 5.0\n",
+            'below = 5.0\n[[check]]\nkind = "setting"\nname = "K1"\nequals = "300"\n',
+        ),
+    ],
+)
+def test_a_number_in_quotes_is_told_with_its_line(tmp_path: Path, right: str, wrong: str) -> None:
+    text = LESSON.replace(right, wrong)
+    ((line, said),) = faults(write_lesson(tmp_path, text))
+    assert "a number stands without quotes" in said
+    name = said.split(" = ")[0]
+    lines = text.split("\n")
+    assert name in lines[line - 1]
+
+
+def test_a_choice_and_a_law_are_texts(tmp_path: Path) -> None:
+    read_lesson(write_lesson(tmp_path, LESSON.replace("K1 = 300", 'at_limit = "cut"')))

@@ -13,12 +13,12 @@ from onpath.app.lab.dry_runs.course_check import lab_at, play, play_course, solv
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import task as task_html
-from onpath.lessons.checks import judge
+from onpath.lessons.checks import verdict
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import setting_label
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Quiz, Step
-from onpath.lessons.task_schema import Order, Setting, Task
+from onpath.lessons.task_schema import Once, Order, Setting, Task
 from onpath.lessons.words import Words, languages
 from tests.support.built_in import built_in_course
 from tests.support.lab import store
@@ -89,8 +89,9 @@ def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
     for lesson, step, task in TASKS:
         lab = lab_at(lesson, step, store())
         record = record_of(lab.session, Beginning.now(lab.session))
-        for check, verdict in zip(task.check, judge(task, record, words), strict=True):
-            if isinstance(check, Setting):
+        for check in task.check:
+            said = verdict(check, record, words).words
+            if isinstance(check, Setting | Once):
                 names = [check.name]
             elif isinstance(check, Order):
                 names = [event.partition(":")[2] for event in check.events]
@@ -98,7 +99,7 @@ def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
                 continue
             for name in filter(None, names):
                 label = setting_label(name, record.parameters, words)
-                assert label in verdict.words and "_" not in verdict.words, verdict.words
+                assert label in said and "_" not in said, said
                 seen[label] += 1
     assert len(seen) > 8
 

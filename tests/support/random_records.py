@@ -9,12 +9,13 @@ import numpy as np
 
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.record import QUANTITIES, ROBOTS, Happening, Record
-from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Stat
+from onpath.lessons.task_schema import Bound, Check, Compare, Event, Only, Order, Setting, Stat
 from onpath.models.systems.catalogue import ROBOTS as CATALOGUE
 
 EVENTS = ("hold", "let_go", "pull", "release", "set", "path", "reset", "diverged")
 STATS: tuple[Stat, ...] = ("max", "min", "mean", "rms", "final", "settling", "overshoot")
 DURING = ("always", "held", "pulled", "free")
+CHANGED = ("K1", "K2", "stiction", "path", "left")
 GAINS = (5e-7, 0.005, 400.0, 600.1, 600.7, 1600.5)
 PLACES = ("left", "right", "path", "robot", "length", "K1", "K2", "task", "encoder_counts")
 
@@ -28,6 +29,7 @@ def some_record(rng: np.random.Generator) -> Record:
     entry = CATALOGUE["five_bar"]
     gains: dict[str, Any] = {name: float(rng.choice(GAINS)) for name in ("K1", "K2")}
     counts = int(rng.choice([0, 2000]))
+    changed = tuple(map(str, rng.choice(CHANGED, int(rng.integers(3)), replace=False)))
     return Record(
         times=times,
         values=some_columns(rng, count, own),
@@ -38,6 +40,7 @@ def some_record(rng: np.random.Generator) -> Record:
         path=str(rng.choice(["circle", "ellipse", "edited"])),
         laws={"left": str(rng.choice(["trajectory_tracking", "set_point"]))},
         length=lambda: 314.159,
+        changed=lambda: changed,
     )
 
 
@@ -86,7 +89,8 @@ def some_happenings(
 def some_check(rng: np.random.Generator) -> Check:
     """A check of any kind."""
     kind = rng.choice(
-        ["bound", "compare", "event", "order", "setting"], p=[0.5, 0.2, 0.1, 0.1, 0.1]
+        ["bound", "compare", "event", "order", "setting", "only"],
+        p=[0.45, 0.2, 0.1, 0.1, 0.1, 0.05],
     )
     robot: Any = ROBOTS[int(rng.integers(2))]
     quantity, stat = str(rng.choice(list(QUANTITIES))), STATS[int(rng.integers(len(STATS)))]
@@ -107,6 +111,8 @@ def some_check(rng: np.random.Generator) -> Check:
         return Event(event=event, name=name, times=int(rng.integers(1, 4)), since=since)
     if kind == "order":
         return Order(events=tuple(map(str, rng.choice([*EVENTS[:5], "set:K1"], 3))))
+    if kind == "only":
+        return Only(tuple(map(str, rng.choice(CHANGED, 3, replace=False))))
     return some_setting(rng, bounds)
 
 
@@ -116,7 +122,7 @@ def some_setting(rng: np.random.Generator, bounds: dict[str, float]) -> Setting:
     wanted: dict[str, Any] = {
         "left": "set_point",
         "right": "path_following",
-        "path": "ellipse",
+        "path": str(rng.choice(["ellipse", "own"])),
         "robot": "five_bar",
         "task": "speed",
         "K1": int(rng.choice([600, 0])),

@@ -14,7 +14,7 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
-from onpath.lessons.task_schema import Better, Reference, Task
+from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.benches import DEFAULT_LAWS
@@ -69,7 +69,7 @@ class StepFigure:
 
     def can_pass(self, task: Task, reference: Reference, links: Iterable[Action]) -> bool:
         """Whether a reader has all that the task's reference solution uses."""
-        if any(isinstance(check, Better) for check in task.check):
+        if any(isinstance(check, Better | Once) for check in task.check):
             return False
         within_reach = {*self.choice.sliders}
         for action in links:

@@ -18,7 +18,7 @@ from onpath.lessons.checks import (
 )
 from onpath.lessons.labels import setting_label, value_label
 from onpath.lessons.record import ROBOTS as ROLES
-from onpath.lessons.task_schema import Bound, Check, Compare, Event, Order, Setting, Task
+from onpath.lessons.task_schema import Bound, Check, Compare, Event, Only, Order, Setting, Task
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN
@@ -35,6 +35,7 @@ SAID = {
     "check.event": ("event", "have", "need"),
     "check.order": ("events",),
     "check.setting": ("name", "value", "wanted"),
+    "check.only": ("others",),
     "check.stopped": ("robot",),
 }
 """Messages, and the values that the page fills in."""
@@ -109,6 +110,12 @@ def _(check: Order, parameters: Parameters, robots: dict[Any, str], words: Words
 
 
 @_more.register
+def _(check: Only, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    every = (*specs(parameters), *DEFAULT_LAWS, "path", "robot")
+    return {"labels": {name: setting_label(name, parameters, words) for name in every}}
+
+
+@_more.register
 def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     spec = specs(parameters).get(check.name)
     equals, wanted = setting_wanted(check, parameters, words)
@@ -126,4 +133,4 @@ def _named(setting: str) -> Iterable[str]:
     """The values of a setting that is no parameter, as far as they have names."""
     if setting in DEFAULT_LAWS:
         return (*LAWS, OWN)
-    return {"path": presets(), "robot": ROBOTS}.get(setting, ())
+    return {"path": (*presets(), OWN), "robot": ROBOTS}.get(setting, ())

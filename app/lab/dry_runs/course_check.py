@@ -22,6 +22,7 @@ from onpath.lessons.problems import Problem
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Step
 from onpath.lessons.task_schema import Task
+from onpath.lessons.text_files import read_text
 from onpath.lessons.words import DEFAULT, Words
 
 FRAME = 1 / 60  # [s]
@@ -69,13 +70,14 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
             lab.advance(session.rate * FRAME)
         if lab.message_level == "warning":
             raise ValueError(lab.message)
-        yield [] if task is None else _judged(task, record_of(session, begin), earlier, words)
+        yield [] if task is None else judged(task, record_of(session, begin), earlier, words)
         if lab.script is None:
             return
     raise ValueError(f"the script does not reach its end at {script.until:g} s")
 
 
-def _judged(task: Task, record: Record, earlier: EarlierRun, words: Words) -> list[Verdict]:
+def judged(task: Task, record: Record, earlier: EarlierRun, words: Words) -> list[Verdict]:
+    """The verdicts on a task while a script is played."""
     earlier.follow(record, [task])
     return judge(task, replace(record, before=earlier.values), words)
 
@@ -133,7 +135,7 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[
                 fault = _fault(lesson, step, script, task, store, what == "solution")
                 if fault:
                     heading = f"{task.id}.{what}"
-                    yield Problem(str(file), _line_of(heading, file), f"{heading} {fault}")
+                    yield Problem(str(file), line_of_heading(heading, file), f"{heading} {fault}")
 
 
 def _fault(
@@ -152,6 +154,7 @@ def _fault(
     return f"does not pass the task. At its end: {missing}"
 
 
-def _line_of(heading: str, file: Path) -> int:
-    lines = file.read_text("utf-8-sig").split("\n")
+def line_of_heading(heading: str, file: Path) -> int:
+    """The line of `[heading]` in a file of TOML; 1 if there is none."""
+    lines = read_text(file).split("\n")
     return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)

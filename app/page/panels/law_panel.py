@@ -122,7 +122,7 @@ class LawPanel:
         """What the laws do, each once, in the colour of its bench."""
         said = {law: OF_BENCH[bench].hex for bench, law in reversed(self._laws.items())}
         laws = [
-            (said[law], law_label(law, self._words), law_text(law, self._words))
+            (said[law], law_label(law, self._words), law_text(law, self._words), is_text(law))
             for law in dict.fromkeys(self._laws.values())
         ]
         return render("panel/laws.html", laws=laws)

@@ -195,7 +195,7 @@ PLACES: dict[str, Callable[[str], str]] = {
     "message": message,
     "note": lambda text: render("panel/note.html", said=text, small=False),
     "refusal of a law": lambda text: render("panel/refusal.html", said=text),
-    "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text)]),
+    "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
     "text": lesson_html.text,
     "remark": lambda text: lesson_html.remark(text, italic=True),
     "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
@@ -343,6 +343,33 @@ def test_html_is_made_in_templates_only() -> None:
     assert found <= allowed
     for source in ("import html", "from html import escape", "a = f'<div>{b}'", "a = '</p>'"):
         assert hand_made(source)
+
+
+def test_a_lesson_makes_markup_in_one_place() -> None:
+    """By a call of `Markup`; its name alone is a type."""
+    found = {
+        file.name
+        for file in (ROOT / "lessons").rglob("*.py")
+        for node in ast.walk(ast.parse(file.read_text("utf-8")))
+        if isinstance(node, ast.Call)
+        and isinstance(node.func, ast.Name)
+        and node.func.id == "Markup"
+        and node.args
+    }
+    assert found == {"safe_html.py"}
+
+
+@pytest.mark.parametrize(
+    "piece",
+    [
+        render("panel/code.html", label="x", code="K7P", words=ENGLISH),
+        class_html.class_code("K7P", 1, ENGLISH),
+        report(LessonRun(COURSE, Progress()), "K7P", DAY).decode(),
+        render("panel/laws.html", laws=[("#123456", "Own law", "K7P", True)]),
+    ],
+)
+def test_codes_and_typed_laws_are_not_translated(piece: str) -> None:
+    assert re.search(r'translate="no"[^>]*>\s*K7P', piece)
 
 
 TEMPLATES = sorted(file for file in asset_path("templates").rglob("*.*"))

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from onpath.app.lab import commands as c
 from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.setups.setup import RATES as LAB_RATES
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.lesson_view import LessonView
@@ -231,3 +232,26 @@ def test_the_phase_plane_is_in_a_snapshot_only_when_it_is_drawn(lab: Lab) -> Non
     assert take_page_snapshot(lab, 1.0).phase.size == 0
     do(lab, c.AskPhase(True))
     assert take_page_snapshot(lab, 1.0).phase.size > 0
+
+
+@pytest.mark.parametrize(
+    ("there", "back", "name"),
+    [
+        (c.SetParameter("stiction", 0.1), c.SetParameter("stiction", 0.0), "stiction"),
+        (c.SetWall(True), c.SetWall(False), "wall"),
+        (c.SetStart("theta", 1.0), None, "start"),
+        (c.ChooseLaw("left", "waiting_clock"), c.ChooseLaw("left", "trajectory_tracking"), "left"),
+        (c.ChoosePath("circle"), c.ChoosePath("ellipse"), "path"),
+    ],
+)
+def test_what_differs_from_the_set_up_is_known_until_it_is_set_back(
+    lab: Lab, there: c.Command, back: c.Command | None, name: str
+) -> None:
+    lab.lessons.open_at(NAME, TASK, lab)
+    begin = Beginning.now(lab.session)
+    assert record_of(lab.session, begin).changed() == ()
+    do(lab, there)
+    assert record_of(lab.session, begin).changed() == (name,)
+    if back is not None:
+        do(lab, back, c.Reset())
+        assert record_of(lab.session, begin).changed() == ()

@@ -1,0 +1,62 @@
+"""Reads the text files of lessons, and says what is wrong with one as its author can mend it."""
+
+from __future__ import annotations
+
+import codecs
+import re
+import tomllib
+from pathlib import Path
+
+from onpath.lessons.problems import Problem
+
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
+STRING = re.compile(
+    r"""\"{3}(?P<long>(?:[^\\]|\\.)*?)\"{3}|'{3}.*?'{3}|"(?P<short>(?:[^"\\\n]|\\.)*)"|'[^'\n]*'|#[^\n]*""",
+    re.DOTALL,
+)
+"""A text or a comment of TOML."""
+CURLY = re.compile("[“”„‟‘’‚‛«»]")
+BACKSLASH = "in TOML a backslash is written \\\\, or the text stands between single quotes"
+
+
+class FileError(ValueError):
+    """A file that cannot be read."""
+
+    def __init__(self, problem: Problem) -> None:
+        self.problem = problem
+        super().__init__(str(problem))
+
+
+def read_text(file: Path) -> str:
+    """The text of a file of any editor: with or without a byte-order mark, any ends of lines.
+
+    Raises:
+        FileError: it cannot be read, or is not in UTF-8.
+    """
+    try:
+        content = file.read_bytes()
+    except OSError as error:
+        text = error.strerror or "cannot be read"
+        raise FileError(Problem(str(file), 1, text)) from None
+    save = "save it as UTF-8 (in an editor: Save as…, Encoding)"
+    if content.startswith(UTF_16) or b"\0" in content[:4]:
+        raise FileError(Problem(str(file), 1, f"this is UTF-16 and not UTF-8: {save}"))
+    try:
+        text = content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        text = f"a letter of this line is not in UTF-8: {save}"
+        raise FileError(Problem(str(file), line, text)) from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def toml_fault(error: tomllib.TOMLDecodeError, content: str) -> tuple[int, str]:
+    """What is wrong with TOML that cannot be read: lines after the first one, and words."""
+    bare = STRING.sub(lambda text: re.sub(r"[^\n]", " ", text[0]), content)
+    if curly := CURLY.search(bare):
+        line = content.count("\n", 0, curly.start())
+        return line, f'{curly[0]}: in TOML a text stands between straight quotes, "…"'
+    place = re.search(r" \(at line (\d+), column (\d+)\)", str(error))
+    said = str(error).replace(place[0], f" (column {place[2]})") if place else str(error)
+    hint = f"; {BACKSLASH}" if re.search("escape|hex", said, re.I) else ""
+    return int(place[1]) - 1 if place else content.count("\n"), f"TOML: {said}{hint}"
