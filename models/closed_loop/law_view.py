@@ -9,6 +9,7 @@ import casadi as ca
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.reference_speed import task_at
+from onpath.models.closed_loop.sensing import measure
 from onpath.models.control import composite_control as composite
 from onpath.models.control.laws.law import Clock, Gains, Law, View
 from onpath.models.control.space_output import space_output
@@ -138,4 +139,6 @@ def law_view(
         gains=Gains(*[settings[name] for name in GAINS]),
         own_gains={name: settings[name] for name in law.gains if name not in GAINS},
         integral=state["integral"],
+        measured=measure(system, kind, state, settings)[:2],
+        held=state["u"],
     )

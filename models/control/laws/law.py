@@ -102,6 +102,8 @@ class View:
         gains: K1 to K5.
         own_gains: the law's further gains, by the names of `Law.gains`.
         integral: integral of `ControlAction.error`, (p, 1).
+        measured: configuration and velocity as measured, not predicted, each (n, 1).
+        held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """
 
     system: MechanicalSystem
@@ -119,6 +121,8 @@ class View:
     gains: Gains
     own_gains: Fields
     integral: ca.SX
+    measured: tuple[ca.SX, ca.SX]
+    held: ca.SX
 
 
 @dataclass(frozen=True, slots=True)
