@@ -47,7 +47,7 @@ class ExperimentCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
-        from onpath.models.studies.experiments import experiments, run, summary
+        from onpath.models.studies.experiments import experiments, never_held, run, summary
         from onpath.models.systems.parameter_specs import unknown_name
 
         known = experiments(self.robot)
@@ -58,7 +58,7 @@ class ExperimentCommand:
             check_writable(self.csv)
         chosen = known[self.name]
         if self.path is not None:
-            chosen = chosen.along(read_path(self.path))
+            chosen = chosen.along(read_path(self.path), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
         chosen = chosen.with_values(assignments(self.set) | times)
         runs = [run(chosen, name) for name in laws_named(self.law)]
@@ -69,7 +69,7 @@ class ExperimentCommand:
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
-        reasons = {r.controller: r.reason for r in runs}
+        reasons = {r.controller: r.reason or never_held(chosen, r) for r in runs}
         print(json.dumps(result, indent=2) if self.json else _table(result, reasons))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from inspect import signature
 from typing import Any
@@ -21,8 +22,9 @@ from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.paths import curves
 from onpath.models.paths.curve_fit import closed_through, open_through
+from onpath.models.paths.curve_faults import own_faults
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.path_design import presets
+from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.path_text import curve_from_text
@@ -128,8 +130,11 @@ def simulate(
         | schedule_of(velocity, hold, push, wall)
         | _by_own_names(parameters, entry)
     )
-    experiments.check_path(chosen.robot(), curve)
-    return Run(chosen, experiments.run(chosen, law))
+    experiments.check_path(chosen.robot(), curve, path if isinstance(path, str) else "")
+    run = Run(chosen, experiments.run(chosen, law))
+    if unheld := experiments.never_held(chosen, run.trajectory):
+        warnings.warn(unheld, stacklevel=2)
+    return run
 
 
 def robots() -> dict[str, str]:
@@ -153,16 +158,21 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the preset paths with the length of each.
+    """Names of the preset paths with the length of each, and why no robot can follow it, if so.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
     'closed, 314 mm'
+    >>> onpath.paths()["figure of eight"]
+    'closed, 429 mm, refused: the path crosses itself: at a crossing it has two directions'
     """
-    return {
-        name: f"{'closed' if design.curve.closed else 'open'}, {design.curve.length() * 1e3:.0f} mm"
-        for name, design in presets().items()
-    }
+    return {name: _measured(design) for name, design in presets().items()}
+
+
+def _measured(design: PathDesign) -> str:
+    shape = "closed" if design.curve.closed else "open"
+    refused = "".join(f", refused: {fault.reason}" for fault in own_faults(design.curve))
+    return f"{shape}, {design.curve.length() * 1e3:.0f} mm{refused}"
 
 
 def parameters(robot: str = "five_bar") -> dict[str, str]:

@@ -81,15 +81,15 @@ class Experiment:
         theta, _ = curve.plan.nearest(frame.planar(y)[None])
         return frame.lift(np.append(frame.planar(y), curve.at(theta)[0, 2]))
 
-    def along(self, path: Curve) -> Experiment:
-        """The experiment on another path.
+    def along(self, path: Curve, name: str = "") -> Experiment:
+        """The experiment on another path, of which a user speaks by a name.
 
         The end-point starts where it did, or at θ = 0 if it started on the former path.
 
         Raises:
             ValueError: the robot cannot follow the path; the message says why.
         """
-        check_path(self.robot(), path)
+        check_path(self.robot(), path, name)
         robot = self.robot()
         first = robot.frame.planar(self.start(robot, self.schedule.r))
         if self.curve().plan.nearest(first[None])[1][0] >= NEAR:
@@ -122,15 +122,31 @@ class Experiment:
         return dataclasses.replace(self, parameters=parameters, schedule=schedule)
 
 
-def check_path(robot: Robot, path: Curve) -> None:
+def check_path(robot: Robot, path: Curve, name: str = "") -> None:
     """Check that a robot can follow a path.
+
+    Args:
+        name: what the user calls the path, for the message.
 
     Raises:
         ValueError: it cannot; the message says why.
     """
     faults = curve_faults(robot.margin, path)
     if faults:
-        raise ValueError("; ".join(str(fault.reason) for fault in faults))
+        reasons = "; ".join(str(fault.reason) for fault in faults)
+        raise ValueError(f"{name}: {reasons}" if name else reasons)
+
+
+def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
+    """Why the brake of the schedule never acted in a run; empty if it did, or none was asked for."""
+    schedule = experiment.schedule
+    asked = schedule.hold_to > schedule.hold_from
+    if not asked or trajectory.held.any() or trajectory.diverged_at is not None:
+        return ""
+    begin = f"{schedule.hold_from:g} s"
+    if schedule.hold_at is None or schedule.hold_from >= schedule.duration:
+        return f"never held: the run ends before {begin}"
+    return f"never held: the end-point did not pass θ = {schedule.hold_at:g} rad after {begin}"
 
 
 def _always(point: Array, _robot: Robot, _r: float) -> Array:
@@ -268,7 +284,10 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
 
     "controllers" is the former name of "laws".
     """
-    laws = {run.controller: _summary(run) for run in runs}
+    laws = {
+        run.controller: _summary(run) | {"never_held": bool(never_held(experiment, run))}
+        for run in runs
+    }
     return {"experiment": experiment.name, "laws": laws, "controllers": laws}
 
 

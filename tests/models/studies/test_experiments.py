@@ -23,6 +23,7 @@ KEYS = {
     "max_torque_Nm",
     "diverged",
     "diverged_at_s",
+    "never_held",
 }
 RADIUS = 0.05
 

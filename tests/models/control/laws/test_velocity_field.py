@@ -1,4 +1,4 @@
-"""Passive velocity field control: what it gives, its flywheel has paid, wherever its sliders are."""
+"""Passive velocity field control: its flywheel pays for what it gives, at all sliders."""
 
 from __future__ import annotations
 
