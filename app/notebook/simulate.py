@@ -21,8 +21,8 @@ from onpath.app.notebook.arguments import (
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.paths import curves
-from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curve_faults import own_faults
+from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments

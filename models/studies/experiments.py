@@ -138,7 +138,7 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
 
 
 def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
-    """Why the brake of the schedule never acted in a run; empty if it did, or none was asked for."""
+    """Why the brake of the schedule never acted in a run; empty if it did or was not asked for."""
     schedule = experiment.schedule
     asked = schedule.hold_to > schedule.hold_from
     if not asked or trajectory.held.any() or trajectory.diverged_at is not None:
