@@ -718,7 +718,9 @@ obstruction-push_ahead = nach vorn gezogen
 obstruction-push_back = zurückgezogen
 obstruction-wall = eine Wand im Weg
 obstruction-weak_motors = schwache Motoren
+obstruction-weak_motors_cut = schwache Motoren, Momente abgeschnitten
 obstruction-too_fast = doppeltes Tempo, begrenzte Motoren
+obstruction-too_fast_cut = doppeltes Tempo, Momente abgeschnitten
 obstruction-start_off_at_rest = Start neben der Bahn, in Ruhe
 obstruction-start_off_moving = Start neben der Bahn, in Bewegung
 
@@ -971,7 +973,7 @@ parameter-torque_limit-label = Motorgrenze
 parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
 
 parameter-at_limit-label = An der Grenze
-parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Bahnfolge gibt erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und verlangt nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
+parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Gesetze, die eine Beschleunigung verlangen, geben erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und Bahnfolge und eingetippte Gesetze verlangen nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
 parameter-at_limit-option-across_first = quer zuerst
 parameter-at_limit-option-slow_down = langsamer
 parameter-at_limit-option-cut = abschneiden

@@ -147,7 +147,8 @@ class ControlAction:
         torque: u, (m, 1), [N m]; None if it commands an acceleration.
         error: what the integral of K3 sums, (p, 1), [m]; None: nothing.
         theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
-        along: the part of `acceleration` along the path, if it may be reduced.
+        along: the part of `acceleration` along the path, which a torque limit may reduce; None:
+            its component along the path where the robot is.
         memory: the law's own memory after the tick.
     """
 
