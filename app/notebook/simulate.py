@@ -112,9 +112,8 @@ def simulate(
     Traceback (most recent call last):
     onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
-    entry = _entry(robot)
+    entry, curve = _entry(robot), _curve(path)
     law = _law(law)
-    curve = _curve(path)
     chosen = Experiment(
         name="simulate",
         title=entry.label,
@@ -132,9 +131,14 @@ def simulate(
     )
     experiments.check_path(chosen.robot(), curve, path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, law))
-    if unheld := experiments.never_held(chosen, run.trajectory):
-        warnings.warn(unheld, stacklevel=2)
+    _warn(experiments.never_held(chosen, run.trajectory))
     return run
+
+
+def _warn(text: str) -> None:
+    """Warn the caller of `simulate`, unless there is nothing to say."""
+    if text:
+        warnings.warn(text, stacklevel=3)
 
 
 def robots() -> dict[str, str]:
