@@ -37,7 +37,8 @@ class ExperimentCommand:
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter or part of the schedule, as name=value; repeat for more."""
     csv: Path | None = None
-    """Write every millisecond to this CSV file."""
+    """Write every millisecond to this CSV file, with the joint angles as measured beside the true
+    ones if sensors are not exact."""
     plot: Path | None = None
     """Draw the paper's figures to this .png, .svg or .pdf file."""
     json: bool = False

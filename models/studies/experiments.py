@@ -16,14 +16,17 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.sensing import readings
 from onpath.models.closed_loop.simulation import (
+    FREE,
     check_level_set,
     kernel_of,
     kind_of,
     raised,
+    settings_vector,
     time_step,
 )
-from onpath.models.closed_loop.trajectory import Trajectory, record
+from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import curve_faults
@@ -273,6 +276,11 @@ def _finished(
     level_set = experiment.parameters.across == LEVEL_SET and experiment.curve().equation is None
     whole = record(robot, kernel.log, controller, segments, dt)
     whole = dataclasses.replace(whole, level_set=level_set)
+    kind = kind_of(controller, experiment.parameters, experiment.curve())
+    if kind.encoder or kind.noise:
+        own = settings_vector(robot, kernel, experiment.parameters, experiment.curve(), FREE)
+        angles = readings(robot.system, kind, kernel.settings, own, whole.fields["q"])
+        whole = dataclasses.replace(whole, fields=whole.fields | {MEASURED: angles})
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt

@@ -13,7 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.trajectory import header
+from onpath.models.closed_loop.trajectory import header, measured_names
+from onpath.models.studies.identification import smooth_velocities
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.systems.robots import Robot
 
@@ -45,7 +46,8 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
         raise ValueError(f"{path}: there are no rows")
     parts = groupby(rows, lambda row: row[0])
     records = [(key[-1], np.array([numbers for _, numbers in part])) for key, part in parts]
-    return [(name, _record(name, part, robot)) for name, part in records]
+    measured = measured_names(robot)[0] in names
+    return [(name, _record(name, part, robot, measured)) for name, part in records]
 
 
 def _cells(line: str, number: int) -> list[str]:
@@ -68,11 +70,14 @@ def _number(cell: str, line: int) -> float:
 
 
 def _columns(names: list[str], robot: Robot) -> list[int]:
-    """Places of t, q, v, u and the force."""
+    """Places of t, q, v, u and the force; of the joint angles as measured, if the file has them."""
     system, known = robot.system, header(robot)
     rates = known[2 + system.n : 2 + 2 * system.n]
     efforts = [n for n in known if n.startswith(("tau", "force"))]
-    wanted = ["t_s", *robot.coordinate_names, *rates, *efforts]
+    angles, sensed = list(robot.coordinate_names), measured_names(robot)
+    if sensed[0] in names:
+        angles[: len(sensed)] = sensed
+    wanted = ["t_s", *angles, *rates, *efforts]
     missing = [name for name in wanted if name not in names]
     if missing:
         raise ValueError(f"not a file of the robot {robot.name}: there is no column {missing[0]}")
@@ -87,11 +92,13 @@ def _law_column(names: list[str]) -> int:
     return at
 
 
-def _record(law: str, rows: Array, robot: Robot) -> MotionRecord:
+def _record(law: str, rows: Array, robot: Robot, measured: bool) -> MotionRecord:
     n, m = robot.system.n, robot.system.m
     steps = np.diff(rows[:, 0])
     dt = float(np.median(steps)) if steps.size else 0.0
     if dt <= 0 or np.abs(steps - dt).max() > 0.1 * dt:
         raise ValueError(f"{law[:40]!r}: the times of its rows are not evenly spaced")
     q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
-    return MotionRecord(dt, q, v, u, force)
+    if measured:
+        v[:, :m] = smooth_velocities(q[:, :m], dt)
+    return MotionRecord(dt, q, v, u, force, measured)

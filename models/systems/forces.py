@@ -113,5 +113,5 @@ def dry_friction(v: ca.SX, coulomb: ca.SX, compliance: ca.SX, dt: ca.SX) -> ca.S
         compliance: A, (m, m), [1/(kg m²)].
         dt: length of a tick, [s].
     """
-    least = coulomb * dt * ca.sum2(ca.fabs(compliance))
+    least = coulomb * dt * (ca.fabs(compliance) @ ca.SX.ones(v.numel()))
     return -coulomb * v / ca.fmax(ca.sqrt(v**2 + DRY_VELOCITY**2), least)
