@@ -33,7 +33,8 @@ class CompareCommand:
     """A law to compare, also one of your own in two lines: "across = …; along = …"; repeat for
     more. By default all that suit the robot."""
     obstruction: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """An obstruction; repeat for more. By default all."""
+    """An obstruction; repeat for more. By default all. Those with weak motors run twice: with the
+    remedy of at_limit and, as NAME_cut, without it."""
     radius: float = 0.05
     """Radius of the circle to follow, in metres."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -103,9 +104,9 @@ class CompareCommand:
         from rich.console import Console
         from rich.progress import track
 
-        from onpath.models.studies.comparison import OBSTRUCTIONS, compare
+        from onpath.models.studies.comparison import OBSTRUCTIONS, compare, with_cut
 
-        obstructions = _known(self.obstruction, list(OBSTRUCTIONS), "obstruction")
+        obstructions = with_cut(_known(self.obstruction, list(OBSTRUCTIONS), "obstruction"))
         pairs = compare(contest, laws, obstructions)
         console = Console(stderr=True)
         shown = track(
@@ -176,6 +177,8 @@ def table(results: Results) -> str:
         ]
         lines.append("")
     lines.append(f"{STOPPED}: a run diverged at one of the places; see --json for all measures.")
+    if any(name.endswith("_cut") for name in obstructions):
+        lines.append("_cut: torques are cut at the limit. Without it the remedy at_limit acts.")
     return "\n".join(lines)
 
 

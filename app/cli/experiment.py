@@ -38,7 +38,8 @@ class ExperimentCommand:
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter or part of the schedule, as name=value; repeat for more."""
     csv: Path | None = None
-    """Write every millisecond to this CSV file."""
+    """Write every millisecond to this CSV file, with the joint angles as measured beside the true
+    ones if sensors are not exact."""
     plot: Path | None = None
     """Draw the paper's figures to this .png, .svg or .pdf file."""
     json: bool = False
@@ -48,7 +49,7 @@ class ExperimentCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
-        from onpath.models.studies.experiments import experiments, run, summary
+        from onpath.models.studies.experiments import experiments, never_held, run, summary
         from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
@@ -60,7 +61,7 @@ class ExperimentCommand:
             check_writable(self.csv)
         chosen = known[self.name]
         if self.path is not None:
-            chosen = chosen.along(read_path(self.path))
+            chosen = chosen.along(read_path(self.path), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
@@ -74,7 +75,7 @@ class ExperimentCommand:
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
-        reasons = {r.controller: r.reason for r in runs}
+        reasons = {r.controller: r.reason or never_held(chosen, r) for r in runs}
         print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 
 

@@ -19,7 +19,8 @@ class IdentifyCommand:
 
     file: Annotated[Path, tyro.conf.Positional]
     """CSV file of `onpath experiment --csv` or of the lab's export. A spreadsheet may have saved it
-    again, with other separators, decimal commas or another encoding."""
+    again, with other separators, decimal commas or another encoding. If it has columns of
+    measured angles, these are used, and their rates by a filter; otherwise the true ones."""
     robot: str = "five_bar"
     """Name of the robot."""
     law: str = ""
@@ -54,10 +55,12 @@ class IdentifyCommand:
         geometry = robot.plant(entry.parameters())
         result = estimate(robot.system, used, geometry)
         seconds = sum(len(each.q) * each.dt for each in used)
+        angles = "measured" if all(each.measured for each in used) else "true"
         if self.json:
-            print(json.dumps(_data(self.robot, laws, seconds, result), indent=2))
+            data = _data(self.robot, laws, seconds, result) | {"angles": angles}
+            print(json.dumps(data, indent=2))
         else:
-            print(_table(self.robot, laws, seconds, result))
+            print(_table(self.robot, laws, seconds, result, angles))
 
 
 def _data(robot: str, laws: list[str], seconds: float, result: Estimate) -> dict[str, Any]:
@@ -68,6 +71,7 @@ def _data(robot: str, laws: list[str], seconds: float, result: Estimate) -> dict
         "parameters": [_entry(each) for each in result.found],
         "not_excited": list(result.unexcited),
         "unexplained": float(f"{result.unexplained:.3g}"),
+        "torque_late_s": float(f"{result.late:.3g}"),
     }
 
 
@@ -80,10 +84,10 @@ def _entry(each: BaseParameter) -> dict[str, Any]:
     }
 
 
-def _table(robot: str, laws: list[str], seconds: float, result: Estimate) -> str:
+def _table(robot: str, laws: list[str], seconds: float, result: Estimate, angles: str) -> str:
     """The result as text."""
     under = f" under {', '.join(laws)}" if any(laws) else ""
-    lines = [f"{robot}: {seconds:.1f} s{under}"]
+    lines = [f"{robot}: {seconds:.1f} s{under}, from the {angles} angles"]
     lines += [
         f"  {each.label():24s} {each.value:12.6g}  ± {each.error:.2g}" for each in result.found
     ]
@@ -92,4 +96,15 @@ def _table(robot: str, laws: list[str], seconds: float, result: Estimate) -> str
     if result.unexcited:
         lines.append(f"  not excited: {', '.join(result.unexcited)}")
     lines.append(f"  {100 * result.unexplained:.2g} % of the torque are not explained")
+    lines.append(
+        "  ± is one standard error from what is not explained. It leaves out what all rows share:"
+        " wrong geometry, scale or time of torques and forces, the filter of measured rates, and"
+        " terms that the model lacks."
+    )
+    if result.late:
+        side = "behind" if result.late > 0 else "ahead of"
+        lines.append(
+            f"  the torques seem to be logged {1e3 * abs(result.late):.1f} ms {side} the motion:"
+            " then no value above can be trusted"
+        )
     return "\n".join(lines)

@@ -14,7 +14,7 @@ from onpath.app.exports.summary_text import summary_lines
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory, write_csv
 from onpath.models.control.laws.own import law_title
-from onpath.models.studies.experiments import Experiment, summary
+from onpath.models.studies.experiments import Experiment, never_held, summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -126,8 +126,8 @@ class Run:
 
     @property
     def reason(self) -> str:
-        """Reason why the motion counts as diverged, or ""."""
-        return self.trajectory.reason
+        """Reason why the motion counts as diverged, or why the brake never acted, or ""."""
+        return self.trajectory.reason or never_held(self.experiment, self.trajectory)
 
     def summary(self) -> dict[str, Any]:
         """Summary of the run, as in `onpath experiment --json`; units are in the names.

@@ -24,9 +24,10 @@ from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.errors import CodedError
 from onpath.models.paths import curves
+from onpath.models.paths.curve_faults import own_faults
 from onpath.models.paths.curve_fit import deviation_remark, fitted
 from onpath.models.paths.curves import Curve
-from onpath.models.paths.path_design import presets
+from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.unused import unused_text
@@ -140,10 +141,12 @@ def simulate(
         {"duration": duration, "reverse_at": reverse_at}
         | {**schedule_of(velocity, hold, push, wall), **given}
     )
-    experiments.check_path(chosen.robot(), chosen.curve())
-    if text := unused_text(chosen, [law], given):
-        warnings.warn(text, UserWarning, stacklevel=2)
-    return Run(chosen, experiments.run(chosen, law))
+    experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
+    run = Run(chosen, experiments.run(chosen, law))
+    for text in (unused_text(chosen, [law], given), experiments.never_held(chosen, run.trajectory)):
+        if text:
+            warnings.warn(text, UserWarning, stacklevel=2)
+    return run
 
 
 def robots() -> dict[str, str]:
@@ -167,16 +170,21 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the preset paths with the length of each.
+    """Names of the preset paths with the length of each, and why no robot can follow it, if so.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
     'closed, 314 mm'
+    >>> onpath.paths()["figure of eight"]
+    'closed, 429 mm, refused: the path crosses itself: at a crossing it has two directions'
     """
-    return {
-        name: f"{'closed' if design.curve.closed else 'open'}, {design.curve.length() * 1e3:.0f} mm"
-        for name, design in presets().items()
-    }
+    return {name: _measured(design) for name, design in presets().items()}
+
+
+def _measured(design: PathDesign) -> str:
+    shape = "closed" if design.curve.closed else "open"
+    refused = "".join(f", refused: {fault.reason}" for fault in own_faults(design.curve))
+    return f"{shape}, {design.curve.length() * 1e3:.0f} mm{refused}"
 
 
 def parameters(robot: str = "five_bar") -> dict[str, str]:

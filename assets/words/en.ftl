@@ -690,7 +690,9 @@ obstruction-push_ahead = pulled ahead
 obstruction-push_back = pulled back
 obstruction-wall = a wall in the way
 obstruction-weak_motors = weak motors
+obstruction-weak_motors_cut = weak motors, torques cut
 obstruction-too_fast = twice the speed, limited motors
+obstruction-too_fast_cut = twice the speed, torques cut
 obstruction-start_off_at_rest = start beside the path, at rest
 obstruction-start_off_moving = start beside the path, moving
 

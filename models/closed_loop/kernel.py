@@ -35,7 +35,7 @@ from onpath.models.closed_loop.plant_tick import held_torque, move
 from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
 from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.law import Along, ControlAction, Law, View
 from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.linearization import admissible_along, linearization
@@ -225,13 +225,20 @@ def _wanted(
         return composite.torques(beam, rate, command.acceleration), after
     robot = view.system, view.q, view.v, view.model
     acceleration = command.acceleration
-    if kind.across_first and command.along is not None:
-        along, direction = command.along.command, command.along.direction
+    if kind.across_first:
+        part = command.along or _along(view, acceleration)
+        along, direction = part.command, part.direction
         base = linearization(*robot, acceleration - direction * along)
         slope = linearization(*robot, acceleration - direction * (along - 1)) - base
         reduced = admissible_along(base, slope, along, settings["torque_limit"])
         acceleration = acceleration + direction * (reduced - along)
     return linearization(*robot, acceleration), memory
+
+
+def _along(view: View, acceleration: ca.SX) -> Along:
+    """The part of y'' along the path where the robot is, for a law that does not name it."""
+    direction = view.output.acceleration_per_along
+    return Along(ca.dot(direction, acceleration) / ca.dot(direction, direction), direction)
 
 
 def _next_phase(state: Fields, settings: Fields) -> ca.SX:

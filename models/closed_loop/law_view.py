@@ -9,8 +9,9 @@ import casadi as ca
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.reference_speed import task_at
+from onpath.models.closed_loop.sensing import measure
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import Clock, Gains, Law, View
+from onpath.models.control.laws.law import Clock, Gains, Law, PathReference, View
 from onpath.models.control.space_output import space_output
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields
@@ -106,6 +107,17 @@ def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX
     )
 
 
+def _task(
+    state: Fields, settings: Fields, output: VirtualOutput, beam: composite.Compensation | None
+) -> PathReference:
+    """The wanted motion at the instant to which the controller looks."""
+    task = task_at(state, settings, settings["look_ahead"])
+    if beam is None:
+        return task
+    speed = composite.wanted_speed(beam, output, settings["K5"])
+    return replace(task, speed=speed, acceleration=ca.SX(0))
+
+
 def law_view(
     system: MechanicalSystem,
     frame: PlaneCoordinates,
@@ -118,14 +130,10 @@ def law_view(
     beam: composite.Compensation | None,
 ) -> View:
     """What the law is given; `ahead` is (q, v) at the instant to which the controller looks."""
-    q, v = ahead
+    (q, v), h = ahead, settings["look_ahead"]
     y, y_rate = controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
     output, closest = coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)
-    h = settings["look_ahead"]
-    task = task_at(state, settings, h)
-    if beam is not None:
-        speed = composite.wanted_speed(beam, output, settings["K5"])
-        task = replace(task, speed=speed, acceleration=ca.SX(0))
+    task = _task(state, settings, output, beam)
     clock, reference = clock_at(kind, law, state, settings, h), None
     if law.reference is not None:
         reference = LocalCurve.from_values(law.reference(clock), kind.closed, values[:, 1])
@@ -146,4 +154,6 @@ def law_view(
         own_gains={name: settings[name] for name in law.gains if name not in GAINS},
         integral=state["integral"],
         lag=lag(kind, settings),
+        measured=measure(system, kind, state, settings)[:2],
+        held=state["u"],
     )

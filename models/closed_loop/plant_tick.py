@@ -81,7 +81,8 @@ def push(
     pushed = transposed(state["q"], settings["plant"], outside)
     if not kind.stiction:  # which has dry friction of its own
         rates = system.input_rates(state["q"], state["v"], settings["plant"])
-        u = u + forces.dry_friction(rates, settings["coulomb"])
+        compliance = system.compliance(state["q"], settings["plant"])
+        u = u + forces.dry_friction(rates, settings["coulomb"], compliance, settings["dt"])
     return y, outside, pushed + system.effort(middle, u, settings["plant"])
 
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 from math import sqrt
 
 import casadi as ca
+import numpy as np
 
+from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.noise import standard_normal
 from onpath.models.control.virtual_output import VirtualOutput
-from onpath.models.layout import Fields
+from onpath.models.layout import Fields, Layout
 from onpath.models.systems.beam import beam_modes
 from onpath.models.systems.system import MechanicalSystem
 
@@ -41,6 +43,26 @@ def measure(
     if not kind.encoder:  # exact velocities without noise of the angles
         rate = ca.if_else(settings["sensor_noise"] > 0, rate, v[:m])
     return ca.vertcat(reading, q[m:]), ca.vertcat(rate, v[m:]), reading
+
+
+def readings(
+    system: MechanicalSystem, kind: Kind, settings_layout: Layout, settings: Array, q: Array
+) -> Array:
+    """The joint angles that the sensors read in a run from its first tick on, (ticks, m), [rad].
+
+    Args:
+        settings: flat vector of the run, of which the sensors' settings count.
+        q: true coordinates in each tick, (ticks, n).
+    """
+    if not len(q):
+        return np.zeros((0, system.m))
+    symbol, fields = settings_layout.symbols("settings")
+    sizes = {"q": system.n, "v": system.n, "encoder": system.m, "encoder_rate": system.m}
+    state = {name: ca.SX.sym(name, size) for name, size in (sizes | {"ticks": 1}).items()}
+    read = measure(system, kind, state, fields)[0][: system.m]
+    function = ca.Function("readings", [symbol, state["q"], state["ticks"]], [read])
+    ticks, constant = np.arange(len(q))[None], np.tile(settings[:, None], len(q))
+    return np.asarray(function.map(len(q))(constant, q.T, ticks), dtype=float).T
 
 
 def _noise(system: MechanicalSystem, state: Fields, settings: Fields) -> ca.SX:

@@ -16,6 +16,8 @@ from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.robots import Robot
 
+MEASURED = "measured"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
@@ -24,7 +26,8 @@ class Trajectory:
     Attributes:
         controller: name of the control law.
         t: time, shape (n,), [s].
-        fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size).
+        fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size); where
+            sensors are not exact also `MEASURED`, the joint angles that they read, [rad].
         distance: from the actual end-point to the path, shape (n,), [m].
         speed: along the path, shape (n,), [m/s].
         held: whether the brake was on, shape (n,).
@@ -113,7 +116,15 @@ def record(
     )
 
 
-def header(robot: Robot, level_set: bool = False, benches: bool = False) -> list[str]:
+def measured_names(robot: Robot) -> list[str]:
+    """Names of the columns of the joint angles as measured."""
+    units = (name.rpartition("_") for name in robot.coordinate_names[: robot.system.m])
+    return [f"{name}_measured_{unit}" for name, _, unit in units]
+
+
+def header(
+    robot: Robot, level_set: bool = False, benches: bool = False, measured: bool = False
+) -> list[str]:
     """Column names of the CSV, with units.
 
     xi1 is in [m], or in [m²] with `level_set`, and its rate accordingly. The references
@@ -123,6 +134,7 @@ def header(robot: Robot, level_set: bool = False, benches: bool = False) -> list
     Args:
         level_set: whether xi1 is a level set.
         benches: whether the rows name the bench.
+        measured: whether there are columns of the joint angles as measured.
     """
     p, m = robot.system.p, robot.system.m
     units = (name.rpartition("_") for name in robot.coordinate_names)
@@ -144,6 +156,7 @@ def header(robot: Robot, level_set: bool = False, benches: bool = False) -> list
         *(f"tau{i + 1}_Nm" for i in range(m)),
         *(f"force{i + 1}_N" for i in range(p)),
         "held",
+        *(measured_names(robot) if measured else ()),
     ]
 
 
@@ -162,12 +175,17 @@ def write_csv(
     """
     writer = csv.writer(file, lineterminator="\n")
     runs = list(trajectories)
-    writer.writerow(header(robot, any(run.level_set for run in runs), benches is not None))
+    level_set, measured = (run.level_set for run in runs), (MEASURED in run.fields for run in runs)
+    read = any(measured)
+    writer.writerow(header(robot, any(level_set), benches is not None, read))
     for number, run in enumerate(runs):
         f = run.fields
         names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
         seen = [f[name] for name in names]
-        columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held])
+        sensed = (
+            [f.get(MEASURED, f["q"][:, : robot.system.m])] if read else []
+        )  # exact: as they are
+        columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
         law = f'"{run.controller}"' if "," in run.controller else run.controller
         name = law if benches is None else f"{benches[number]},{law}"
         line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"

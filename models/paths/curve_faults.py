@@ -75,6 +75,11 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
     return faults + _strand_faults(z, curve.closed, bool(bends.any()))
 
 
+def own_faults(curve: Curve) -> list[Fault]:
+    """The faults that a curve has as a path for any robot, wherever it can reach."""
+    return curve_faults(lambda z: np.ones(len(z)), curve)
+
+
 def _strand_faults(z: Array, closed: bool, bends: bool) -> list[Fault]:
     """Self-intersections or, if there are none, strands that are too close to each other.
 

@@ -1,5 +1,10 @@
 """A fair comparison of control laws: the same robot, path, gains and obstructions for all of them.
 
+Where motors are too weak, every law runs twice: with torques that are cut, and with the remedy of
+the parameter `at_limit`, which is no part of any law. `across_first` is given to all laws that
+command an acceleration. `slow_down` also limits the speed that is asked for, by path following and
+by typed laws; a law with a timetable goes by that.
+
 Every run begins on the path with the wanted velocity along it, or beside it where the obstruction
 says so. Then nothing happens for `BEFORE`, the obstruction acts, and nothing happens for `AFTER`.
 """
@@ -53,6 +58,7 @@ class Obstruction:
         torque: limit of the torques, as a share of the largest torque that path following takes
             when nothing obstructs it; 0: as the parameters say.
         speed: factor of the wanted speed while it acts.
+        at_limit: what happens at a torque limit; empty: as the parameters say.
         off: distance from the path at the start, [m].
         rests: whether the robot starts at rest.
     """
@@ -65,6 +71,7 @@ class Obstruction:
     wall: float | None = None
     torque: float = 0.0
     speed: float = 1.0
+    at_limit: str = ""
     off: float = 0.0
     rests: bool = False
 
@@ -79,7 +86,9 @@ OBSTRUCTIONS = {
         Obstruction("push_back", seconds=1.0, hand=(-0.04, 0.0)),
         Obstruction("wall", wall=0.01),
         Obstruction("weak_motors", torque=0.4),
+        Obstruction("weak_motors_cut", torque=0.4, at_limit="cut"),
         Obstruction("too_fast", torque=1.0, speed=2.0),
+        Obstruction("too_fast_cut", torque=1.0, speed=2.0, at_limit="cut"),
         Obstruction("start_off_at_rest", off=0.015, rests=True),
         Obstruction("start_off_moving", off=0.015),
     )
@@ -168,6 +177,12 @@ def compare(
             yield [_outcome(contest, law, obstruction, float(at), torque) for at in places]
 
 
+def with_cut(names: Sequence[str]) -> list[str]:
+    """The names of obstructions, each that has a torque limit followed by that with a cut."""
+    both = (each for name in names for each in (name, f"{name}_cut"))
+    return list(dict.fromkeys(each for each in both if each in OBSTRUCTIONS))
+
+
 def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
     """The worst of each measure over places; `stopped_at_s` is the earliest, or None."""
     stops = [o.stopped_at_s for o in outcomes if o.stopped_at_s is not None]
@@ -223,7 +238,8 @@ def _run(
     dt = time_step(own)
     acting = dataclasses.replace(own, speed=own.speed * obstruction.speed)
     if obstruction.torque:
-        acting = dataclasses.replace(acting, torque_limit=obstruction.torque * torque)
+        limit, way = obstruction.torque * torque, obstruction.at_limit or own.at_limit
+        acting = dataclasses.replace(acting, torque_limit=limit, at_limit=way)
     kernel = kernel_of(robot, kind_of(law, own, curve))
     state = _start(contest, kernel, obstruction, place)
     legs = (BEFORE, own, False), (obstruction.seconds, acting, True), (AFTER, own, False)

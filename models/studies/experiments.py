@@ -16,14 +16,17 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.sensing import readings
 from onpath.models.closed_loop.simulation import (
+    FREE,
     check_level_set,
     kernel_of,
     kind_of,
     raised,
+    settings_vector,
     time_step,
 )
-from onpath.models.closed_loop.trajectory import Trajectory, record
+from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import curve_faults
@@ -86,15 +89,15 @@ class Experiment:
         theta, _ = curve.plan.nearest(frame.planar(y)[None])
         return frame.lift(np.append(frame.planar(y), curve.at(theta)[0, 2]))
 
-    def along(self, path: Curve) -> Experiment:
-        """The experiment on another path.
+    def along(self, path: Curve, name: str = "") -> Experiment:
+        """The experiment on another path, of which a user speaks by a name.
 
         The end-point starts where it did, or at θ = 0 if it started on the former path.
 
         Raises:
             ValueError: the robot cannot follow the path; the message says why.
         """
-        check_path(self.robot(), path)
+        check_path(self.robot(), path, name)
         robot = self.robot()
         first = robot.frame.planar(self.start(robot, self.schedule.r))
         if self.curve().plan.nearest(first[None])[1][0] >= NEAR:
@@ -134,15 +137,31 @@ class Experiment:
         return whole
 
 
-def check_path(robot: Robot, path: Curve) -> None:
+def check_path(robot: Robot, path: Curve, name: str = "") -> None:
     """Check that a robot can follow a path.
+
+    Args:
+        name: what the user calls the path, for the message.
 
     Raises:
         ValueError: it cannot; the message says why.
     """
     faults = curve_faults(robot.margin, path)
     if faults:
-        raise ValueError("; ".join(str(fault.reason) for fault in faults))
+        reasons = "; ".join(str(fault.reason) for fault in faults)
+        raise ValueError(f"{name}: {reasons}" if name else reasons)
+
+
+def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
+    """Why the brake of the schedule never acted in a run; empty if it did or was not asked for."""
+    schedule = experiment.schedule
+    asked = schedule.hold_to > schedule.hold_from
+    if not asked or trajectory.held.any() or trajectory.stopped_at is not None:
+        return ""
+    begin = f"{schedule.hold_from:g} s"
+    if schedule.hold_at is None or schedule.hold_from >= schedule.duration:
+        return f"never held: the run ends before {begin}"
+    return f"never held: the end-point did not pass θ = {schedule.hold_at:g} rad after {begin}"
 
 
 def _always(point: Array, _robot: Robot, _r: float) -> Array:
@@ -285,6 +304,11 @@ def _finished(
     level_set = experiment.parameters.across == LEVEL_SET and experiment.curve().equation is None
     whole = record(robot, kernel.log, controller, segments, dt)
     whole = dataclasses.replace(whole, level_set=level_set)
+    kind = kind_of(controller, experiment.parameters, experiment.curve())
+    if kind.encoder or kind.noise:
+        own = settings_vector(robot, kernel, experiment.parameters, experiment.curve(), FREE)
+        angles = readings(robot.system, kind, kernel.settings, own, whole.fields["q"])
+        whole = dataclasses.replace(whole, fields=whole.fields | {MEASURED: angles})
     if fault is None:
         return whole.thinned()
     end = len(whole.t) * dt
@@ -299,7 +323,10 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     """
     held = experiment.schedule.hold_from < experiment.schedule.hold_to
     laws = {
-        run.controller: _summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)
+        run.controller: {
+            **(_summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)),
+            "never_held": bool(never_held(experiment, run)),
+        }
         for run in runs
     }
     return {"experiment": experiment.name, "laws": laws}

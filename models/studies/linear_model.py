@@ -15,7 +15,7 @@ Source: Khalil and Dombre, Modeling, Identification and Control of Robots, 12.3 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -40,6 +40,7 @@ from onpath.models.systems.forces import DRY_VELOCITY
 from onpath.models.systems.system import MechanicalSystem
 
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
+LATE = 1e-3  # [s], from which torques count as late
 NEGLIGIBLE = 1e-3  # share of a parameter in a combination that is left out
 
 
@@ -52,6 +53,7 @@ class MotionRecord:
         q, v: coordinates and their rates, shape (rows, n).
         u: torque of the motors, constant over each step, (rows, m), [N m].
         force: at the end-point, (rows, p), [N].
+        measured: whether the joint angles are those that sensors read, and their rates a filter's.
     """
 
     dt: float
@@ -59,6 +61,7 @@ class MotionRecord:
     v: Array
     u: Array
     force: Array
+    measured: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,11 +87,14 @@ class Estimate:
         found: the estimates, in the order of the robot's parameters.
         unexcited: parameters on which the record does not depend.
         unexplained: rms of the filtered torque that the model leaves, as a share of it.
+        late: by how much the torques seem to be logged later than the motion, [s]; 0 unless that
+            explains much more.
     """
 
     found: tuple[BaseParameter, ...]
     unexcited: tuple[str, ...]
     unexplained: float
+    late: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,18 +153,40 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
     """
     model = linear_model(system)
     parts = [_equations(system, model, record, geometry) for record in records]
-    columns, torque = (np.concatenate(each) for each in zip(*parts, strict=True))
+    columns, torque, change = (np.concatenate(each) for each in zip(*parts, strict=True))
     names = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
     smooth = _solved(names[: len(model.names)], columns[..., : len(model.names)], torque)
     dry = _solved(names, columns, torque)
     enough = smooth.unexplained <= max(ENOUGH * dry.unexplained, EXACT)
-    return smooth if enough else dry
+    best, used = (smooth, len(model.names)) if enough else (dry, len(names))
+    return replace(best, late=_lateness(columns[..., :used], torque, change))
+
+
+def _lateness(columns: Array, torque: Array, change: Array) -> float:
+    """By how much the motors' logged torque lags behind, [s]; 0 unless that explains much more.
+
+    If B u lags by d, it was B u + d (B u)' to first order, so that -<w, (B u)'> is the column of d.
+    """
+    flat = columns.reshape(-1, columns.shape[-1])
+    sizes = np.sqrt(np.mean(flat**2, axis=0))
+    moved = sizes > UNMOVED * sizes.max()
+    basis, singular, _ = np.linalg.svd(flat[:, moved] / sizes[moved], full_matrices=False)
+    basis = basis[:, singular > singular[0] / WORST_CONDITION] * np.sqrt(len(flat))
+    scale = float(np.sqrt(np.mean(change**2))) or 1.0
+    whole = np.concatenate([basis.reshape(*change.shape, -1), -change[..., None] / scale], axis=2)
+    without = torque - whole[..., :-1] @ least_squares(whole[..., :-1], torque)[0]
+    values, _ = least_squares(whole, torque)
+    late, explained = float(values[-1]) / scale, ENOUGH * np.linalg.norm(torque - whole @ values)
+    return late if abs(late) > LATE and np.linalg.norm(without) > explained else 0.0
 
 
 def _equations(
     system: MechanicalSystem, model: LinearModel, record: MotionRecord, geometry: Array
-) -> tuple[Array, Array]:
-    """Regressor (windows, n, k + m), the last m columns for dry friction, and right-hand side."""
+) -> tuple[Array, Array, Array]:
+    """Regressor (windows, n, k + m), right-hand side, and <w, (B u)'>.
+
+    The last m columns of the regressor are for dry friction.
+    """
     _check(record)
     weight, rate, _, held = bump(record.dt)
     step, rows, n = len(held) // OVERLAP, len(record.q), system.n
@@ -181,7 +209,9 @@ def _equations(
     friction = np.zeros((len(right), n, system.m))
     for joint in range(system.m):
         friction[:, joint, joint] = signs[:, joint]
-    return np.concatenate([columns, friction], axis=2), right
+    motors = model.effort.map(rows)(record.q.T, record.u.T, 0 * record.force.T, plant).full().T
+    change = -filtered(motors, np.diff(weight) / record.dt)  # <w, τ'> = -<w', τ>, by steps
+    return np.concatenate([columns, friction], axis=2), right, change
 
 
 def _check(record: MotionRecord) -> None:

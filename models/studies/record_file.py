@@ -9,8 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.trajectory import header
+from onpath.models.closed_loop.trajectory import header, measured_names
 from onpath.models.errors import CodedError
+from onpath.models.studies.identification import smooth_velocities
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.table_file import Table, read_table
 from onpath.models.systems.robots import Robot
@@ -28,7 +29,7 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
         CodedError: not such a file, or not of this robot; the message says where and why.
         OSError: it cannot be read.
     """
-    table = _table(path, robot)
+    measured, table = _table(path, robot)
     laws = next((table.texts[name] for name in LAWS if name in table.texts), None)
     keys = list(zip(*table.texts.values(), strict=True)) or [()] * len(table.lines)
     records = list[tuple[str, MotionRecord]]()
@@ -36,34 +37,41 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
         rows = list(part)
         lines = table.lines[rows[0] : rows[-1] + 1]
         law = laws[rows[0]] if laws else ""
-        records.append((law, _record(table.numbers[rows], lines, robot)))
+        records.append((law, _record(table.numbers[rows], lines, robot, measured)))
     return records
 
 
-def _table(path: Path, robot: Robot) -> Table:
-    try:
-        return read_table(path, _columns(robot), ("bench", *LAWS))
-    except CodedError as error:
-        if error.message.code != "error.table_no_column":
-            raise
-        raise CodedError(
-            "error.record_of_another_robot", robot=robot.name, reason=error.message
-        ) from None
+def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
+    """Whether the table has the joint angles as measured, and the table, with these if it has."""
+    missing: CodedError | None = None
+    for measured in (True, False):
+        try:
+            return measured, read_table(path, _columns(robot, measured), ("bench", *LAWS))
+        except CodedError as error:
+            if error.message.code != "error.table_no_column":
+                raise
+            missing = error
+    assert missing is not None
+    raise CodedError("error.record_of_another_robot", robot=robot.name, reason=missing.message)
 
 
-def _columns(robot: Robot) -> list[str]:
-    """Names of t, q, v, u and the force."""
+def _columns(robot: Robot, measured: bool) -> list[str]:
+    """Names of t, q, v, u and the force; of the joint angles as measured, or as they were."""
     system, known = robot.system, header(robot)
     rates = known[2 + system.n : 2 + 2 * system.n]
     efforts = [n for n in known if n.startswith(("tau", "force"))]
-    return ["t_s", *robot.coordinate_names, *rates, *efforts]
+    angles = list(robot.coordinate_names)
+    if measured:
+        angles[: system.m] = measured_names(robot)
+    return ["t_s", *angles, *rates, *efforts]
 
 
-def _record(rows: Array, lines: Sequence[int], robot: Robot) -> MotionRecord:
+def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> MotionRecord:
     """The record of some rows.
 
     Args:
         lines: their lines in the file.
+        measured: whether the joint angles are measured ones; their rates are then filtered ones.
 
     Raises:
         CodedError: their times are not evenly spaced.
@@ -79,4 +87,6 @@ def _record(rows: Array, lines: Sequence[int], robot: Robot) -> MotionRecord:
         step, usual = f"{steps[at]:.6g}", f"{dt:.6g}"
         raise CodedError("error.record_uneven", line=str(lines[at + 1]), step=step, usual=usual)
     q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
-    return MotionRecord(dt, q, v, u, force)
+    if measured:
+        v[:, :m] = smooth_velocities(q[:, :m], dt)
+    return MotionRecord(dt, q, v, u, force, measured)

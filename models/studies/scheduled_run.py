@@ -58,6 +58,7 @@ class ScheduledRun:
         self._loop, self._dt = InterpretedLoop(kernel), time_step(parameters)
         self._hold = schedule.ticks("hold", self._dt)
         self._waits = schedule.hold_at is not None and len(self._hold) > 0
+        self._theta = np.empty(0)  # of the row before, while it waits
         self._profile: SpeedProfile | None = None
         self._brake: tuple[tuple[Array, Array], Array | None] | None = None
         self._tick, self._state = 0, self._first(start)
@@ -71,14 +72,15 @@ class ScheduledRun:
                 ticks = min(CHUNK, end - self._tick)
                 state, rows = self._loop.run(self._state, settings, table, ticks)
                 passed = self._passage(rows)
-                if passed:
+                if passed is not None:
                     state, rows = self._loop.run(self._state, settings, table, passed)
                     begin = self._tick + passed
                     self._hold = range(begin, begin + len(self._hold))
                     self._waits, end = False, begin
                 held = self._held()
                 self._state, self._tick = state, self._tick + len(rows)
-                yield rows, held
+                if len(rows):
+                    yield rows, held
 
     def _held(self) -> bool:
         return self._tick in self._hold and not self._waits
@@ -93,15 +95,19 @@ class ScheduledRun:
             times.append(self._profile.leg(self._tick, dt).end or 0)
         return min((tick for tick in times if tick > self._tick), default=self._tick + CHUNK)
 
-    def _passage(self, rows: Array) -> int:
-        """The first of these rows at which the end-point has passed the place of the hold, or 0."""
+    def _passage(self, rows: Array) -> int | None:
+        """The first of these rows at which the end-point has passed the place of the hold, or None.
+
+        It may have passed there between the last row before these and the first of them.
+        """
         place = self._schedule.hold_at
         if not self._waits or place is None or self._tick < self._hold.start:
-            return 0
-        theta = self._kernel.log.unpack(rows)["theta"][:, 0]
+            return None
+        before, own = self._theta, self._kernel.log.unpack(rows)["theta"][:, 0]
+        theta, self._theta = np.concatenate([before, own]), own[-1:].copy()
         turns = np.floor((theta - place) / PERIOD) if self._curve.closed else np.sign(theta - place)
         passed = (np.diff(turns) != 0) & (np.abs(np.diff(theta)) < JUMP)
-        return int(passed.argmax()) + 1 if passed.any() else 0
+        return int(passed.argmax()) + 1 - len(before) if passed.any() else None
 
     def _settings(self) -> Array:
         """The inputs of the loop from now on; a profile also sets the speed reference now."""

@@ -101,11 +101,17 @@ def wall(
     return (inside * ca.fmin(pressed, limits.largest)) * normal
 
 
-def dry_friction(v: ca.SX, coulomb: ca.SX) -> ca.SX:
-    """τ = -c v / sqrt(v² + ε²): Coulomb friction with a smooth sign, (m, 1), [N m].
+def dry_friction(v: ca.SX, coulomb: ca.SX, compliance: ca.SX, dt: ca.SX) -> ca.SX:
+    """τ_i = -c v_i / max(sqrt(v_i² + ε²), c a_i): Coulomb friction, smooth at 0, (m, 1), [N m].
+
+    It is held over a tick, in which it must not reverse a joint. With A the accelerations for unit
+    torques, a_i = dt Σ_j |A_ij|: no eigenvalue of dt A diag(τ_i / v_i) exceeds 1 in absolute value.
 
     Args:
         v: joint velocities, (m, 1), [rad/s].
         coulomb: friction torque c, [N m].
+        compliance: A, (m, m), [1/(kg m²)].
+        dt: length of a tick, [s].
     """
-    return -coulomb * v / ca.sqrt(v**2 + DRY_VELOCITY**2)
+    least = coulomb * dt * (ca.fabs(compliance) @ ca.SX.ones(v.numel()))
+    return -coulomb * v / ca.fmax(ca.sqrt(v**2 + DRY_VELOCITY**2), least)

@@ -37,8 +37,9 @@ class Parameters(LawParameters):
     at_limit: str = choice(
         "across_first",
         ("across_first", "slow_down", "cut"),
-        "when a torque limit is reached, path following gives up speed along the path before the"
-        " path; slow_down: and asks only for a speed that the whole path allows; cut: neither",
+        "when a torque limit is reached, laws that command an acceleration give up speed along the"
+        " path before the path; slow_down: and path following and typed laws ask only for a speed"
+        " that the whole path allows; cut: neither",
         group="realism",
         label="At the limit",
     )

@@ -88,6 +88,11 @@ class MechanicalSystem:
         inputs = [self.q, self.parameters]
         return ca.Function("actuation", inputs, [self.actuation])(q, parameters).T @ v
 
+    def compliance(self, q: ca.SX, parameters: ca.SX) -> ca.SX:
+        """B(q)^T M⁻¹ B, (m, m): how `input_rates` change with the inputs."""
+        inputs, spread = [self.q, self.parameters], self.actuation.T @ self.input_gain
+        return ca.densify(ca.Function("compliance", inputs, [spread])(q, parameters))
+
     def parameter_vector(self, values: dict[str, float]) -> Array:
         """The values in the order of `parameter_names`, shape (k,)."""
         return np.array([values[name] for name in self.parameter_names])

@@ -106,6 +106,8 @@ class View:
         integral: integral of `ControlAction.error`, (p, 1).
         lag: how old the measurement is at most when its torque ends, [s]: the control interval, the
             time constant of the velocity filter, if there is one, and the computing delay.
+        measured: configuration and velocity as measured, not predicted, each (n, 1).
+        held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """
 
     system: MechanicalSystem
@@ -124,6 +126,8 @@ class View:
     own_gains: Fields
     integral: ca.SX
     lag: ca.SX
+    measured: tuple[ca.SX, ca.SX]
+    held: ca.SX
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +155,8 @@ class ControlAction:
         far: share of the command, from 0 to 1, that returns to the path from far away, instead of
             following the law's formula: see `path_following.far_from_path`.
         theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
-        along: the part of `acceleration` along the path, if it may be reduced.
+        along: the part of `acceleration` along the path, which a torque limit may reduce; None:
+            its component along the path where the robot is.
         memory: the law's own memory after the tick.
     """
 

@@ -33,6 +33,23 @@ def test_table_json_csv_and_picture_tell_the_same(
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+def test_laws_under_weak_motors_run_with_and_without_the_remedy(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = tmp_path / "a.csv"
+    arguments = ["compare", *PAIR[:4], "--obstruction", "too_fast", "--csv", str(rows)]
+    assert run_command(arguments) == 0
+    assert "too_fast_cut" in capsys.readouterr().out
+    assert run_command([*arguments, "--json"]) == 0
+    data = json.loads(capsys.readouterr().out)["laws"]
+    with rows.open(newline="") as file:
+        read = {(row["law"], row["obstruction"]) for row in csv.DictReader(file)}
+    for law in PAIR[1], PAIR[3]:
+        assert list(data[law]) == ["too_fast", "too_fast_cut"]
+        assert data[law]["too_fast"] != data[law]["too_fast_cut"]
+        assert {(law, "too_fast"), (law, "too_fast_cut")} <= read
+
+
 TYPED = "across = -K1*xi - K2*dxi - K3*int_xi; along = -K5*(dtheta - speed)"
 SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 

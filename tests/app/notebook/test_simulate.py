@@ -290,3 +290,19 @@ def test_the_package_alone_imports_next_to_nothing(tmp_path: Path) -> None:
     assert set(onpath.__all__) <= set(names)
     with pytest.raises(AttributeError, match="no attribute 'simulat'"):
         _ = onpath.simulat  # type: ignore[attr-defined]
+
+
+def test_the_list_of_paths_says_which_are_refused_and_the_refusal_names_the_path() -> None:
+    for name, text in onpath.paths().items():
+        if ", refused: " not in text:
+            assert len(onpath.simulate(path=name, duration=0.02).t) == 20
+            continue
+        with pytest.raises(ValueError, match=name) as refusal:
+            onpath.simulate(path=name, duration=0.02)
+        assert text.split("refused: ")[1] in str(refusal.value)
+
+
+def test_a_hold_that_never_happens_is_told() -> None:
+    with pytest.warns(UserWarning, match="did not pass"):
+        run = onpath.simulate(hold=(0.1, 0.2), hold_at=-2.0, duration=0.3)
+    assert "did not pass" in repr(run) and not run.held.any()

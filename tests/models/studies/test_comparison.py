@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from functools import lru_cache
@@ -22,7 +23,9 @@ from onpath.models.studies.comparison import (
     worst,
 )
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
+from tests.support.checkout import ROOT
 
+README = ROOT / "models" / "studies" / "README.md"
 CONTEST = Contest(FIVE_BAR, FIVE_BAR.parameters(), circle(0.05))
 PAIR = ("trajectory_tracking", "path_following")
 
@@ -73,9 +76,36 @@ def test_the_velocity_field_gives_no_more_than_it_stores() -> None:
         assert max(o.energy_given_J for o in outcomes("velocity_field", name)) < stored
 
 
-def test_under_weak_motors_path_following_keeps_the_path_better_than_tracking() -> None:
+def test_with_the_remedy_path_following_keeps_the_path_better_than_tracking() -> None:
     for name in ("weak_motors", "too_fast"):
         assert max(distances("path_following", name)) < min(distances("trajectory_tracking", name))
+
+
+def test_every_law_that_commands_an_acceleration_gets_the_remedy_at_a_torque_limit() -> None:
+    for law in CONTEST.laws():
+        cut, remedied = (distances(law, name) for name in ("too_fast_cut", "too_fast"))
+        assert (cut != remedied) is LAWS[law].commands_acceleration, law
+
+
+def test_the_readme_quotes_both_rows_of_saturation() -> None:
+    names = ("weak_motors_cut", "weak_motors", "too_fast_cut", "too_fast")
+    for law in ("path_following", "trajectory_tracking", "waiting_clock", "event_based"):
+        found = [f"{max(distances(law, name)):.0f}" for name in names]
+        assert f"| `{law}` | {' | '.join(found)} |" in README.read_text(encoding="utf-8"), found
+
+
+def test_slowing_down_is_given_to_path_following_and_not_to_timetables() -> None:
+    slow = dataclasses.replace(CONTEST.parameters, at_limit="slow_down")
+    contest = dataclasses.replace(CONTEST, parameters=slow)
+
+    def worst_place(law: str, name: str) -> float:
+        (found,) = compare(contest, [law], [name])
+        return 1000 * max(o.max_distance_m for o in found)
+
+    found = [worst_place("path_following", name) for name in ("weak_motors", "too_fast")]
+    assert [f"{each:.1f}" for each in found] == ["0.9", "0.0"]
+    tracking = worst_place("trajectory_tracking", "too_fast")
+    assert tracking == max(distances("trajectory_tracking", "too_fast"))
 
 
 def test_only_laws_that_can_take_part_are_compared() -> None:

@@ -24,6 +24,7 @@ KEYS = {
     "final_speed_rad_s",
     "max_torque_Nm",
     "stopped_at_s",
+    "never_held",
 }
 RADIUS = 0.05
 

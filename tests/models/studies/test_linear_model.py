@@ -16,7 +16,15 @@ from onpath.app.exports.files import csv_bytes
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.models.closed_loop.trajectory import write_csv
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.closed_loop.trajectory import MEASURED, write_csv
 from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
@@ -88,6 +96,67 @@ def test_dry_friction_is_found_where_there_is_some(tmp_path: Path) -> None:
     values = {each.name: each.value for each in result.found}
     assert values["c1"] == pytest.approx(0.04, rel=0.01)
     assert values["c2"] == pytest.approx(0.04, rel=0.01)
+
+
+NOISY = {"encoder_counts": 2000, "sensor_noise": 5e-4}
+
+
+@pytest.mark.parametrize("values", [{"encoder_counts": 500}, {"sensor_noise": 1e-3}, NOISY])
+@pytest.mark.parametrize("robot", RIGID)
+def test_the_file_has_the_angles_that_the_loop_reads(robot: str, values: dict[str, float]) -> None:
+    """The loop keeps them in its state after each tick."""
+    chosen = experiments(robot)["obstruction"].with_values({"duration": 0.1, "seed": 3} | values)
+    own = run(chosen, "path_following")
+    made, curve = chosen.robot(), chosen.curve()
+    kernel = kernel_of(made, kind_of("path_following", chosen.parameters, curve))
+    state = first_state(made, kernel, curve, own.fields["q"][0])
+    settings = settings_vector(made, kernel, chosen.parameters, curve, FREE)
+    loop = InterpretedLoop(kernel)
+    for k in range(100):
+        state, rows = loop.run(state, settings, curve.table(), 1)
+        assert np.array_equal(kernel.log.unpack(rows)["q"][0], own.fields["q"][k])
+        read = kernel.state.unpack(state)["encoder"]
+        assert read == pytest.approx(own.fields[MEASURED][k], abs=1e-12)
+
+
+@pytest.mark.parametrize("robot", RIGID)
+def test_measured_angles_are_written_and_used(
+    robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "motion.csv"
+    for values, angles in ((NOISY, "measured"), (dict[str, float](), "true")):
+        path.write_text(text_of(robot, **values))
+        assert ("q1_measured_rad" in path.read_text().splitlines()[0]) is bool(values)
+        assert run_command(["identify", str(path), "--robot", robot, "--json"]) == 0
+        data = json.loads(capsys.readouterr().out)
+        assert data["angles"] == angles
+        assert (data["unexplained"] > 1e-3) is bool(values)  # not the true motion
+        assert run_command(["identify", str(path), "--robot", robot]) == 0
+        table = capsys.readouterr().out
+        assert f"from the {angles} angles" in table and "leaves out" in table
+
+
+def test_runs_with_and_without_exact_sensors_are_written_together() -> None:
+    known = experiments()["obstruction"].with_values({"duration": 0.05})
+    runs = [run(each, "path_following") for each in (known.with_values(NOISY), known)]
+    file = io.StringIO()
+    write_csv(file, known.robot(), runs)
+    rows = [line.split(",") for line in file.getvalue().splitlines()]
+    assert all(len(row) == len(rows[0]) for row in rows)
+    assert all(row[2:4] == row[-2:] for row in rows[51:])  # exact sensors read what is
+
+
+@pytest.mark.parametrize("values", [{}, NOISY], ids=["exact", "noisy"])
+@pytest.mark.parametrize("robot", RIGID)
+def test_torques_that_are_logged_late_or_early_are_noticed(
+    robot: str, values: dict[str, float], tmp_path: Path
+) -> None:
+    motion = record(robot, tmp_path, **values)
+    assert found(robot, motion).late == 0
+    for ticks in (-8, 5, 20):
+        late = replace(motion, u=np.roll(motion.u, ticks, axis=0))
+        cut = {name: getattr(late, name)[30:-30] for name in ("q", "v", "u", "force")}
+        assert found(robot, replace(late, **cut)).late == pytest.approx(1e-3 * ticks, rel=0.3)
 
 
 def test_what_the_motion_does_not_tell_apart_is_estimated_as_a_sum() -> None:

@@ -11,7 +11,7 @@ from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.speed_profile import SpeedProfile, profile_from
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import ellipse
-from onpath.models.studies.experiments import experiments, run
+from onpath.models.studies.experiments import experiments, never_held, run, summary
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 
 FOLLOWING, TRACKING = "path_following", "trajectory_tracking"
@@ -80,9 +80,29 @@ def test_the_brake_waits_for_its_place(law: str, place: float) -> None:
     assert np.all(trajectory.fields["force"][~trajectory.held] == 0)
 
 
-def test_a_place_that_is_never_passed_holds_nothing() -> None:
-    trajectory = ran(duration=0.5, hold_from=0.1, hold_to=0.2, hold_at=-2.0)
-    assert not trajectory.held.any() and len(trajectory.t) == 500
+def test_the_brake_acts_where_the_place_is_first_passed_at_any_tick() -> None:
+    """Also between two parts of a run, which is computed `CHUNK` ticks at a time."""
+    theta = ran(duration=2.0, **FREE).fields["theta"][:, 0]
+    random = np.random.default_rng(4)
+    ticks = [600, 800, 1000, 1200, 1400, *random.integers(501, 1490, 10)]
+    for tick in ticks:
+        place = float(theta[tick - 1] + random.uniform(0.1, 0.9) * (theta[tick] - theta[tick - 1]))
+        wrapped = (place + np.pi) % (2 * np.pi) - np.pi
+        trajectory = ran(duration=1.6, hold_from=0.5, hold_to=0.55, hold_at=wrapped)
+        assert trajectory.held.argmax() == tick, tick
+        assert trajectory.held.sum() == 50 and len(trajectory.t) == 1600
+
+
+def test_a_place_that_is_never_passed_holds_nothing_and_the_run_says_so() -> None:
+    for at, words in ({"hold_at": -2.0}, "did not pass θ = -2 rad"), ({}, "ends before 0.6 s"):
+        late = {"hold_from": 0.6, "hold_to": 0.7} if not at else {"hold_from": 0.1, "hold_to": 0.2}
+        asked = experiments()["obstruction"].with_values({"duration": 0.5} | late | at)
+        trajectory = run(asked, FOLLOWING)
+        assert not trajectory.held.any() and len(trajectory.t) == 500
+        assert words in never_held(asked, trajectory)
+        assert summary(asked, [trajectory])["laws"][FOLLOWING]["never_held"] is True
+    held = experiments()["obstruction"].with_values({"duration": 0.5, "hold_from": 0.1})
+    assert never_held(held, run(held, FOLLOWING)) == ""
 
 
 @pytest.mark.parametrize("direction", ["along", "across", "both"])
