@@ -9,7 +9,7 @@ from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
 from onpath.models.errors import Message
-from onpath.models.layout import Fields, Layout
+from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
@@ -83,7 +83,7 @@ def _causes(
     return causes
 
 
-def _seen(last: Fields, parameters: Parameters) -> list[Message]:
+def _seen(last: dict[str, Array], parameters: Parameters) -> list[Message]:
     """Causes that show in the last rows before the fault."""
     causes, limit = list[Message](), parameters.torque_limit
     if limit > 0 and (np.abs(last["u"]).max(1) >= 0.999 * limit).mean() > OFTEN:

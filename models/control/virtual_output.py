@@ -165,7 +165,7 @@ def virtual_output(
     else:
         xi, gradient = level.at(z)
         xi_rate = ca.dot(gradient, z_rate)
-        offset, xi_per_metre = level.bent(z, z_rate), ca.norm_2(gradient)
+        offset, xi_per_metre = level.bent(z, z_rate), ca.sqrt(ca.dot(gradient, gradient))
         inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
     return VirtualOutput(
         theta=closest.theta,

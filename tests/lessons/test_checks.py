@@ -215,7 +215,7 @@ def test_a_bound_was_kept_once_if_any_run_with_the_setting_kept_it(course: list[
                 values={"tracker": {}, "follower": {"distance": np.array(shown)}},
                 happenings=happenings,
                 run=number,
-                parameters=replace(FIVE_BAR.lab, K1=run.k1),
+                parameters=replace(FIVE_BAR.parameters(), K1=run.k1),
                 end=count * 0.01,
                 before=earlier.values,
             )

@@ -185,7 +185,7 @@ def test_record_and_class_show_all_of_it(tmp_path: Path) -> None:
     items = [row["item"] for row in every if row["kind"] in ("question", "number", "words")]
     assert len(items) == len(set(items)) == 3  # several in one step are told apart
     assert (rows["prediction", 4]["sure"], rows["prediction", 4]["reason"]) == ("fairly", "B")
-    assert rows["prediction", 2]["why"].startswith("<b>x</b>")
+    assert str(rows["prediction", 2]["why"]).startswith("<b>x</b>")
     assert (rows["number", 8]["right"], rows["number", 8]["value"]) == (0, 7)
     assert rows["words", 8]["result"] == "answered" and rows["words", 8]["text"]
 

@@ -26,11 +26,11 @@ from tests.support.lab import do, new_lab, run
 def test_the_reason_of_a_stop_names_its_cause(
     robot: str, settings: dict[str, float | str], cause: str | None
 ) -> None:
-    made = onpath.simulate(robot, law="path_following", duration=4, **settings)
+    made = onpath.simulate(robot, law="path_following", duration=4, **settings)  # type: ignore[arg-type]
     if cause is None:
         assert made.reason == "" or "Likely because" in made.reason
     else:
-        assert made.diverged_at is not None and cause in made.reason
+        assert made.stopped_at is not None and cause in made.reason
 
 
 def test_the_lab_says_before_the_run_that_a_control_is_too_slow() -> None:

@@ -93,6 +93,9 @@ def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
         gains=GAINS,
         own_gains={},
         integral=none,
+        lag=ca.SX(DT),
+        measured=(q, v),
+        held=none,
     )
     command = path_following(view).acceleration
     assert command is not None
