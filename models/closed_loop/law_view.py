@@ -84,11 +84,17 @@ def interval(kind: Kind, settings: Fields) -> ca.SX:
     return settings["dt"] if kind.free else settings["dt"] * settings["hold_ticks"]
 
 
-def lag(kind: Kind, settings: Fields) -> ca.SX:
-    """How old the measurement is at most when its torque ends, [s]; see `View.lag`."""
-    filtered = settings["encoder_filter"] if kind.encoder or kind.noise else ca.SX(0)
-    late = settings["delay_ticks"] * settings["dt"] if kind.delay else ca.SX(0)
-    return interval(kind, settings) + filtered + late
+def lag(system: MechanicalSystem, kind: Kind, settings: Fields) -> ca.SX:
+    """How old what the controller knows is at most when its torque ends, [s]; see `View.lag`."""
+    age = interval(kind, settings)
+    if kind.encoder or kind.noise:
+        age += settings["encoder_filter"]
+    if kind.delay:
+        age += settings["delay_ticks"] * settings["dt"]
+    if kind.law == "composite":
+        omega1 = settings["model"][system.parameter_names.index("omega1")]
+        age += 1 / (settings["tip_prediction"] * omega1)
+    return age
 
 
 def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX) -> Clock:
@@ -153,7 +159,7 @@ def law_view(
         gains=Gains(*[settings[name] for name in GAINS]),
         own_gains={name: settings[name] for name in law.gains if name not in GAINS},
         integral=state["integral"],
-        lag=lag(kind, settings),
+        lag=lag(system, kind, settings),
         measured=measure(system, kind, state, settings)[:2],
         held=state["u"],
     )

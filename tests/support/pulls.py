@@ -75,9 +75,11 @@ def parameters_of(name: str, **changes: float | str) -> Parameters:
     return replace(ROBOTS[name].parameters(), **changes)
 
 
-def runs_untouched(name: str, parameters: Parameters, law: str, seconds: float = 10.0) -> bool:
-    """Whether a robot runs along its circle without a fault if nobody touches it."""
-    robot, curve = ROBOTS[name].make(parameters), presets()["circle"].curve
+def runs_untouched(
+    name: str, parameters: Parameters, law: str, path: str = "circle", seconds: float = 10.0
+) -> bool:
+    """Whether a robot runs along its path without a fault if nobody touches it."""
+    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
     loop, start = _loop(robot, kind_of(law, parameters, curve)), _begin(robot, curve, 0.0)
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)

@@ -104,8 +104,9 @@ class View:
         gains: K1 to K5.
         own_gains: the law's further gains, by the names of `Law.gains`.
         integral: integral of `ControlAction.error`, (p, 1).
-        lag: how old the measurement is at most when its torque ends, [s]: the control interval, the
-            time constant of the velocity filter, if there is one, and the computing delay.
+        lag: how old what the controller knows is at most when its torque ends, [s]: the control
+            interval, and, where there are such, the time constant of the velocity filter, the
+            computing delay and the time constant by which composite control predicts the bending.
         measured: configuration and velocity as measured, not predicted, each (n, 1).
         held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """

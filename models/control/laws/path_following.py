@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import casadi as ca
+import numpy as np
 
 from onpath.models.control.laws.law import Along, ControlAction, Law, View
 from onpath.models.control.laws.references import fading
@@ -10,6 +11,7 @@ from onpath.models.paths.projection import wrap
 
 NEAR_SPREAD, FAR_SPREAD = 0.5, 0.2  # of 1 - λκ
 NEAR_TURN, FAR_TURN = 0.15, 0.3  # [rad], beyond the wanted turn in the time `View.lag`
+NEAR_END, FAR_END = 0.005, 0.02  # [m], beyond an end of an open path
 
 
 def path_following(view: View) -> ControlAction:
@@ -47,7 +49,7 @@ def followed(
     """
     output, far = view.output, far_from_path(view)
     near = output.acceleration(along, across)
-    home = -view.gains.k1 * output.gap - view.gains.k2 * view.y_rate
+    home = -view.gains.k1 * (output.gap + beyond_end(view)) - view.gains.k2 * view.y_rate
     return ControlAction(
         acceleration=(1 - far) * near + far * home,
         error=ca.vertcat(output.xi, 0),
@@ -67,7 +69,8 @@ def far_from_path(view: View) -> ca.SX:
     `lag` ago, in which θ must not turn far. So s goes smoothly from 0 to 1 while
 
         1 - λκ                     falls from 0.5 to 0.2, or
-        (|θ'| - |ω_ref|) lag       rises from 0.15 to 0.3 rad.
+        (|θ'| - |ω_ref|) lag       rises from 0.15 to 0.3 rad, or
+        the way past an open end   rises from 5 to 20 mm, where σ is the end.
 
     Elsewhere s is 0 exactly. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
     without a force from outside, whichever of several closest points is taken: |y - σ|² is the
@@ -77,7 +80,25 @@ def far_from_path(view: View) -> ca.SX:
     turn = (ca.fabs(output.theta_rate) - ca.fabs(view.task.speed)) * view.lag
     inside = _risen((NEAR_SPREAD - output.spread) / (NEAR_SPREAD - FAR_SPREAD))
     fast = _risen((turn - NEAR_TURN) / (FAR_TURN - NEAR_TURN))
-    return ca.fmax(inside, fast)
+    share = ca.fmax(inside, fast)
+    if view.clock.closed:
+        return share
+    past = beyond_end(view)
+    past = (ca.sqrt(ca.dot(past, past)) - NEAR_END) / (FAR_END - NEAR_END)
+    return ca.fmax(share, _risen(past))
+
+
+def beyond_end(view: View) -> ca.SX:
+    """From an end of an open path to the closest point on its tangent there, (p, 1), [m].
+
+    It is 0 on the path, and on a closed one.
+    """
+    closest, frame = view.closest, view.frame
+    if view.clock.closed:
+        return ca.SX.zeros(frame.p, 1)
+    past = closest.theta - ca.fmin(ca.fmax(closest.theta, -np.pi), np.pi)
+    none = ca.SX.zeros(frame.p - closest.first.numel(), 1)
+    return frame.join(past * closest.first, none, rate=True)
 
 
 def _risen(x: ca.SX) -> ca.SX:

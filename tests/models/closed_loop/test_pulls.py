@@ -18,13 +18,22 @@ from tests.support.pulls import parameters_of, runs_untouched, troubled
 
 FOLLOWER = "path_following"
 RATES, COUNTS, NOISES = (100, 250, 1000), (0.0, 2000.0), (0.0, 1e-4)
+PATHS = ("circle", "circle", "ellipse", "segment")
 NEAR = 0.005  # [m], within which it must be 1.5 s after its release
 
 
-def check(robot: str, rate: int, counts: float, noise: float, seed: int, pulls: int) -> None:
+def check(
+    robot: str,
+    rate: int,
+    counts: float,
+    noise: float,
+    seed: int,
+    pulls: int,
+    path: str = "circle",
+) -> None:
     parameters = parameters_of(robot, control_rate=rate, encoder_counts=counts, sensor_noise=noise)
-    assume(runs_untouched(robot, parameters, FOLLOWER))
-    for number, each in enumerate(troubled(robot, parameters, FOLLOWER, seed, pulls)):
+    assume(runs_untouched(robot, parameters, FOLLOWER, path))
+    for number, each in enumerate(troubled(robot, parameters, FOLLOWER, seed, pulls, path)):
         assert each.fault is None, (number, each.trouble, each.fault)
         assert each.late < NEAR, (number, each.trouble, each.late)
 
@@ -36,11 +45,12 @@ def check(robot: str, rate: int, counts: float, noise: float, seed: int, pulls: 
     st.sampled_from(COUNTS),
     st.sampled_from(NOISES),
     st.integers(0, 2**32 - 1),
+    st.sampled_from(PATHS),
 )
 def test_nothing_stops_the_follower(
-    robot: str, rate: int, counts: float, noise: float, seed: int
+    robot: str, rate: int, counts: float, noise: float, seed: int, path: str
 ) -> None:
-    check(robot, rate, counts, noise, seed, pulls=6)
+    check(robot, rate, counts, noise, seed, pulls=6, path=path)
 
 
 @pytest.mark.thorough
@@ -70,7 +80,8 @@ def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
 ) -> None:
     output = SimpleNamespace(spread=ca.SX(spread), theta_rate=ca.SX(rate))
     task = SimpleNamespace(speed=ca.SX(wanted))
-    view = SimpleNamespace(output=output, task=task, lag=ca.SX(lag))
+    clock = SimpleNamespace(closed=True)
+    view = SimpleNamespace(output=output, task=task, clock=clock, lag=ca.SX(lag))
     share = float(far_from_path(view))  # type: ignore[arg-type]
     turn = (abs(rate) - abs(wanted)) * lag
     assert 0 <= share <= 1
