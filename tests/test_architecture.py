@@ -41,7 +41,6 @@ PRINTING = ("app/cli/", "app/bench/tables.py")
 DRAWING = ("app.page", "app.scene")
 LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
-LONGEST = 40
 
 
 @cache
@@ -222,27 +221,6 @@ def test_texts_are_in_the_same_encoding_on_every_machine() -> None:
     assert offenders(lambda file: without_encoding(parse(file))) == []
 
 
-def lines(function: ast.FunctionDef | ast.AsyncFunctionDef) -> int:
-    """Lines of a function without its docstring."""
-    assert function.end_lineno is not None
-    total = function.end_lineno - function.lineno + 1
-    first = function.body[0]
-    if ast.get_docstring(function) is not None and first.end_lineno is not None:
-        total -= first.end_lineno - first.lineno + 1
-    return total
-
-
-def test_functions_are_short() -> None:
-    def long(file: Path) -> dict[str, int]:
-        return {
-            node.name: lines(node)
-            for node in ast.walk(parse(file))
-            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and lines(node) >= LONGEST
-        }
-
-    assert offenders(long) == []
-
-
 def test_modules_and_public_functions_say_what_they_are() -> None:
     def silent(file: Path) -> list[str]:
         tree = parse(file)
@@ -262,8 +240,6 @@ def test_rules_would_notice() -> None:
     assert packages(bad) == {"threading", "viser", "app"}
     assert folder_of("onpath.app.lab.session") == "app.lab"
     assert folder_of("onpath.models.arrays.Array") == "models"
-    long = ast.parse("def f():\n    '''a\n    b'''\n" + "    x = 1\n" * 50).body[0]
-    assert isinstance(long, ast.FunctionDef) and lines(long) == 51
     guessing = "a.read_text()\nb.write_text(x)\nc.open('w', newline='')\nopen(d)\n"
     knowing = "a.read_text('utf-8')\nb.write_text(x, encoding='utf-8')\nc.open('rb')\nlab.open()"
     assert without_encoding(ast.parse(guessing + knowing)) == [1, 2, 3, 4]

@@ -1003,6 +1003,10 @@ parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Ges
 parameter-at_limit-option-across_first = quer zuerst
 parameter-at_limit-option-slow_down = langsamer
 parameter-at_limit-option-cut = abschneiden
+parameter-at_limit_for-label = Gibt nach
+parameter-at_limit_for-help = welche Gesetze an einer Motorgrenze Geschwindigkeit längs der Bahn aufgeben: alle, die eine Beschleunigung verlangen, oder nur Bahnfolgeregelung und eingetippte Gesetze
+parameter-at_limit_for-option-all = alle Gesetze
+parameter-at_limit_for-option-path_following = nur Bahnfolge
 
 parameter-clock_gain-label = Uhr wartet
 parameter-clock_gain-help = wie stark die wartende Uhr den Fehler längs der Bahn spürt; 0: eine gewöhnliche Uhr

@@ -71,8 +71,9 @@ def _causes(
         causes.append(caution)
     channels = channels_of(law, parameters)
     if not isinstance(channels, Message):
-        growing = [channel for channel in channels if not channel.stable]
-        causes += [Message(f"cause.poles_{channel.name}") for channel in growing]
+        across, along = channels
+        causes += [Message("cause.poles_across")] * (not across.stable)
+        causes += [Message("cause.poles_along")] * (not along.stable)
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):

@@ -101,11 +101,19 @@ def kind_of(
         law=getattr(parameters, "law", "redefined"),
         space=curve.dimension == 3,
         free=plain and exact and every_tick and untouched,
-        across_first=parameters.torque_limit > 0 and parameters.at_limit != "cut",
+        across_first=_gives_way(controller, parameters),
         delay=parameters.delay > 0,
         stiction=parameters.stiction > 0,
         noise=parameters.sensor_noise > 0 or getattr(parameters, "strain_noise", 0.0) > 0,
     )
+
+
+def _gives_way(controller: str, parameters: Parameters) -> bool:
+    """Whether a law gives up speed along the path at a torque limit."""
+    if parameters.torque_limit == 0 or parameters.at_limit == "cut":
+        return False
+    follows = is_text(controller) or controller == "path_following"
+    return follows or parameters.at_limit_for == "all"
 
 
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:

@@ -155,12 +155,10 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
 def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
     """Why the brake of the schedule never acted in a run; empty if it did or was not asked for."""
     schedule = experiment.schedule
-    asked = schedule.hold_to > schedule.hold_from
-    if not asked or trajectory.held.any() or trajectory.stopped_at is not None:
+    stopped = trajectory.stopped_at is not None
+    if schedule.hold_at is None or stopped or trajectory.held.any():
         return ""
     begin = f"{schedule.hold_from:g} s"
-    if schedule.hold_at is None or schedule.hold_from >= schedule.duration:
-        return f"never held: the run ends before {begin}"
     return f"never held: the end-point did not pass θ = {schedule.hold_at:g} rad after {begin}"
 
 

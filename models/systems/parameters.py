@@ -43,6 +43,14 @@ class Parameters(LawParameters):
         group="realism",
         label="At the limit",
     )
+    at_limit_for: str = choice(
+        "all",
+        ("all", "path_following"),
+        "which laws give up speed along the path at a torque limit: all that command an"
+        " acceleration, or path following and typed laws alone",
+        group="realism",
+        label="Given up by",
+    )
     torque_step: float = number(
         0.0,
         "N m",

@@ -34,6 +34,7 @@ class Change:
 CHANGES = (
     Change(2, "K3", 0.0, ("five_bar", "two_link_arm")),
     Change(2, "tracker_integral", "on", ("five_bar", "two_link_arm", "flexible")),
+    Change(3, "at_limit_for", "path_following"),
 )
 """By version, oldest first."""
 DEFAULTS = max(change.since for change in CHANGES)

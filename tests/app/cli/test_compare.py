@@ -76,7 +76,7 @@ def test_typed_laws_are_compared_like_the_others(
 def test_a_law_that_stops_says_so_everywhere(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    fails, rows, picture = "across = 1000; along = 0", tmp_path / "a.csv", tmp_path / "a.png"
+    fails, rows, picture = "u1 = 9; u2 = 0", tmp_path / "a.csv", tmp_path / "a.png"
     arguments = ["compare", "--law", fails, "--law", "path_following", "--obstruction", "none"]
     assert run_command([*arguments, "--csv", str(rows), "--plot", str(picture)]) == 0
     table = capsys.readouterr().out

@@ -71,7 +71,7 @@ def test_bad_text_is_one_line_and_no_file(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.filterwarnings("ignore:no effect under across .*: K3")
+@pytest.mark.filterwarnings("ignore:no effect under across")
 def test_in_python_a_law_may_be_text() -> None:
     both = "path_following", TYPED
     wanted, typed = (onpath.simulate(law=law, duration=0.5, K3=0.0) for law in both)

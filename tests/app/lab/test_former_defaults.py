@@ -136,7 +136,7 @@ def test_a_default_that_has_changed_has_a_line(robot: str) -> None:
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_change_is_one_line(robot: str, monkeypatch: pytest.MonkeyPatch) -> None:
     old = {"defaults": DEFAULTS, "robot": robot, "benches": {robot: {"parameters": {"K2": 30.0}}}}
-    monkeypatch.setattr(former_defaults, "CHANGES", (*CHANGES, Change(3, "K1", 123.0)))
+    monkeypatch.setattr(former_defaults, "CHANGES", (*CHANGES, Change(DEFAULTS + 1, "K1", 123.0)))
     found = from_data(old)
     assert found.robots[robot].parameters == {"K1": 123.0, "K2": 30.0}
     others = [name for name in ROBOTS if name != robot]
@@ -146,7 +146,7 @@ def test_a_change_is_one_line(robot: str, monkeypatch: pytest.MonkeyPatch) -> No
 def test_the_value_of_a_version_is_that_before_the_next_change(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    changes = (*CHANGES, Change(3, "K1", 123.0), Change(4, "K3", 77.0), Change(5, "K1", 321.0))
+    changes = (*CHANGES[:2], Change(3, "K1", 123.0), Change(4, "K3", 77.0), Change(5, "K1", 321.0))
     monkeypatch.setattr(former_defaults, "CHANGES", changes)
     values = [former_defaults.former_defaults("five_bar", version) for version in range(1, 6)]
     assert [value.get("K1") for value in values] == [123.0, 123.0, 321.0, 321.0, None]
@@ -188,14 +188,16 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
 def test_an_old_push_of_a_teacher_is_accepted() -> None:
     sent = read_push({"setup": {"benches": {"five_bar": {"parameters": {"K2": 60.0}}}}})
     assert isinstance(sent, TakeSetup)
-    own = {"K2": 60.0, "K3": 0.0, "tracker_integral": "on"}
+    own = {"K2": 60.0, "K3": 0.0, "tracker_integral": "on", "at_limit_for": "path_following"}
     assert sent.setup.robots["five_bar"] == RobotSetup(own)
     assert read_push(push_data(sent)) == sent
 
 
 def test_a_robot_added_since_has_its_own_defaults() -> None:
     assert "spatial_arm" not in VERSION_1
-    assert from_data({"benches": {"spatial_arm": {}}}).robots["spatial_arm"] == RobotSetup()
+    found = from_data({"benches": {"spatial_arm": {}}, "defaults": 2}).robots["spatial_arm"]
+    assert found == RobotSetup({"at_limit_for": "path_following"})
+    assert from_data({"benches": {"spatial_arm": {}}}).robots["spatial_arm"] == found
 
 
 def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:

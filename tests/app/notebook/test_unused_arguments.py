@@ -24,7 +24,7 @@ SHORT: dict[str, Any] = {"duration": 0.02}
         ({"law": "set_point", "profile": "0:0,1:3"}, "set point: profile"),
         ({"robot": "flexible", "alpha": 0.3}, "path following: alpha"),
         ({"robot": "flexible", "output": "redefined", "tip_damping": 0.5}, "tip_damping"),
-        ({"law": "across = -xi; along = 0", "K1": 3.0}, "across = -xi; along = 0: K1"),
+        ({"law": "across = -xi; along = 0", "K4": 3.0}, "across = -xi; along = 0: K4"),
     ],
 )
 def test_a_run_names_what_has_no_effect(given: dict[str, Any], named: str) -> None:

@@ -118,7 +118,7 @@ def test_two_typed_laws_are_told_apart_in_the_table() -> None:
 
 def test_a_law_that_stops_has_no_numbers_and_stands_at_the_edge_of_the_picture() -> None:
     results: Results = {}
-    for law in ("across = 1000; along = 0", "path_following"):
+    for law in ("u1 = 9; u2 = 0", "path_following"):
         what = FIVE_BAR.name, FIVE_BAR.parameters(), circle(0.05), results, law, "none", "en"
         results, picture = compared(*what)
     for language, stopped in (("en", "stopped"), ("de", "angehalten")):

@@ -73,6 +73,11 @@ def logs(
     return kernel, found[0], found[1]
 
 
+def motion(kernel: Kernel, rows: Array) -> Array:
+    """The rows without the share of its bound that the integral takes, which K3 scales."""
+    return np.delete(rows, kernel.log.slices["integral_used"].start, axis=1)
+
+
 MOVING = np.array([0.4, -0.3])
 
 
@@ -116,17 +121,17 @@ def test_the_first_text_is_path_following_bit_by_bit(
 
 def test_without_the_integral_it_is_path_following_with_k3_zero() -> None:
     text = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"
-    _, wanted, _ = logs(FIVE_BAR, "path_following", K3=0.0)
+    kernel, wanted, _ = logs(FIVE_BAR, "path_following", K3=0.0)
     _, typed, _ = logs(FIVE_BAR, text, K3=700.0)
-    assert np.array_equal(typed, wanted)
+    assert np.array_equal(motion(kernel, typed), motion(kernel, wanted))
 
 
 def test_the_integral_runs_although_k3_is_zero_and_stops_while_a_torque_saturates() -> None:
     for limit in (0.0, 0.3):
-        _, wanted, _ = logs(FIVE_BAR, "path_following", K3=900.0, torque_limit=limit)
+        kernel, wanted, _ = logs(FIVE_BAR, "path_following", K3=900.0, torque_limit=limit)
         text = PATH_FOLLOWING.replace("K3", "900")
         _, typed, _ = logs(FIVE_BAR, text, K3=0.0, torque_limit=limit)
-        assert np.array_equal(typed, wanted)
+        assert np.array_equal(motion(kernel, typed), motion(kernel, wanted))
 
 
 @pytest.mark.parametrize("entry", ROBOTS.values(), ids=list(ROBOTS))
