@@ -69,7 +69,8 @@ class VirtualOutput:
         per_radian: |σ'|, [m/rad].
         gap: y - σ, from the closest point to the output, (p, 1), [m].
         spread: 1 - λκ with the signed distance λ: 1 on the path and 0 at its centre of curvature,
-            where the closest point is not unique. Not below `LEAST_SLOPE`.
+            where the closest point is not unique. Of a level set, at most ∇s·N as a share of what
+            it is on the path: 0 where (θ, s) are no coordinates. Not below `LEAST_SLOPE`.
         xi_per_metre: |∂ξ1/∂z|: 1 of a distance, |∇s| [m] of a level set.
         frame: how the plane of the path lies in the output space.
     """
@@ -136,6 +137,7 @@ def virtual_output(
     and the level set λ = s(z) has λ' = ∇s · z' and λ'' = ∇s · z'' + z'ᵀ (∂²s/∂z²) z'.
 
     D is bounded from below, because it vanishes at the centre of curvature, where θ is undefined.
+    So is ∇s·N, which vanishes at the centre of an ellipse.
 
     Args:
         closest: the path about the point closest to y.
@@ -158,6 +160,7 @@ def virtual_output(
     second_z_rate = second_t * along + second_n * across  # σ'' · z'
     third = 3 * length * second_t - distance * ca.dot(normal, closest.third)
     theta_offset = rate * (2 * second_z_rate - third * rate) / d
+    spread = d / length2
     if level is None:
         xi, xi_rate = distance, across
         offset, xi_per_metre = -second_n * rate * along / length, ca.SX(1)
@@ -166,7 +169,12 @@ def virtual_output(
         xi, gradient = level.at(z)
         xi_rate = ca.dot(gradient, z_rate)
         offset, xi_per_metre = level.bent(z, z_rate), ca.sqrt(ca.dot(gradient, gradient))
-        inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, gradient.T))
+        there = ca.dot(level.at(closest.sigma)[1], normal)
+        share = ca.dot(gradient, normal) / there
+        lacking = ca.fmax(LEAST_SLOPE - share, 0)
+        steep = gradient + lacking * there * normal
+        inverse = ca.inv_minor(ca.vertcat((tangent / per_theta).T, steep.T))
+        spread = ca.fmin(spread, share + lacking)
     return VirtualOutput(
         theta=closest.theta,
         theta_rate=rate,
@@ -176,7 +184,7 @@ def virtual_output(
         offset=ca.vertcat(theta_offset, offset),
         per_radian=length,
         gap=frame.join(z - closest.sigma, zeta, rate=True),
-        spread=d / length2,
+        spread=spread,
         xi_per_metre=xi_per_metre,
         frame=frame,
     )

@@ -72,6 +72,9 @@ def far_from_path(view: View) -> ca.SX:
         (|θ'| - |ω_ref|) lag       rises from 0.15 to 0.3 rad, or
         the way past an open end   rises from 5 to 20 mm, where σ is the end.
 
+    With a level set it does so, too, where ∇s·N falls to such a share of what it is on the path:
+    at the centre of an ellipse it is 0, though 1 - λκ need not be; see `VirtualOutput.spread`.
+
     Elsewhere s is 0 exactly. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
     without a force from outside, whichever of several closest points is taken: |y - σ|² is the
     smallest of the squared distances, and each of them is pulled at alike.

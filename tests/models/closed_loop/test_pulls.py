@@ -7,13 +7,18 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.control.laws.path_following import far_from_path
+from onpath.models.paths.curves import ellipse
+from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support import pulls
 from tests.support.pulls import parameters_of, runs_untouched, troubled
 
 FOLLOWER = "path_following"
@@ -109,11 +114,26 @@ def test_on_the_return_energy_never_rises_whichever_closest_point_is_taken(
         y, rate = y + dt * rate + dt**2 / 2 * acceleration, rate + dt * acceleration
 
 
+@settings(max_examples=20)
+@given(st.floats(0, 1), st.floats(-np.pi, np.pi), st.sampled_from(["five_bar", "two_link_arm"]))
+@example(0.0, 0.0, "five_bar")  # ∇s = 0, and 1 - λκ = 0.67
+def test_from_anywhere_inside_it_comes_back_by_the_level_set(
+    share: float, angle: float, robot: str
+) -> None:
+    parameters = parameters_of(robot, across="level_set")
+    made, curve = ROBOTS[robot].make(parameters), ellipse((0.07, 0.04))
+    loop = pulls._loop(made, kind_of(FOLLOWER, parameters, curve))
+    begin = made.rest(made.frame.lift(share * curve.at(np.array(angle))))
+    state = pulls.first_state(made, loop.layouts, curve, begin)
+    own = pulls.settings_vector(made, loop.layouts, parameters, curve, pulls.FREE)
+    _, rows = loop.run(state, own, curve.table(), 1500)
+    assert fault_in(made, loop.layouts.log, FOLLOWER, rows, parameters) is None
+    y = loop.layouts.log.unpack(rows)["y"]
+    assert path_distance(made.frame, curve, y)[-1] < NEAR
+
+
 @pytest.mark.parametrize("law", ["path_following", "trajectory_tracking", "waiting_clock"])
 def test_no_integral_moves_the_balance_by_more_than_its_bound(law: str) -> None:
-    from onpath.models.closed_loop.simulation import kind_of
-    from tests.support import pulls
-
     parameters = parameters_of("five_bar", tracker_integral="on")
     robot, curve = ROBOTS["five_bar"].make(parameters), presets()["circle"].curve
     loop = pulls._loop(robot, kind_of(law, parameters, curve))
