@@ -126,6 +126,7 @@ def simulate(
     entry, law = entry_named(robot), _law(law)
     given = by_declared_names(parameters, entry, simulate)
     given |= _those({"profile": profile, "clock_offset": clock_offset or None})
+    given |= _those({"reverse_at": reverse_at or None})
     given |= _those({"hold_at": hold_at, "hold_direction": hold_direction})
     curve = curve_of("path", path)
     chosen = Experiment(
@@ -137,10 +138,7 @@ def simulate(
         start=lambda robot, _: start_point(robot, chosen.curve(), start),
         path=curve,
         lifts=False,
-    ).with_values(
-        {"duration": duration, "reverse_at": reverse_at}
-        | {**schedule_of(velocity, hold, push, wall), **given}
-    )
+    ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, law))
     for text in (unused_text(chosen, [law], given), experiments.never_held(chosen, run.trajectory)):

@@ -43,9 +43,10 @@ def unused(experiment: Experiment, law: str, names: Iterable[str]) -> list[str]:
     coordinates depend on a setting that it changes, in the next tick or in a later one.
 
     Args:
-        names: of parameters, "profile" and "clock_offset"; a schedule checks its other entries.
+        names: of parameters, "profile", "reverse_at" and "clock_offset"; a schedule checks its
+            other entries.
     """
-    known = {*specs(experiment.parameters), "profile", "clock_offset"}
+    known = {*specs(experiment.parameters), "profile", "reverse_at", "clock_offset"}
     return [name for name in names if name in known and not _matters(experiment, law, name)]
 
 
@@ -54,7 +55,7 @@ def _matters(experiment: Experiment, law: str, name: str) -> bool:
     kernel = kernel_of(experiment.robot(), kind_of(law, own, experiment.curve()))
     if name == "clock_offset":
         return _reaches_motion(experiment, kernel, (), state="theta_ref")
-    if name == "profile":
+    if name in ("profile", "reverse_at"):
         return _reaches_motion(experiment, kernel, _places(kernel, SPEED))
     spec = specs(own)[name]
     for value in _others(spec, getattr(own, name)):

@@ -22,6 +22,7 @@ SHORT: dict[str, Any] = {"duration": 0.02}
         ({"clock_offset": 0.1}, "path following: clock_offset"),
         ({"law": "set_point", "speed": 3.0}, "set point: speed"),
         ({"law": "set_point", "profile": "0:0,1:3"}, "set point: profile"),
+        ({"law": "set_point", "reverse_at": 0.01}, "set point: reverse_at"),
         ({"robot": "flexible", "alpha": 0.3}, "path following: alpha"),
         ({"robot": "flexible", "output": "redefined", "tip_damping": 0.5}, "tip_damping"),
         ({"law": "across = -xi; along = 0", "K4": 3.0}, "across = -xi; along = 0: K4"),
