@@ -12,6 +12,8 @@ import tyro
 if TYPE_CHECKING:
     from onpath.models.studies.linear_model import BaseParameter, Estimate
 
+MUCH = 0.1  # unexplained share of the torque above which the table warns
+
 
 @dataclass(frozen=True)
 class IdentifyCommand:
@@ -101,6 +103,11 @@ def _table(robot: str, laws: list[str], seconds: float, result: Estimate, angles
         " wrong geometry, scale or time of torques and forces, the filter of measured rates, and"
         " terms that the model lacks."
     )
+    if result.unexplained > MUCH:
+        lines.append(
+            f"  so much is not explained that no value above can be trusted: is the robot {robot},"
+            " and is everything in s, rad, N m and N?"
+        )
     if result.late:
         side = "behind" if result.late > 0 else "ahead of"
         lines.append(

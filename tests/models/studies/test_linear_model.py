@@ -136,6 +136,24 @@ def test_measured_angles_are_written_and_used(
         assert f"from the {angles} angles" in table and "leaves out" in table
 
 
+def test_a_record_of_another_robot_or_in_degrees_is_doubted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "motion.csv"
+    text = text_of("five_bar")
+    names, *rows = (line.split(",") for line in text.splitlines())
+    angles = [i for i, name in enumerate(names) if name.startswith(("q1", "q2"))]
+    for row in rows:
+        for i in angles:
+            row[i] = repr(float(np.degrees(float(row[i]))))
+    degrees = "\n".join(",".join(row) for row in [names, *rows])
+    cases = (text, "five_bar", False), (text, "two_link_arm", True), (degrees, "five_bar", True)
+    for content, robot, doubted in cases:
+        path.write_text(content)
+        assert run_command(["identify", str(path), "--robot", robot]) == 0
+        assert (f"is the robot {robot}, and" in capsys.readouterr().out) is doubted
+
+
 def test_runs_with_and_without_exact_sensors_are_written_together() -> None:
     known = experiments()["obstruction"].with_values({"duration": 0.05})
     runs = [run(each, "path_following") for each in (known.with_values(NOISY), known)]
