@@ -218,8 +218,10 @@ static Place place(Local at, Vec z, Vec z_rate) {
 }
 
 /* The share of the return from far away in the command. */
-static Real far_from_path(const Settings *s, Place p, Real speed) {
-  Real turn = (magnitude(p.theta_rate) - magnitude(speed)) * s->dt * s->hold_ticks;
+static Real far_from_path(const Settings *s, Place p, Real theta, Real speed) {
+  Real left = magnitude(wrap(theta - s->target));
+  Real wanted = choose(s->position != 0, root(s->K4) * left, magnitude(speed));
+  Real turn = (magnitude(p.theta_rate) - wanted) * s->dt * s->hold_ticks;
   return larger(risen((0.5 - larger(p.bent, all(0.05))) / 0.3), risen((turn - 0.15) / 0.15));
 }
 
@@ -249,7 +251,7 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
   Place there = place(at, z, tip_rate(&s->model, a, v));
   Vec near = command(s, x, at, there, theta, ahead), z_rate = tip_rate(&s->model, a, v);
   Vec home = along(scaled(-s->K1, sub(z, at.sigma)), -s->K2, z_rate);
-  Real far = far_from_path(s, there, speed_ref(s, x) + ahead * speed_ref_rate(s, x));
+  Real far = far_from_path(s, there, theta, speed_ref(s, x) + ahead * speed_ref_rate(s, x));
   Vec wanted = torques(&s->model, a, v, along(scaled(1 - far, near), far, home));
 
   a = angles(x->q), z = tip(&s->model, a);

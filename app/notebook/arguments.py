@@ -29,6 +29,8 @@ def schedule_of(velocity: Any, hold: Any, push: Any, wall: Any) -> dict[str, flo
     values["start_along"], values["start_across"] = numbers("velocity", velocity, 2, form)
     if hold is not None:
         values["hold_from"], values["hold_to"] = numbers("hold", hold, 2, "(from, to), [s]")
+        if values["hold_from"] == values["hold_to"]:
+            raise ValueError("hold: it begins and ends at the same time")
     if push is not None:
         values |= _at_place("push", push, (), "(from, to, (z1, z2)), [s] and [m]")
     if wall is not None:

@@ -1211,13 +1211,14 @@ stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
-stop-because = { $reason }. Vermutlich, weil: { $causes }
+stop-because = { $reason }. Vermutliche Ursache: { $causes }
 caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Roboter auch unberührt nicht stabil: Er wird nach wenigen Sekunden stehen bleiben. Wähle mindestens { $slowest } Hz
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
 cause-limit = die Motoren waren an ihrer Grenze von { $limit } N m (anheben oder langsamer fahren)
 cause-force = eine Kraft von { $force } N wirkte auf ihn
-cause-far = er war dort, wo auf den nächsten Punkt kein Verlass ist, oder drehte sich in einem Regelintervall um { $turned } rad (ein schnellerer Regler hilft)
+cause-far = er war dort, wo auf den nächsten Punkt kein Verlass ist
+cause-turned = er drehte sich in einem Regelintervall um { $turned } rad (ein schnellerer Regler hilft)
 cause-model = das Modell des Reglers ist falsch (Nutzlast und Modellfehler auf 0 setzen)
 
 ## Ablehnungen: die Punkte einer Bahn
@@ -1340,6 +1341,7 @@ error-table_decimal_sign =
     } haben; Ziffern lassen sich nicht gruppieren
 error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
+error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
 
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren

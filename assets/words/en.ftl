@@ -937,13 +937,14 @@ stop-singular = the robot is close to a singular configuration (two links in one
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong
-stop-because = { $reason }. Likely because: { $causes }
+stop-because = { $reason }. Likely cause: { $causes }
 caution-flexible = With { $rate } control actions a second, the flexible link is not even stable untouched: it will stop within seconds. Choose at least { $slowest } Hz
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
 cause-limit = the motors were at their limit of { $limit } N m (raise it, or lower the speed)
 cause-force = a force of { $force } N acted on it
-cause-far = it was where the closest point is not to be trusted, or turned by { $turned } rad in a control interval (a faster controller helps)
+cause-far = it was where the closest point is not to be trusted
+cause-turned = it turned by { $turned } rad in a control interval (a faster controller helps)
 cause-model = the controller's model is wrong (set the payload and the model's errors to 0)
 
 ## Refusals: a path's points
@@ -1058,6 +1059,7 @@ error-table_decimal_sign =
     }; digits cannot be grouped
 error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
 error-record_of_one_row = line { $line }: a single row of a law is no motion
+error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
 
 ## Refusals: share codes and session codes

@@ -8,6 +8,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.path_following import NEAR_TURN
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
@@ -77,21 +78,26 @@ def _causes(
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):
-        causes += _seen(log.unpack(last), parameters)
+        causes += _seen(log.unpack(last), parameters, known=bool(causes))
     plant, model = robot.plant(parameters), robot.model(parameters)
     if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
         causes.append(Message("cause.model"))
     return causes
 
 
-def _seen(last: dict[str, Array], parameters: Parameters) -> list[Message]:
-    """Causes that show in the last rows before the fault."""
+def _seen(last: dict[str, Array], parameters: Parameters, known: bool) -> list[Message]:
+    """Causes that show in the last rows before the fault.
+
+    Args:
+        known: whether the settings alone explain it.
+    """
     causes, limit = list[Message](), parameters.torque_limit
     if limit > 0 and (np.abs(last["u"]).max(1) >= 0.999 * limit).mean() > OFTEN:
         causes.append(Message("cause.limit", {"limit": f"{limit:g}"}))
     if (force := np.linalg.norm(last["force"], axis=1).max()) > PULLED:
         causes.append(Message("cause.force", {"force": f"{force:.0f}"}))
     turned = np.abs(last["theta_rate"]).max() / parameters.control_rate
-    if last["far"].max() > 0:
-        causes.append(Message("cause.far", {"turned": f"{turned:.2g}"}))
+    if last["far"].max() > 0 and not known:
+        fast = Message("cause.turned", {"turned": f"{turned:.2g}"})
+        causes.append(fast if turned > NEAR_TURN else Message("cause.far"))
     return causes

@@ -81,7 +81,9 @@ def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> 
     if not steps.size:
         raise CodedError("error.record_of_one_row", line=str(lines[0]))
     dt = float(np.median(steps))
-    uneven = np.flatnonzero(np.abs(steps - dt) > UNEVEN * dt if dt > 0 else steps <= 0)
+    if dt <= 0:
+        raise CodedError("error.record_times", line=str(lines[1]))
+    uneven = np.flatnonzero(np.abs(steps - dt) > UNEVEN * dt)
     if uneven.size:
         at = int(uneven[0])
         step, usual = f"{steps[at]:.6g}", f"{dt:.6g}"

@@ -36,7 +36,11 @@ def path_following(view: View) -> ControlAction:
 
 
 def followed(
-    view: View, along: ca.SX, across: ca.SX, direction: ca.SX | None = None
+    view: View,
+    along: ca.SX,
+    across: ca.SX,
+    direction: ca.SX | None = None,
+    wanted: ca.SX | None = None,
 ) -> ControlAction:
     """The command for θ'' = v_par and λ'' = v_perp near the path, and for a return from far away.
 
@@ -44,10 +48,12 @@ def followed(
         along: v_par, (1, 1), [rad/s²].
         across: v_perp, (p - 1, 1), [m/s²].
         direction: dy''/dv_par, (p, 1), if a torque limit may reduce v_par.
+        wanted: how fast θ is to turn, [rad/s]; None: as the task says.
 
     Source: eq. (16) near the path.
     """
-    output, far = view.output, far_from_path(view)
+    output = view.output
+    far = far_from_path(view, wanted_turn(view) if wanted is None else wanted)
     near = output.acceleration(along, across)
     home = -view.gains.k1 * (output.gap + beyond_end(view)) - view.gains.k2 * view.y_rate
     return ControlAction(
@@ -59,7 +65,7 @@ def followed(
     )
 
 
-def far_from_path(view: View) -> ca.SX:
+def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
     """The share s of the return to the path in the command, from 0 to 1.
 
         y'' = (1 - s) y''_(16) + s (-K1 (y - σ) - K2 y')
@@ -69,7 +75,7 @@ def far_from_path(view: View) -> ca.SX:
     `lag` ago, in which θ must not turn far. So s goes smoothly from 0 to 1 while
 
         1 - λκ                     falls from 0.5 to 0.2, or
-        (|θ'| - |ω_ref|) lag       rises from 0.15 to 0.3 rad, or
+        (|θ'| - wanted) lag        rises from 0.15 to 0.3 rad, or
         the way past an open end   rises from 5 to 20 mm, where σ is the end.
 
     With a level set it does so, too, where ∇s·N falls to such a share of what it is on the path:
@@ -78,9 +84,12 @@ def far_from_path(view: View) -> ca.SX:
     Elsewhere s is 0 exactly. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
     without a force from outside, whichever of several closest points is taken: |y - σ|² is the
     smallest of the squared distances, and each of them is pulled at alike.
+
+    Args:
+        wanted: how fast θ is to turn, [rad/s].
     """
     output = view.output
-    turn = (ca.fabs(output.theta_rate) - ca.fabs(view.task.speed)) * view.lag
+    turn = (ca.fabs(output.theta_rate) - wanted) * view.lag
     inside = _risen((NEAR_SPREAD - output.spread) / (NEAR_SPREAD - FAR_SPREAD))
     fast = _risen((turn - NEAR_TURN) / (FAR_TURN - NEAR_TURN))
     share = ca.fmax(inside, fast)
@@ -89,6 +98,17 @@ def far_from_path(view: View) -> ca.SX:
     past = beyond_end(view)
     past = (ca.sqrt(ca.dot(past, past)) - NEAR_END) / (FAR_END - NEAR_END)
     return ca.fmax(share, _risen(past))
+
+
+def wanted_turn(view: View) -> ca.SX:
+    """How fast the task lets θ turn, [rad/s].
+
+    In the speed task that is |ω_ref|. In the position task it is √K4 |θ - θ_ref|, which (19), from
+    rest, does not exceed.
+    """
+    task, theta = view.task, view.output.theta
+    left = ca.fabs(wrap(theta - task.target, view.clock.closed))
+    return ca.if_else(task.position, ca.sqrt(view.gains.k4) * left, ca.fabs(task.speed))
 
 
 def beyond_end(view: View) -> ca.SX:

@@ -45,7 +45,7 @@ def virtual_constraint(view: View) -> ControlAction:
     resting = output.acceleration(ca.SX(0), transversal(view))
     force_there = mass @ (back @ (resting - turned)) + gyration
     free = -ca.dot(along_joints, force_there) / ca.dot(along_joints, mass @ along_joints)
-    return replace(followed(view, free, transversal(view)), theta_ref=output.theta)
+    return replace(followed(view, free, transversal(view), wanted=ca.SX(0)), theta_ref=output.theta)
 
 
 def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channel]:

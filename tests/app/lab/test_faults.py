@@ -28,7 +28,7 @@ def test_the_reason_of_a_stop_names_its_cause(
 ) -> None:
     made = onpath.simulate(robot, law="path_following", duration=4, **settings)  # type: ignore[arg-type]
     if cause is None:
-        assert made.reason == "" or "Likely because" in made.reason
+        assert made.reason == "" or "Likely cause" in made.reason
     else:
         assert made.stopped_at is not None and cause in made.reason
 

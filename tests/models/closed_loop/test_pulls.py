@@ -84,10 +84,9 @@ def test_the_return_takes_over_far_from_the_path_and_nowhere_else(
     spread: float, rate: float, wanted: float, lag: float
 ) -> None:
     output = SimpleNamespace(spread=ca.SX(spread), theta_rate=ca.SX(rate))
-    task = SimpleNamespace(speed=ca.SX(wanted))
     clock = SimpleNamespace(closed=True)
-    view = SimpleNamespace(output=output, task=task, clock=clock, lag=ca.SX(lag))
-    share = float(far_from_path(view))  # type: ignore[arg-type]
+    view = SimpleNamespace(output=output, clock=clock, lag=ca.SX(lag))
+    share = float(far_from_path(view, ca.SX(abs(wanted))))  # type: ignore[arg-type]
     turn = (abs(rate) - abs(wanted)) * lag
     assert 0 <= share <= 1
     if spread >= 0.5 and turn <= 0.15:
