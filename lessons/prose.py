@@ -144,14 +144,14 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
             yield f"picture {source!r}: say what it shows, for those who cannot see it: ![…](…)"
         if "{{" in image.content:
             yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
-        picture = (home / source).resolve()
         try:
+            picture = (home / source).resolve()
             if ELSEWHERE.match(source):
                 raise ValueError(f"picture {source[:40]!r}: {OWN}")
             if not picture.is_relative_to(home.resolve()):
                 raise ValueError(f"picture {source!r} is not in the lesson's folder")
             image.attrSet("src", embedded(picture))
-        except OSError:
+        except (OSError, RuntimeError):  # the latter for links that lead to each other
             image.type = "text"
             yield f"no picture {source!r}: {OWN}"
         except ValueError as error:
