@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -185,6 +186,7 @@ def test_no_text_at_all(tmp_path: Path, content: bytes, said: str) -> None:
     assert any(said in words for _, words in problems(file))
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no such files")
 def test_a_device_is_not_read(tmp_path: Path) -> None:
     """It has no end, or does not begin."""
     file = write_lesson(tmp_path)
@@ -198,6 +200,7 @@ def test_a_device_is_not_read(tmp_path: Path) -> None:
         path.write_text(text)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no such files")
 @pytest.mark.parametrize("kind", ["device", "link to itself", "folder"])
 def test_what_is_no_picture_is_not_read(tmp_path: Path, kind: str) -> None:
     file = write_lesson(tmp_path)
