@@ -20,7 +20,7 @@ from onpath.lessons.routes import FOLDER as ROUTES
 from onpath.lessons.routes import Route, read_routes
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch, Step, Text
 from onpath.lessons.task_schema import Reference, Task
-from onpath.lessons.text_files import FileError, read_text, toml_fault
+from onpath.lessons.text_files import FileError, load_toml, read_text, toml_fault
 from onpath.lessons.toml_blocks import nearest
 from onpath.lessons.vocabulary.setups import script_faults
 from onpath.lessons.words import DEFAULT
@@ -194,7 +194,7 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
     content = ""
     try:
         content = read_text(file)
-        tables = tomllib.loads(content)
+        tables = load_toml(content)
     except FileError as error:
         return {}, [error.problem]
     except tomllib.TOMLDecodeError as error:

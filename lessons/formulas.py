@@ -132,6 +132,8 @@ def embedded(picture: Path) -> str:
     mime = MIME.get(picture.suffix.lower())
     if mime is None:
         raise ValueError(f"picture {picture.name!r}: its name must end in {', '.join(MIME)}")
+    if not picture.is_file():
+        raise FileNotFoundError(picture)
     if picture.stat().st_size > LARGEST:
         raise ValueError(f"picture {picture.name!r} is larger than {LARGEST // 1000} kB")
     content = picture.read_bytes()

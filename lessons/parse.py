@@ -36,7 +36,7 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.task_schema import Task
-from onpath.lessons.text_files import FileError, read_text
+from onpath.lessons.text_files import FileError, load_toml, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
 from onpath.lessons.vocabulary.blocks import (
     number_faults,
@@ -48,8 +48,6 @@ from onpath.lessons.vocabulary.fences import FENCES, toml_parts
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
 NO_MARK = StepMark()
-LARGEST = 1_000_000
-"""Largest size of a lesson file, [B]."""
 KINDS: tuple[str, ...] = get_args(StepKind)
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold(?:\s+(.*))?")
@@ -84,11 +82,7 @@ def read_lesson(path: Path) -> Lesson:
         LessonError: with file, line and text of every problem.
     """
     try:
-        if path.stat().st_size > LARGEST:
-            raise LessonError([Problem(str(path), 1, f"larger than {LARGEST // 1000} kB")])
         text = read_text(path)
-    except OSError as error:
-        raise LessonError([Problem(str(path), 1, error.strerror or "cannot be read")]) from None
     except FileError as error:
         raise LessonError([error.problem]) from None
     return _Reader(path, text).lesson()
@@ -301,8 +295,8 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 def _words_faults(content: str) -> Iterator[str]:
     """The faults of the texts in a block of TOML; none if it cannot be read, which is told."""
     try:
-        yield from data_faults(tomllib.loads(content))
-    except (tomllib.TOMLDecodeError, RecursionError):
+        yield from data_faults(load_toml(content))
+    except tomllib.TOMLDecodeError:
         return
 
 

@@ -28,6 +28,8 @@ HTML = re.compile(
     r"</?[A-Za-z][\w-]*(\s+[\w:-]+(\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s<>\"']+))?)*\s*/?>|<!--"
 )
 """Typed tags; they are shown, which nobody wants."""
+CONTROL = re.compile(r"[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""What no page shows, and no XML may contain, such as the manifest of a SCORM package."""
 CODE = re.compile(r"`[^`]*`|(?<!\\)\$[^$]*\$|<https?://[^\s<>]*>")
 """Where a block of TOML has code, a formula or an address, in which `<` is no tag."""
 
@@ -96,6 +98,8 @@ def text_faults(text: str) -> Iterator[str]:
     """What is wrong with the words of a text in Markdown, apart from formulas that can be read."""
     if match := HTML.search(text):
         yield f"{match[0]}: HTML is shown as it is typed; write Markdown, or `{match[0]}` as code"
+    if match := CONTROL.search(text):
+        yield f"{match[0]!a}: a control character, which no page shows"
     if match := NO_LINK.search(text):
         yield f"{match[1]!r}: an address begins with https:// or {SCHEME}, and {OWN}"
     yield from own_faults(text)
@@ -144,14 +148,14 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
             yield f"picture {source!r}: say what it shows, for those who cannot see it: ![…](…)"
         if "{{" in image.content:
             yield f"picture {source!r}: a number stands in the text, not in what the picture shows"
-        picture = (home / source).resolve()
         try:
+            picture = (home / source).resolve()
             if ELSEWHERE.match(source):
                 raise ValueError(f"picture {source[:40]!r}: {OWN}")
             if not picture.is_relative_to(home.resolve()):
                 raise ValueError(f"picture {source!r} is not in the lesson's folder")
             image.attrSet("src", embedded(picture))
-        except OSError:
+        except (OSError, RuntimeError):  # the latter for links that lead to each other
             image.type = "text"
             yield f"no picture {source!r}: {OWN}"
         except ValueError as error:

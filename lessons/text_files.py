@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import codecs
 import re
+import stat
 import tomllib
 from pathlib import Path
+from typing import Any
 
 from onpath.lessons.problems import Problem
 
+LARGEST = 1_000_000
+"""Largest size of a file of a lesson, [B]."""
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 STRING = re.compile(
     r"""\"{3}(?P<long>(?:[^\\]|\\.)*?)\"{3}|'{3}.*?'{3}|"(?P<short>(?:[^"\\\n]|\\.)*)"|'[^'\n]*'|#[^\n]*""",
@@ -31,9 +35,14 @@ def read_text(file: Path) -> str:
     """The text of a file of any editor: with or without a byte-order mark, any ends of lines.
 
     Raises:
-        FileError: it cannot be read, or is not in UTF-8.
+        FileError: it cannot be read, is too large, or is not in UTF-8.
     """
     try:
+        found = file.stat()
+        if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):
+            raise FileError(Problem(str(file), 1, "no file but a device, which may never end"))
+        if found.st_size > LARGEST:
+            raise FileError(Problem(str(file), 1, f"larger than {LARGEST // 1000} kB"))
         content = file.read_bytes()
     except OSError as error:
         text = error.strerror or "cannot be read"
@@ -48,6 +57,22 @@ def read_text(file: Path) -> str:
         text = f"a letter of this line is not in UTF-8: {save}"
         raise FileError(Problem(str(file), line, text)) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def load_toml(content: str) -> dict[str, Any]:
+    """What is in TOML.
+
+    Raises:
+        tomllib.TOMLDecodeError: it cannot be read; for every reason, unlike `tomllib.loads`.
+    """
+    try:
+        return tomllib.loads(content)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError:
+        raise tomllib.TOMLDecodeError("nested too deeply") from None
+    except ValueError:  # thousands of digits
+        raise tomllib.TOMLDecodeError("a number is too long") from None
 
 
 def toml_fault(error: tomllib.TOMLDecodeError, content: str) -> tuple[int, str]:

@@ -10,7 +10,7 @@ from typing import Any, TypeVar, get_args
 import msgspec
 
 from onpath.lessons.problems import line_of, near
-from onpath.lessons.text_files import BACKSLASH, STRING, toml_fault
+from onpath.lessons.text_files import BACKSLASH, STRING, load_toml, toml_fault
 
 T = TypeVar("T")
 Complain = Callable[[int, str], None]
@@ -46,14 +46,12 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
             complain(line + below, fault)
         return None
     try:
-        return msgspec.convert(tomllib.loads(content), kind)
+        return msgspec.convert(load_toml(content), kind)
     except tomllib.TOMLDecodeError as error:
         below, fault = toml_fault(error, content)
         complain(line + below, fault)
     except msgspec.ValidationError as error:
         complain(line_of(str(error), content, line), f"{error}{nearest(str(error), kind)}")
-    except RecursionError:
-        complain(line, "nested too deeply")
     return None
 
 

@@ -87,7 +87,7 @@ class Serve:
                 self.port,
                 self.lessons,
                 database_url(self.database),
-                open_browser=self.open,
+                open_browser=self.open and self.socket is None,
                 classrooms=self._classrooms(),
                 most_clients=self.most_clients,
                 retention=Retention(self.keep_days, self.most_labs),

@@ -9,8 +9,9 @@ from __future__ import annotations
 import re
 import secrets
 import unicodedata
+from functools import lru_cache
 
-from onpath.app.common.visible_text import is_visible
+from onpath.app.common.visible_text import is_visible, without_surplus_marks
 from onpath.models.errors import CodedError
 
 ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # no characters that are easily confused
@@ -40,10 +41,12 @@ def as_meant(text: str) -> str:
     """A text in which all dashes, widths and blanks are plain, and nothing is invisible.
 
     What is no letter or digit of ASCII, dash or blank, such as a quote or a bracket, becomes "|".
+    Surplus marks go first: the time of a normalisation grows with the square of their number.
     """
-    return "".join(_plain(c) for c in unicodedata.normalize("NFKC", text))
+    return "".join(map(_plain, unicodedata.normalize("NFKC", without_surplus_marks(text))))
 
 
+@lru_cache(maxsize=1024)  # one letter may stand for 18 others, and a text be full of them
 def _plain(character: str) -> str:
     if character.isspace():
         return " "

@@ -96,6 +96,7 @@ class LabServer:
         **listening: Any,
     ) -> None:
         self._store, self._privacy_url = store, privacy_url
+        self._socket: Path | None = listening.get("unix_socket")
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
@@ -144,7 +145,9 @@ class LabServer:
 
     @property
     def address(self) -> str:
-        """URL to open in a browser."""
+        """URL to open in a browser; the file of a Unix socket, which only a proxy can open."""
+        if self._socket is not None:
+            return str(self._socket)
         host = self.server.get_host()
         shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
         shown = f"[{shown}]" if ":" in shown else shown

@@ -95,7 +95,7 @@ def not_here(connection: ServerConnection) -> Response:
     """The answer to a websocket at a place that another process serves.
 
     nginx passes the request on to the next process because of it (`http_502`, which no process
-    answers otherwise); a page asks again every second.
+    answers otherwise); a page asks again every second. A full process answers so to pages, too.
     """
     said = "Another process serves this class: ask again.\n"
     response = connection.respond(HTTPStatus.BAD_GATEWAY, said)

@@ -101,7 +101,7 @@ def make_server(
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     redirects, spreads = unix_socket is None, bool(door.allowed)
     to_place = partial(_to_place, redirects=redirects, spreads=spreads, elsewhere=elsewhere)
-    with _guarded_serve(listener, door, limits, connections, to_place):
+    with _guarded_serve(listener, door, limits, connections, to_place, elsewhere):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # as many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
@@ -218,8 +218,12 @@ def _guarded_serve(
     limits: Limits,
     counts: ConnectionLimits,
     to_place: Callable[[SecureConnection, Request], Response | None],
+    elsewhere: Callable[[str], bool],
 ) -> Iterator[None]:
-    """Install our checks in the one call of `websockets.serve` that viser makes."""
+    """Install our checks in the one call of `websockets.serve` that viser makes.
+
+    Whoever comes to a full process for a class that another one has open is sent on there.
+    """
     library: Any = websockets.asyncio.server
 
     def serve(handler: Any, _host: str, _port: int, *, process_request: Any, **options: Any) -> Any:
@@ -227,11 +231,13 @@ def _guarded_serve(
         async def answer_request(connection: SecureConnection, request: Request) -> Response | None:
             await _opened(requests)
             without_repeats(request, connection.is_head)
-            answer = requests.refusal(request, connection.peer)  # or the health report
-            if answer := answer or counts.refusal(connection, request):
+            if answer := requests.refusal(request, connection.peer):  # or the health report
                 return connection.respond(*answer)
-            if elsewhere := to_place(connection, request):
-                return elsewhere
+            if answer := counts.refusal(connection, request):
+                is_away = elsewhere(place_of(request.path))
+                return not_here(connection) if is_away else connection.respond(*answer)
+            if response := to_place(connection, request):
+                return response
             return add_scripts(process_request(connection, request))
 
         options |= _options(limits)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,9 +17,10 @@ from onpath.lessons.action_schema import Action
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
 from onpath.lessons.links import read_link
-from onpath.lessons.parse import LARGEST, read_lesson
+from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Sketch, Text
+from onpath.lessons.text_files import LARGEST
 from onpath.lessons.words import ELSEWHERE, Words
 from tests.support.catalogues import arguments, entries, messages
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
@@ -74,6 +77,9 @@ def test_a_lesson_is_read(tmp_path: Path) -> None:
         ("(lab:K3=100)", "(lab:K3=1e9)", "K3"),
         ("(lab:K3=100)", "(lab:explode)", "explode"),
         ("(lab:K3=100)", "(http://example.org)", "https://"),
+        ("*waits*", "wai\x0bts", "control character"),
+        ('title = "A lesson"', r'title = "A \u0001lesson"', "control character"),
+        ('title = "A lesson"', 'title = "A \ufffelesson"', "control character"),
         ("*waits*", "![x](no.svg)", "no.svg"),
         ("*waits*", "![x](../../secret.svg)", "not in the lesson's folder"),
     ],
@@ -178,6 +184,53 @@ def test_no_text_at_all(tmp_path: Path, content: bytes, said: str) -> None:
     file = write_lesson(tmp_path)
     file.write_bytes(content)
     assert any(said in words for _, words in problems(file))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such files")
+def test_a_device_is_not_read(tmp_path: Path) -> None:
+    """It has no end, or does not begin."""
+    file = write_lesson(tmp_path)
+    for path, text in ((file, LESSON), (file.with_name("reference.toml"), REFERENCE)):
+        path.unlink()
+        os.mkfifo(path)
+        assert [(each.path, each.text) for each in read_course([tmp_path])[1]] == [
+            (str(path), "no file but a device, which may never end")
+        ]
+        path.unlink()
+        path.write_text(text)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such files")
+@pytest.mark.parametrize("kind", ["device", "link to itself", "folder"])
+def test_what_is_no_picture_is_not_read(tmp_path: Path, kind: str) -> None:
+    file = write_lesson(tmp_path)
+    file.write_text(LESSON.replace("*waits*", "![x](no.svg)"))
+    picture = file.with_name("no.svg")
+    make = {"device": os.mkfifo, "folder": Path.mkdir, "link to itself": _link_to_itself}
+    make[kind](picture)
+    assert any("no picture 'no.svg'" in words for _, words in problems(file))
+
+
+def _link_to_itself(path: Path) -> None:
+    path.symlink_to(path)
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [("[" * 5000 + "]" * 5000, "nested too deeply"), ("9" * 5000, "a number is too long")],
+)
+def test_toml_at_which_the_parser_fails_is_a_problem_of_its_file(
+    tmp_path: Path, value: str, said: str
+) -> None:
+    file = write_lesson(tmp_path)
+    file.write_text(LESSON.replace("minutes = 1", f"minutes = {value}"))
+    assert any(said in words for _, words in problems(file))
+    file.write_text(LESSON)
+    reference = file.with_name("reference.toml")
+    reference.write_text(f"hold = {value}")
+    assert [(each.path, each.text) for each in read_course([tmp_path])[1]] == [
+        (str(reference), f"TOML: {said}")
+    ]
 
 
 @pytest.mark.thorough

@@ -146,6 +146,15 @@ def test_the_address_that_is_printed_can_be_opened(host: str) -> None:
         server.stop()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no Unix sockets")
+def test_the_socket_is_printed_by_its_name(tmp_path: Path) -> None:
+    server = LabServer("127.0.0.1", 0, LoopCache(), unix_socket=tmp_path / "lab.sock")
+    try:
+        assert server.address == str(tmp_path / "lab.sock")
+    finally:
+        server.stop()
+
+
 def _has_ipv6() -> bool:
     try:
         socket.create_server(("::1", 0), family=socket.AF_INET6).close()

@@ -17,7 +17,7 @@ from websockets.sync.client import connect
 
 from onpath.app.viser_adapter.places import class_code_in, place_of, storage_key, without_place
 from onpath.app.viser_adapter.request_filter import RequestFilter
-from onpath.app.viser_adapter.secure_server import make_server
+from onpath.app.viser_adapter.secure_server import Limits, make_server
 
 ORIGIN = "https://lab.example.org"
 
@@ -125,6 +125,18 @@ def test_who_asks_for_a_class_of_another_process_is_told_to_ask_again() -> None:
         connect(f"ws://127.0.0.1:{server.get_port()}/c/abc234")
     answer = refused.value.response
     assert answer.status_code == 502 and answer.headers["Retry-After"] == "1"
+    server.stop()
+
+
+def test_a_full_process_sends_those_on_whose_class_another_one_has() -> None:
+    """At 503 nginx asks nobody else: who fills one process would lock a class out of another."""
+    away = "c/abc234"
+    limits = Limits(max_connections=0)
+    server = make_server(port=0, limits=limits, elsewhere=lambda place: place == away)
+    for asked in ({}, {"Upgrade": "websocket", "Connection": "Upgrade"}):
+        assert get(server, f"/{away}/", **asked).status == 502
+        assert get(server, "/c/n4ws8c/", **asked).status == 503
+        assert get(server, "/", **asked).status == 503
     server.stop()
 
 
