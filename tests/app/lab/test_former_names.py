@@ -50,7 +50,12 @@ def test_an_old_share_code_opens() -> None:
     lab = new_lab()
     do(lab, c.UseShared(SHARED))
     assert plant(lab) == NEW
-    own = {"plant": NEW, "alpha": 1.0, "tracker_integral": "on"}  # as it was then
+    own = {
+        "plant": NEW,
+        "alpha": 1.0,
+        "tracker_integral": "on",
+        "at_limit_for": "path_following",
+    }  # as it was then
     assert capture(lab.session).robots["flexible"].parameters == own
 
 

@@ -68,7 +68,11 @@ def test_codes_of_version_1_stay_readable() -> None:
     """They are in people's notes: a change that breaks this one is another version."""
     old = "ONPATH1-VNDISD44OEAPFARBFBKIATVKAUAA-GZ47G5I"
     bench = decode(old).robots["five_bar"]
-    assert bench.parameters == {"K3": 100.0, "tracker_integral": "on"}
+    assert bench.parameters == {
+        "K3": 100.0,
+        "tracker_integral": "on",
+        "at_limit_for": "path_following",
+    }
 
 
 @CALM
