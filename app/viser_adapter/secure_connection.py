@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
 from traceback import clear_frames
 from typing import Any
@@ -153,7 +154,8 @@ class SecureConnection(CountedConnection):
 
     def _refuse(self) -> None:
         self._refused = True
-        self.transport.write(_BAD_REQUEST)
+        with suppress(RuntimeError):  # the protocol has ended its side already
+            self.transport.write(_BAD_REQUEST)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
