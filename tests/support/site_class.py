@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from typing import Any
 
 from websockets.exceptions import ConnectionClosed
@@ -44,8 +44,9 @@ def return_to(process: LabProcess, running: Running, place: str) -> None:
     """Wait until the process of a place serves it again."""
 
     def is_back() -> bool:
-        with running.site.student(place) as student:
-            student.open()
+        served = False
+        with suppress(ConnectionClosed), running.site.student(place) as student:
+            student.open()  # a page that is sent on to the other process asks again
             student.read(lambda: student.code)
             served = running.site.serving() is process
         quiet(running)
