@@ -16,6 +16,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import onpath
+from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH, Words
@@ -111,7 +112,7 @@ STROKES = """async () => {
 
 def choice(robot: str = "five_bar") -> FigureChoice:
     paths = {name: presets()[name].curve for name in PATHS}
-    return chosen(robot, LAWS, paths, choices=OTHERS)
+    return chosen(robot, LAWS, paths, NEWCOMER, choices=OTHERS)
 
 
 class Opened:

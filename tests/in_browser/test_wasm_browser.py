@@ -104,7 +104,8 @@ def largest_difference(
     page: Page, name: str, law: str, values: dict[str, Any], curve: Curve
 ) -> float:
     """Between the logs of a loop in Chromium and in CasADi's virtual machine, while it is held."""
-    parameters: Parameters = replace(ROBOTS[name].parameters(), **values)
+    output = {"law": "redefined"} if name == "flexible" else {}  # composite diverges in some kinds
+    parameters: Parameters = replace(ROBOTS[name].parameters(), **{**output, **values})
     robot = ROBOTS[name].make(parameters)
     kernel = kernel_of(robot, kind_of(law, parameters, curve))
     start = robot.frame.lift(curve.at(np.array(0.3)))

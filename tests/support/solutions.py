@@ -78,7 +78,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "07-flexible-link": {
         "choose-alpha": (Enter("α", 0.7), Wait(4)),
         "broken-promise": (
-            *(Choose("Modes", "1"), Enter("α", 0.8), Wait(1), Choose("Modes", "3"), Wait(0.5)),
+            *(Choose("Modes", "1"), Enter("α", 0.8), Wait(3), Choose("Modes", "3"), Wait(0.5)),
         ),
         "hold-the-tip": (
             *(Choose("Output", "composite"), RESET, Wait(3), HOLD, Wait(2.2), LET_GO),
