@@ -56,7 +56,6 @@ class Result:
         fault: when it stopped [s] and why; None if it did not.
         off: largest distance while something acted, [m].
         late: largest distance from `BACK` after that, [m].
-        rows: of the log by field, until the fault.
     """
 
     trouble: Trouble

@@ -25,9 +25,9 @@ def path_following(view: View) -> ControlAction:
     `task.limit`; on an open curve it is reduced near the ends, without a feedforward.
     `VirtualOutput.acceleration` turns (v_par, v_perp) into y''.
 
-    This is the paper's law, and within two bounds it is what acts: the integral of every law is
-    limited, |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm (`bounded` in models/closed_loop/kernel.py), and far
-    from the path the command becomes a straight return (`far_from_path`).
+    This is the paper's law, and it acts within two bounds: the integral of every law is limited,
+    |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm (`bounded` in models/closed_loop/kernel.py), and far from the
+    path the command becomes a straight return (`far_from_path`).
 
     Source: eqs. (16), (18), (19).
     """
