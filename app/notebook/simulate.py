@@ -126,7 +126,7 @@ def simulate(
     entry, law = entry_named(robot), _law(law)
     given = by_declared_names(parameters, entry, simulate)
     given |= _those({"profile": profile, "clock_offset": clock_offset or None})
-    given |= _those({"reverse_at": reverse_at or None})
+    given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
     given |= _those({"hold_at": hold_at, "hold_direction": hold_direction})
     curve = curve_of("path", path)
     chosen = Experiment(
