@@ -2,17 +2,10 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
-import threading
 import time
 
 import numpy as np
-import viser
-from viser import _messages as wire
-from viser._viser import InitialCameraConfig
-from viser.infra import WebsockServer
-from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Segment
@@ -23,29 +16,11 @@ from onpath.app.lab.snapshots.take_snapshot import CURVE_POINTS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.viser_adapter.film_server import FilmServer
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.robots import Robot
 
 RATE = 30.0  # [Hz]
-
-
-class FilmServer(viser.ViserServer):
-    """The scene of a server without the server: no socket, no thread, no clients.
-
-    Scene messages accumulate in a queue, from which they can be serialized.
-    Written against viser 1.1.1; a test plays a film made with it.
-    """
-
-    def __init__(self) -> None:
-        loop = asyncio.new_event_loop()
-        loop.close()  # no consumer to wake
-        self._websock_server = WebsockServer("", 0, wire.Message)
-        self._websock_server._broadcast_buffer = AsyncMessageBuffer(loop, persistent_messages=True)
-        self._initial_camera = InitialCameraConfig(self._websock_server.queue_message)
-        self._scene_lifecycle_lock = threading.RLock()
-        self.scene = viser.SceneApi(self, thread_executor=None, event_loop=loop)  # type: ignore[arg-type]
-        self.scene.reset()
-        self.scene.set_up_direction("+z")
 
 
 def record_scene(
