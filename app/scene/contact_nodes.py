@@ -62,7 +62,7 @@ class ContactNodes:
             node = add_copies(
                 self._scene,
                 f"/brakes/{bench}",
-                meshes.guide() if slides else meshes.clamp(),
+                meshes.part("guide" if slides else "clamp"),
                 (self._bases[bench] + place)[None],
                 self._metal,
             )

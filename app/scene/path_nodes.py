@@ -106,7 +106,7 @@ class PathNodes:
             self._marks = add_copies(
                 self._scene,
                 "/path/refused",
-                meshes.cross(),
+                meshes.part("cross"),
                 positions,
                 palette.WARNING,
                 scales=scales,

@@ -192,15 +192,15 @@ class RobotNodes:
         is_link = np.arange(counts.bars) < counts.links
         own = [bar_colours(bench, counts) for bench in self._bases]
         of_links = np.concatenate([colours[is_link] for colours in own])
-        found = [Bars(scene, "/links", meshes.link(), links, of_links, poses)]
+        found = [Bars(scene, "/links", meshes.part("link"), links, of_links, poses)]
         if counts.strip:
             of_strips = np.concatenate([colours[~is_link] for colours in own])
-            found.append(Bars(scene, "/beams", meshes.blade(), strips, of_strips, poses))
+            found.append(Bars(scene, "/beams", meshes.part("blade"), strips, of_strips, poses))
         return found
 
     def _add_parts(self, scene: viser.SceneApi, poses: Poses) -> viser.BatchedMeshHandle:
         scales, colours = self._part_looks()
-        mesh = meshes.bearing()
+        mesh = meshes.part("bearing")
         return add_copies(scene, "/parts", mesh, poses["parts"], colours, scales=scales)
 
     def _part_looks(self) -> tuple[np.ndarray, np.ndarray]:

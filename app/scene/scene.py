@@ -159,9 +159,8 @@ class Scene:
         middle = float(self._stage.low[0] + self._stage.high[0]) / 2
         box = ((middle - half, self._stage.floor), (middle + half, outer + 0.2))
         inside = max(0.0, inner - ZONE_WIDTH)
-        core = meshes.ring(inside, inner + ZONE_WIDTH, *box, ZONE_DEPTH)
-        rim = meshes.ring(outer - ZONE_WIDTH, outer, *box, ZONE_DEPTH)
-        zone = meshes.joined(core, rim)
+        radii = [(inside, inner + ZONE_WIDTH), (outer - ZONE_WIDTH, outer)]
+        zone = meshes.rings(radii, *box, ZONE_DEPTH)
         self._zone = add_copies(
             self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16
         )

@@ -92,10 +92,10 @@ def _parts(drawing: Drawing, floor: float, tones: Tones) -> Parts:
     """Fixed parts that support the robot."""
     if drawing.base == "pedestal":
         return [
-            ("pedestal", meshes.pedestal(), tones.frame),
-            ("turntable", meshes.turntable(), tones.metal),
+            ("pedestal", meshes.part("pedestal"), tones.frame),
+            ("turntable", meshes.part("turntable"), tones.metal),
         ]
     return [
         ("base", meshes.base(-floor), tones.frame),
-        ("motors", meshes.motors(), tones.metal),
+        ("motors", meshes.part("motors"), tones.metal),
     ]

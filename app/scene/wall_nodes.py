@@ -75,10 +75,10 @@ class WallNodes:
     def _add(self) -> None:
         (places, _), _, (knobs, _) = self._poses()
         body = add_copies(
-            self._scene, "/wall/body", meshes.wall_body(), places, palette.STEEL, opacity=0.35
+            self._scene, "/wall/body", meshes.part("wall_body"), places, palette.STEEL, opacity=0.35
         )
         ink = self._tones.line
-        lines = add_copies(self._scene, "/wall/lines", meshes.wall_lines(), places, ink)
+        lines = add_copies(self._scene, "/wall/lines", meshes.part("wall_lines"), places, ink)
         ends = add_copies(
             self._scene, "/wall/ends", meshes.ball(KNOB), knobs, palette.SELECTED, shadow=False
         )

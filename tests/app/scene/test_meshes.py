@@ -1,15 +1,31 @@
-"""Parts of robots are closed solids with split edges; trimesh judges that independently."""
+"""Parts of robots are closed, look outward, and are smooth but for their edges."""
 
 from __future__ import annotations
+
+from collections import Counter
+from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 import trimesh
 
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene import meshes
-from onpath.app.scene.meshes import SHARP, Mesh
+from onpath.app.scene.meshes import Mesh
+from onpath.app.scene.part_shapes import SHARP, USUAL_LINK, all_parts
+from onpath.app.scene.scene import Scene
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.viser_adapter.film_server import FilmServer
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.lab import do, new_lab
 
-CRISP = ["link", "bearing", "motors", "base", "cross", "blade", "pedestal", "turntable"]
+MOST_TRIANGLES = 23_000  # of all robots' parts in a scene: pages that draw in software are slow
+MOST_BYTES = 100_000  # of the meshes that a page is sent, all copies counted once
+
+made = cache(all_parts)
+PARTS = sorted(made())
 
 
 def judged(mesh: Mesh) -> trimesh.Trimesh:
@@ -17,40 +33,123 @@ def judged(mesh: Mesh) -> trimesh.Trimesh:
     return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
 
 
-@pytest.mark.parametrize("part", [*CRISP, "grip"])
-def test_parts_are_solids_that_look_outward(part: str) -> None:
-    mesh = judged(getattr(meshes, part)())
-    mesh.merge_vertices()
-    assert mesh.is_watertight and mesh.volume > 0.0
+def open_edges(mesh: Mesh) -> Counter[tuple[int, ...]]:
+    """Directed edges that no neighbour runs along in the other direction.
+
+    Solids that touch each other have edges in common, which are then there more often.
+    """
+    _, numbers = np.unique(np.round(mesh.vertices, 7), axis=0, return_inverse=True)
+    faces = numbers.reshape(-1)[mesh.faces]
+    edges = Counter(map(tuple, faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()))
+    return edges - Counter({(b, a): count for (a, b), count in edges.items()})
 
 
-@pytest.mark.parametrize("part", CRISP)
-def test_faces_share_their_vertices_where_edges_are_not_sharp(part: str) -> None:
-    mesh = getattr(meshes, part)()
-    whole = judged(mesh)
-    whole.merge_vertices(digits_vertex=8)
-    ours, theirs = mesh, trimesh.graph.smooth_shade(whole, angle=SHARP, facet_minarea=None)
-    assert len(ours.vertices) == len(theirs.vertices)
-    assert triangles(ours.corners) == triangles(theirs.triangles)
+@pytest.mark.parametrize("part", PARTS)
+def test_parts_are_closed_and_look_outward(part: str) -> None:
+    mesh = meshes.part(part)
+    assert open_edges(mesh) == Counter()
+    assert judged(mesh).volume > 0.0
+    assert judged(mesh).area_faces.min() > 0.0
 
 
-def triangles(corners: np.ndarray) -> list[list[list[float]]]:
-    """Triangles in an order of their own, each beginning with its smallest corner."""
-    found = []
-    for corner in np.round(corners, 7).tolist():
-        first = corner.index(min(corner))
-        found.append(corner[first:] + corner[:first])
-    return sorted(found)
+def test_a_hole_would_be_noticed() -> None:
+    ball = meshes.part("ball")
+    assert len(open_edges(Mesh(ball.vertices, ball.faces[1:]))) == 3
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_the_file_has_the_parts_as_trimesh_makes_them(part: str) -> None:
+    """If this fails, `python -m onpath.app.scene.part_shapes` writes the file anew."""
+    read, wanted = judged(meshes.part(part)), made()[part]
+    assert len(read.faces) == len(wanted.faces)
+    np.testing.assert_allclose(read.bounds, wanted.bounds, atol=1e-6)
+    assert read.area == pytest.approx(wanted.area, rel=1e-5)
+    assert read.volume == pytest.approx(wanted.volume, rel=1e-5)
+
+
+def corner_normals(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Normals that the page gives the corners of each face, shape (k, 3, 3), and of the faces.
+
+    Those of a vertex are the mean of its faces' normals, weighted by their areas.
+    """
+    a, b, c = mesh.vertices[mesh.faces].transpose(1, 0, 2).astype(float)
+    doubled = np.cross(b - a, c - a)
+    sums = np.zeros((len(mesh.vertices), 3))
+    for corner in mesh.faces.T:
+        np.add.at(sums, corner, doubled)
+
+    def unit(vectors: np.ndarray) -> np.ndarray:
+        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+    return unit(sums)[mesh.faces], unit(doubled)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_no_sharp_edge_is_rounded_by_its_shading(part: str) -> None:
+    mesh = meshes.part(part)
+    shown = np.array([USUAL_LINK if part == "link" else 1.0, 1.0, 1.0])
+    corners, faces = corner_normals(Mesh(mesh.vertices * shown, mesh.faces))
+    assert (corners * faces[:, None]).sum(axis=-1).min() > np.cos(SHARP)
+
+
+@pytest.mark.parametrize(("part", "radius", "axis"), [("motors", 0.026, 1), ("pedestal", 0.1, 2)])
+def test_round_parts_are_shaded_as_round(part: str, radius: float, axis: int) -> None:
+    mesh = meshes.part(part)
+    corners, faces = corner_normals(mesh)
+    out = mesh.vertices[mesh.faces].astype(float)
+    out[..., axis] = 0.0
+    is_outer = np.isclose(np.linalg.norm(out, axis=-1), radius, atol=1e-6)
+    on_side = (is_outer & (np.abs(faces[:, axis, None]) < 1e-6)).all(axis=1)
+    assert on_side.sum() > 30
+    assert (corners * out)[on_side].sum(axis=-1).min() > radius * np.cos(np.radians(3.0))
 
 
 @pytest.mark.parametrize("radius", [0.01, 1.0])
 def test_a_ball_is_round(radius: float) -> None:
     ball = meshes.ball(radius)
-    assert np.linalg.norm(ball.vertices, axis=1).max() == pytest.approx(radius)
+    np.testing.assert_allclose(np.linalg.norm(ball.vertices, axis=1), radius, rtol=1e-6)
     assert judged(ball).volume == pytest.approx(4 / 3 * np.pi * radius**3, rel=0.06)
 
 
-def test_joined_parts_keep_their_triangles() -> None:
-    one, other = meshes.ball(1.0), meshes.blade()
-    corners = np.concatenate([one.corners, other.corners])
-    np.testing.assert_array_equal(meshes.joined(one, other).corners, corners)
+def test_a_link_is_as_long_as_the_bar_and_thin() -> None:
+    low, high = judged(meshes.part("link")).bounds
+    middle = (low[0] + high[0]) / 2, high[0] - low[0]
+    assert middle == pytest.approx((0.5, 1.11), abs=2e-3)
+    assert high[1] - low[1] == pytest.approx(meshes.LINK_THICKNESS)
+
+
+@pytest.mark.parametrize("height", [meshes.FLOOR_DEPTH, 0.4])
+def test_a_base_stands_on_its_floor_and_carries_the_pivot(height: float) -> None:
+    base, usual = meshes.base(height), meshes.base()
+    assert base.vertices[:, 2].min() == pytest.approx(-height)
+    assert base.vertices[:, 2].max() == usual.vertices[:, 2].max()
+    assert open_edges(base) == Counter()
+    added = judged(base).volume - judged(usual).volume
+    assert added == pytest.approx((height - meshes.FLOOR_DEPTH) * 0.024 * 0.072, rel=0.2, abs=1e-9)
+
+
+def test_rings_are_cut_at_the_box() -> None:
+    radii, low, high = [(0.05, 0.07), (0.3, 0.33)], (-0.2, -0.06), (0.25, 0.5)
+    rings = meshes.rings(radii, low, high, 0.02)
+    x, y, z = rings.vertices.T
+    distance = np.hypot(x, z)
+    np.testing.assert_allclose(y, 0.02)
+    assert (x.min(), x.max()) == pytest.approx((low[0], high[0]))
+    assert (z.min(), z.max()) == pytest.approx((low[1], 0.33))
+    assert ((distance < 0.07 + 1e-9) | (distance > 0.3 - 1e-3)).all()
+    assert distance.min() == pytest.approx(0.05, rel=1e-3) and distance.max() < 0.33 + 1e-9
+    everything = judged(meshes.rings(radii, (-1.0, -1.0), (1.0, 1.0), 0.0)).area
+    assert everything == pytest.approx(np.pi * (0.07**2 - 0.05**2 + 0.33**2 - 0.3**2), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_scene_has_few_triangles_and_bytes(name: str) -> None:
+    lab, studio = new_lab(), FilmServer()
+    do(lab, c.ChooseRobot(name))
+    scene = Scene(studio, stage_of(lab.session.robot))  # type: ignore[arg-type]
+    scene.build(take_page_snapshot(lab, 1.0))
+    nodes: list[Any] = list(studio.scene._handle_from_node_name.values())
+    drawn = [node for node in nodes if hasattr(node, "batched_positions")]
+    assert len(drawn) >= 6
+    assert sum(len(n.faces) * len(n.batched_positions) for n in drawn) <= MOST_TRIANGLES
+    assert sum(n.faces.nbytes + n.vertices.nbytes for n in drawn) <= MOST_BYTES
