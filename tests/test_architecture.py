@@ -7,7 +7,11 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
+import pytest
+import viser
+
 from tests.support.checkout import ROOT
+from tests.support.private_names import foreign_private_names, is_private, own_names
 
 TOPS = ("app", "models", "lessons", "assets")
 # Every folder may import those that stand below it here, and nothing else of the project.
@@ -186,6 +190,79 @@ def test_mathematics_knows_no_viewer_thread_or_clock() -> None:
         return packages(parse(file)) & FOREIGN if is_pure else set()
 
     assert offenders(foreign) == []
+
+
+ADAPTER = "app.viser_adapter"
+MEASURES = "app.bench"  # a client of its own, and no part of the server
+INSIDE = ("viser", "websockets", "asyncio")
+
+
+@cache
+def names_of_viser() -> frozenset[str]:
+    """The private names that viser's own modules define, by which its objects are known."""
+    folder = Path(viser.__file__).parent
+    files = [file for file in folder.rglob("*.py") if "client" not in file.parts]
+    found = {name for file in files for name in own_names(parse(file))}
+    return frozenset(name for name in found if is_private(name))
+
+
+def private_parts(tree: ast.AST) -> list[str]:
+    """What a module uses of the private parts of viser and of what viser is made of."""
+    named = [name for name in imports(tree) if name.partition(".")[0] in INSIDE]
+    modules = [
+        name
+        for name in named
+        if name.startswith(("websockets", "viser.infra")) or any(map(is_private, name.split(".")))
+    ]
+    bases = [
+        ast.unparse(base)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.ClassDef)
+        for base in node.bases
+    ]
+    subclasses = [base for base in bases if base.startswith("viser.")]
+    return [*modules, *subclasses, *foreign_private_names(tree, names_of_viser())]
+
+
+def test_only_the_adapter_uses_private_parts_of_viser() -> None:
+    def touched(file: Path) -> list[str]:
+        folder = folder_of(module_of(file))
+        is_elsewhere = folder.startswith("app.") and folder not in (ADAPTER, MEASURES)
+        return private_parts(parse(file)) if is_elsewhere else []
+
+    assert offenders(touched) == []
+    assert offenders(lambda file: is_outside_app(file) and "viser" in packages(parse(file))) == []
+
+
+def is_outside_app(file: Path) -> bool:
+    return file.relative_to(ROOT).parts[0] != "app"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "from viser._messages import HotkeyKey",
+        "from viser import _messages as wire",
+        "import viser._viser",
+        "from viser.infra import WebsockServer",
+        "from websockets.frames import CloseCode",
+        "loop.call(server._websock_server.stop)",
+        "class A:\n    def f(self, client):\n        self._loop = client._websock_connection",
+        "class A:\n    def __init__(self, s):\n        self._event_loop = s._event_loop",
+        "class Film(viser.ViserServer):\n    pass",
+        "getattr(handle, '_impl')",
+        "transport._read_ready_cb = None",
+    ],
+)
+def test_uses_of_private_parts_would_be_noticed(text: str) -> None:
+    assert private_parts(ast.parse(text))
+
+
+def test_public_parts_and_own_private_names_are_no_private_parts() -> None:
+    assert {"_websock_server", "_impl", "_live_connections", "_thread_executor"} <= names_of_viser()
+    public = "import viser\nfrom viser import transforms\nserver.on_client_connect(self._greet)"
+    own = "class A:\n    def copy(self, other):\n        self._rows = other._rows"
+    assert private_parts(ast.parse(public)) == private_parts(ast.parse(own)) == []
 
 
 def test_only_the_command_line_prints() -> None:

@@ -6,21 +6,19 @@ local storage would block one of its 32 threads until the answer arrives.
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from uuid import uuid4
+from functools import partial
 
 import viser
-from viser import _messages as wire
-from websockets.frames import CloseCode
 
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.connection_limits import PerAddress
-from onpath.app.viser_adapter.message_filter import warn_once
+from onpath.app.viser_adapter.connections import connection_of, run_in_thread, turn_away
+from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.places import storage_key
 
-Kept = dict[str, str | None]
+Kept = dict[str, str]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +26,7 @@ class Arrival:
     """A client that has answered.
 
     Attributes:
-        kept: values of the keys, by the names that were asked for.
+        kept: values of the keys, by the names that were asked for; "" where there is none.
         address: the client's, as the limits on connections count it.
         place: of its page; see `app.viser_adapter.places`.
     """
@@ -61,38 +59,32 @@ class Arrivals:
         most_each: int = MOST_EACH,
     ) -> None:
         self._keys, self._enter = keys, enter
-        self._threads = server._thread_executor
-        self._sockets = server._websock_server._live_connections
+        self._server = server
         self._silent = PerAddress[int](most, most_each)
-        self._farewells: set[asyncio.Task[None]] = set()
         server.on_client_connect(self._greet)
         server.on_client_disconnect(self._forget)
 
     async def _greet(self, client: viser.ClientHandle) -> None:
-        socket = self._sockets.get(client.client_id)
-        if socket is None:  # disconnected already
+        number = client.client_id
+        connection = connection_of(self._server, number)
+        if connection is None:  # disconnected already
             return
-        address: str = getattr(socket, "address", "")
-        place: str = getattr(socket, "place", "")
-        surplus = self._silent.add(client.client_id, address)
+        address, place = connection.address, connection.place
+        surplus = self._silent.add(number, address)
         if surplus is not None:
-            self._turn_away(surplus)
-        connection = client._websock_connection
-        waits = {uuid4().hex: key for key in self._keys}
+            self._silent.discard(surplus)  # its page may connect again; then it is the newest
+            turn_away(self._server, surplus, "a newcomer that answers nothing")
         kept = Kept()
 
-        def answered(_: int, message: wire.LocalStorageGetItemResponseMessage) -> None:
-            key = waits.pop(message.request_uuid, None)
-            if key is not None:
-                kept[key] = message.value
-                if not waits and self._silent.discard(client.client_id):
-                    arrival = Arrival(client, kept, address, place)
-                    self._threads.submit(self._let_in, arrival)
+        def answered(key: str, value: str) -> None:
+            kept[key] = value
+            if len(kept) == len(self._keys) and self._silent.discard(number):
+                arrival = Arrival(client, kept, address, place)
+                run_in_thread(self._server, partial(self._let_in, arrival))
 
-        connection.register_handler(wire.LocalStorageGetItemResponseMessage, answered)
-        for question, key in waits.items():
-            stored = storage_key(key, place) if self._keys[key] else key
-            connection.queue_message(wire.LocalStorageGetItemRequestMessage(stored, question))
+        for key, by_class in self._keys.items():
+            stored = storage_key(key, place) if by_class else key
+            ask_item(client, stored, partial(answered, key))
         client.flush()
 
     async def _forget(self, client: viser.ClientHandle) -> None:
@@ -103,13 +95,3 @@ class Arrivals:
             self._enter(arrival)
         except Exception as error:
             log_error(error)
-
-    def _turn_away(self, number: int) -> None:
-        """Disconnect a client. Its page may reconnect; then it is the newest."""
-        self._silent.discard(number)
-        socket = self._sockets.get(number)
-        if socket is not None:
-            warn_once(socket, "a newcomer that answers nothing")
-            farewell = asyncio.ensure_future(socket.close(CloseCode.TRY_AGAIN_LATER))
-            self._farewells.add(farewell)
-            farewell.add_done_callback(self._farewells.discard)

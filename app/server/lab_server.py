@@ -46,9 +46,10 @@ from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.viser_adapter.connections import disconnect, network_thread
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.places import storage_key
-from onpath.app.viser_adapter.secure_server import disconnect, make_server
+from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -130,7 +131,7 @@ class LabServer:
     def _start(self) -> None:
         self.simulation.start()
         self._memory.start()
-        threads = [self.simulation.thread, self.server._websock_server._server_thread]
+        threads = [self.simulation.thread, network_thread(self.server)]
         threads += [] if self._keeper is None else [self._keeper.thread]
         self._processor = SharedProcessor(list(filter(None, threads)))
         self._processor.start()

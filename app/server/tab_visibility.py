@@ -14,9 +14,9 @@ from collections.abc import Callable
 from typing import Protocol
 
 import viser
-from viser import _messages
 
 from onpath.app.simulation.scheduled_lab import Display, ScheduledLab
+from onpath.app.viser_adapter.camera import ask_for_camera
 
 QUESTION_INTERVAL = 2.0  # [s] between questions, while anything is sent to the browser
 PATIENCE = 4.0  # [s] to wait for the reply; a browser that draws in software may stall for two
@@ -77,9 +77,7 @@ class TabVisibility:
             elif now - self._unanswered >= PATIENCE and lab.view is view:
                 lab.view = None
             self._questioned = now
-        up = tuple(self._client.camera.up_direction.tolist())
-        message = _messages.SetCameraUpDirectionMessage(up)
-        self._client._websock_connection.queue_message(message)
+        ask_for_camera(self._client)
 
     async def _hear(self, _: viser.CameraHandle) -> None:
         with self._lock:

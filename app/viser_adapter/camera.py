@@ -1,4 +1,4 @@
-"""Places a browser's camera, whatever pose the browser last reported."""
+"""Places a browser's camera, whatever pose the browser last reported, and asks for it."""
 
 from __future__ import annotations
 
@@ -31,6 +31,12 @@ def place_camera(
         _messages.SetCameraLookAtMessage(_vector(look_at)),
     ):
         client._websock_connection.queue_message(message)
+
+
+def ask_for_camera(client: viser.ClientHandle) -> None:
+    """Send a browser the "up" direction that it has; once it draws, it answers with its camera."""
+    up = _vector(client.camera.up_direction)
+    client._websock_connection.queue_message(_messages.SetCameraUpDirectionMessage(up))
 
 
 def _vector(values: Array) -> tuple[float, float, float]:

@@ -7,7 +7,6 @@ import threading
 
 import viser
 from viser import _messages
-from viser._viser import InitialCameraConfig
 from viser.infra import WebsockServer
 from viser.infra._async_message_buffer import AsyncMessageBuffer
 
@@ -23,7 +22,7 @@ class FilmServer(viser.ViserServer):
         loop.close()  # no consumer to wake
         self._websock_server = WebsockServer("", 0, _messages.Message)
         self._websock_server._broadcast_buffer = AsyncMessageBuffer(loop, persistent_messages=True)
-        self._initial_camera = InitialCameraConfig(self._websock_server.queue_message)
+        self._initial_camera = viser.InitialCameraConfig(self._websock_server.queue_message)
         self._scene_lifecycle_lock = threading.RLock()
         self.scene = viser.SceneApi(self, thread_executor=None, event_loop=loop)  # type: ignore[arg-type]
         self.scene.reset()

@@ -2,8 +2,7 @@
 
 What a browser sends passes the handshake (request_filter.py), the websocket (secure_connection.py:
 size and rate; message_schema.py), message_filter.py (which widget) and widget_validation.py (which
-value). Exceptions in callbacks are logged (error_log.py). Written against viser 1.1.1; a test pins
-the private names.
+value). Exceptions in callbacks are logged (error_log.py).
 """
 
 from __future__ import annotations
@@ -30,6 +29,7 @@ from websockets.http11 import Request, Response
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.compression import share_compressors
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
+from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
@@ -48,7 +48,7 @@ from onpath.app.viser_adapter.secure_connection import (
 from onpath.app.viser_adapter.sockets import PortInUse, listen, listen_unix, open_files
 from onpath.app.viser_adapter.viser_caches import keep_what_is_constant
 
-__all__ = ["Limits", "PortInUse", "disconnect", "harden", "make_server"]
+__all__ = ["Limits", "PortInUse", "harden", "make_server"]
 
 _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
@@ -130,23 +130,12 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
             for scope in (general, own):
                 scope.receive(client, message)
 
-        socket = websock._live_connections.get(client)
-        if isinstance(socket, SecureConnection):
-            socket.handle = handle
+        if (secured := connection_of(server, client)) is not None:
+            secured.handle = handle
 
     let_threads_send(websock)
     general = MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
-
-
-def disconnect(server: viser.ViserServer, clients: set[int]) -> None:
-    """Close the connections of clients. Their pages connect again within about a second."""
-    sockets = server._websock_server._live_connections
-    reason = "this lab has moved to another process"
-    for client in clients:
-        if (connection := sockets.get(client)) is not None:
-            closing = connection.close(CloseCode.SERVICE_RESTART, reason)
-            asyncio.run_coroutine_threadsafe(closing, server.get_event_loop())
 
 
 Answer = Callable[[SecureConnection, Request], Awaitable[Response | None]]

@@ -6,10 +6,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import viser
-from viser._messages import HotkeyKey, KeyModifier
 
 from onpath.app.lab import commands as c
 from onpath.app.page.panels.widgets import Post
+from onpath.app.viser_adapter.hotkeys import HotkeyKey, KeyModifier
 from onpath.lessons.words import Words
 
 NUDGE = 0.001  # [m], step of a control point

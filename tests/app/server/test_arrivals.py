@@ -145,7 +145,7 @@ def test_a_client_that_has_answered_everything_enters_once(inn: Inn) -> None:
         wait_for(lambda: inn.let_in)
         client.send(answers["a"])
         inn.settled(client)
-        assert inn.let_in == [{"a": "apple", "b": None}]
+        assert inn.let_in == [{"a": "apple", "b": ""}]
         assert not len(inn.arrivals._silent)
 
 

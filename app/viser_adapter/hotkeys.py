@@ -1,0 +1,5 @@
+"""viser's names for keys, which its public functions take but which it does not export."""
+
+from viser._messages import HotkeyKey, KeyModifier
+
+__all__ = ["HotkeyKey", "KeyModifier"]
