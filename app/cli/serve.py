@@ -73,14 +73,18 @@ class Serve:
             gc.enable()
 
     def _serve(self) -> int | None:
+        from onpath.app.viser_adapter.viser_parts import check_viser
+
+        level = getattr(logging, self.log_level.upper())
+        logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+        logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
+        check_viser()  # before the other imports, which may fail with another viser
+
         from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
 
-        level = getattr(logging, self.log_level.upper())
-        logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
         try:
             serve(
                 self.host,
