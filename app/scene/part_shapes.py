@@ -35,7 +35,7 @@ Layers = tuple[float, float]
 def crisp(*solids: Trimesh) -> Trimesh:
     """Closed solids as one mesh whose vertices are not shared across sharp edges.
 
-    So the page, which makes vertices' normals from their triangles, does not round these edges.
+    The page computes the normal of a vertex from its triangles, and would round these edges.
     """
     smooth = [smooth_shade(solid, angle=SHARP, facet_minarea=None) for solid in solids]
     joined: Any = concatenate(smooth)
@@ -43,13 +43,13 @@ def crisp(*solids: Trimesh) -> Trimesh:
 
 
 def turned(profile: Profile, points: int = ROUND, upright: bool = False) -> Trimesh:
-    """A solid of revolution about the axis towards the viewer, or about z.
+    """A solid of revolution.
 
     Args:
         points: of a circle.
+        upright: whether its axis is z; otherwise it points towards the viewer.
     """
-    ends = (0.0, profile[0][1]), (0.0, profile[-1][1])
-    line = [ends[0], *profile, ends[1]]
+    line = [(0.0, profile[0][1]), *profile, (0.0, profile[-1][1])]
     return revolve(line, sections=points, transform=None if upright else TOWARDS_VIEWER)
 
 
@@ -67,10 +67,10 @@ def plate(outline: np.ndarray, layers: Layers, chamfer: float = 0.0) -> Trimesh:
 
 
 def chamfered(inner: np.ndarray, outline: np.ndarray, layers: Layers, depth: float) -> Trimesh:
-    """A plate whose edges are cut off to an inner outline; see `plate`.
+    """A plate whose front and back have the inner outline.
 
     Args:
-        depth: of the cut [m].
+        depth: distance from the front, and from the back, to where it has the whole outline [m].
     """
     front, back = layers
     rings = [(inner, front), (outline, front + depth), (outline, back - depth), (inner, back)]

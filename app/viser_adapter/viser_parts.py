@@ -83,7 +83,7 @@ def untested_parts(viser: Path) -> list[str]:
     if not page.is_file():
         faults.append("its page is missing")
     elif hashlib.sha256(page.read_bytes()).hexdigest() != TESTED_PAGE:
-        faults.append("its page is another one than the tested")
+        faults.append("its page is not the tested one")
     return faults
 
 
