@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
 
 import casadi as ca
 import numpy as np
@@ -35,10 +36,13 @@ class ZeroDynamics:
         system: the system.
         function: (q, y', y'', parameters) -> A in η1' = A η1, (2 (n - m), 2 (n - m)), linearized
             about f' = 0 and the f in q.
+        acceleration: the same arguments -> f'' at f' = 0, (n - m, 1). At rest it is 0 where the
+            robot is in equilibrium.
     """
 
     system: MechanicalSystem
     function: ca.Function
+    acceleration: ca.Function
 
     def exponents(
         self,
@@ -107,12 +111,18 @@ class ZeroDynamics:
         return rows
 
 
-def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
+def zero_dynamics(
+    system: MechanicalSystem, following: tuple[int, ...] | None = None
+) -> ZeroDynamics:
     """Derive the zero dynamics of a system.
 
-    The rows of M v' + c = B u without an input, with the accelerations of the joints eliminated by
-    y'' = J v' + J' v, give f'' as a function of f, f', y' and y''. In the linearization the joints
-    follow f so that dy = 0.
+    With N(q) B = 0, the rows N (M v' + c) = 0 have no input. Of the coordinates, m follow the
+    output, y'' = J v' + J' v, and the others are f; so these rows give f'' as a function of f, f',
+    y' and y''. In the linearization the following coordinates move with f so that dy = 0.
+
+    Args:
+        following: numbers of the m coordinates that follow the output, for which dh/dq must be
+            invertible where it is evaluated; None: the first m, if it is invertible for these.
 
     Raises:
         ValueError: all coordinates have inputs, or the numbers of inputs and outputs differ.
@@ -124,24 +134,50 @@ def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
         raise ValueError(f"{system.name}: no zero dynamics with {m} inputs, {system.p} outputs")
     y_rate, y_acceleration = ca.SX.sym("y_rate", m), ca.SX.sym("y_acceleration", m)
     jacobian = ca.jacobian(system.controlled_output, system.q)
-    joints, modes = jacobian[:, :m], jacobian[:, m:]
-    follow = -ca.solve(joints, modes)  # dq_joints / df at constant y
+    led = list(following or _independent(jacobian.T))
+    free = [i for i in range(n) if i not in led]
+    at_led, at_free = jacobian[:, led], jacobian[:, free]
+    follow = -ca.solve(at_led, at_free)  # dq_led / df at constant y
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
-    rows = system.mass[m:, :]
-    carried = ca.solve(joints, y_acceleration - turning)
-    inertia = rows[:, m:] + rows[:, :m] @ follow
-    f_acceleration = -ca.solve(inertia, system.bias[m:] + rows[:, :m] @ carried)
+    undriven = _annihilator(system.actuation)
+    rows, bias = undriven @ system.mass, undriven @ system.bias
+    carried = ca.solve(at_led, y_acceleration - turning)
+    inertia = rows[:, free] + rows[:, led] @ follow
+    f_acceleration = -ca.solve(inertia, bias + rows[:, led] @ carried)
 
-    f_rate = system.v[m:]
-    velocity = ca.vertcat(ca.solve(joints, y_rate) + follow @ f_rate, f_rate)
-    held = ca.substitute(f_acceleration, system.v, ca.vertcat(velocity[:m], f_rate))
+    f_rate = system.v[free]
+    velocity = ca.SX(n, 1)
+    velocity[led], velocity[free] = ca.solve(at_led, y_rate) + follow @ f_rate, f_rate
+    held = ca.substitute(f_acceleration, system.v, velocity)
     stiffness = ca.jacobian(held, system.q)
-    stiffness = stiffness[:, m:] + stiffness[:, :m] @ follow
+    stiffness = stiffness[:, free] + stiffness[:, led] @ follow
     n_f = n - m
     a = ca.blockcat([[ca.SX(n_f, n_f), ca.SX.eye(n_f)], [stiffness, ca.jacobian(held, f_rate)]])
-    at_rest = ca.substitute(ca.densify(a), f_rate, ca.SX.zeros(n_f))
     inputs = [system.q, y_rate, y_acceleration, system.parameters]
-    return ZeroDynamics(system, ca.Function("zero_dynamics", inputs, [ca.cse(at_rest)]))
+    matrix, motion = (ca.substitute(ca.densify(x), f_rate, ca.SX.zeros(n_f)) for x in (a, held))
+    return ZeroDynamics(
+        system,
+        function=ca.Function("zero_dynamics", inputs, [ca.cse(matrix)]),
+        acceleration=ca.Function("internal_acceleration", inputs, [ca.cse(motion)]),
+    )
+
+
+def _independent(matrix: ca.SX) -> tuple[int, ...]:
+    """The first m rows of a matrix (n, m) that can be independent, by its zeros alone."""
+    n, m = matrix.shape
+    rows = (each for each in combinations(range(n), m) if ca.sprank(matrix[each, :]) == m)
+    return next(rows, tuple(range(m)))
+
+
+def _annihilator(actuation: ca.SX) -> ca.SX:
+    """N of N B = 0, (n - m, n): -B₂ B₁⁻¹ at m independent rows B₁ of B, and 1 at the others."""
+    n, m = actuation.shape
+    driven = list(_independent(actuation))
+    others = [i for i in range(n) if i not in driven]
+    undriven = ca.SX(n - m, n)
+    undriven[:, others] = ca.SX.eye(n - m)
+    undriven[:, driven] = -ca.solve(actuation[driven, :].T, actuation[others, :].T).T
+    return ca.sparsify(undriven)
 
 
 @lru_cache(maxsize=16)
