@@ -9,8 +9,8 @@ and the controller sees the share α of its swing. With r = l / 2, the rod's mas
     T = ½ (m1 + m2) x'² + ½ m2 z'² + ½ m_r (|c'|² + l² φ'² / 12) + ½ m |h'|²,
     V = g (m2 z + m_r c_z + m h_z),   c = (x + r sin φ, z - r cos φ).
 
-Held at y_α, the rod swings with φ'' = -g sin φ / (L - α l), without damping, where L is the distance
-from the pivot to the rod's centre of percussion,
+Held at y_α, and without damping, the rod swings with φ'' = -g sin φ / (L - α l), where L is the
+distance from the pivot to the rod's centre of percussion,
 
     L = (m_r l² / 3 + m l²) / (m_r l / 2 + m l),
 
@@ -51,8 +51,17 @@ HALF = 0.15  # half of the width and height of the workspace, [m]
 class CraneParameters(Parameters):
     """Parameters of the crane. Its length selects the instance of the robot."""
 
+    speed: float = number(
+        2.0,
+        "rad/s",
+        (-10, 10, 0.1),
+        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
+        " sine, and otherwise the largest speed",
+        group="task",
+        label="Speed",
+    )
     alpha: float = number(
-        0.5,
+        0.9,
         "",
         (-1, 1.5, 0.01),
         "share of the swing that the controller sees: 1 the load, 0 the carriage",
