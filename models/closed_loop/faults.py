@@ -102,11 +102,11 @@ def foreseen(robot: Robot, law: str, q: Array, parameters: Parameters) -> tuple[
 def _foreseen_at(
     robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> tuple[Message, ...]:
-    """What could be foreseen with the robot at rest where the rows begin."""
-    if robot.system.n == robot.system.m or not len(rows):
+    """What could be foreseen with the robot at rest where the rows begin; at home without any."""
+    if robot.system.n == robot.system.m:
         return ()
     try:
-        q = robot.rest(log.unpack(rows)["y"][0])
+        q = robot.rest(log.unpack(rows)["y"][0] if len(rows) else np.zeros(robot.system.p))
     except ValueError:  # out of reach
         return ()
     return foreseen(robot, law, q, parameters)

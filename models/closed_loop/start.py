@@ -116,8 +116,8 @@ def driven_rates(robot: Robot, parameters: Parameters, q: Array, y_rate: Array) 
     """
     jacobian, actuation = _matrices(robot)(q, robot.plant(parameters))
     drives = np.array(actuation)
-    rates: Array = drives @ np.linalg.lstsq(np.array(jacobian) @ drives, y_rate, rcond=None)[0]
-    return rates
+    inputs = np.linalg.lstsq(np.array(jacobian) @ drives, y_rate, rcond=None)[0]
+    return np.asarray(drives @ inputs, dtype=float)
 
 
 @lru_cache(maxsize=64)

@@ -9,6 +9,7 @@ the output stays on its path.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
@@ -134,27 +135,29 @@ def zero_dynamics(
         raise ValueError(f"{system.name}: no zero dynamics with {m} inputs, {system.p} outputs")
     y_rate, y_acceleration = ca.SX.sym("y_rate", m), ca.SX.sym("y_acceleration", m)
     jacobian = ca.jacobian(system.controlled_output, system.q)
-    led = list(following or _independent(jacobian.T))
-    free = [i for i in range(n) if i not in led]
-    at_led, at_free = jacobian[:, led], jacobian[:, free]
+    chosen = following or _independent(jacobian.T)
+    led, free = _selection(n, chosen), _others(n, chosen)
+    at_led, at_free = jacobian @ led.T, jacobian @ free.T
     follow = -ca.solve(at_led, at_free)  # dq_led / df at constant y
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
     undriven = _annihilator(system.actuation)
     rows, bias = undriven @ system.mass, undriven @ system.bias
     carried = ca.solve(at_led, y_acceleration - turning)
-    inertia = rows[:, free] + rows[:, led] @ follow
-    f_acceleration = -ca.solve(inertia, bias + rows[:, led] @ carried)
+    inertia = rows @ free.T + (rows @ led.T) @ follow
+    f_acceleration = -ca.solve(inertia, bias + (rows @ led.T) @ carried)
 
-    f_rate = system.v[free]
-    velocity = ca.SX(n, 1)
-    velocity[led], velocity[free] = ca.solve(at_led, y_rate) + follow @ f_rate, f_rate
+    f_rate = free @ system.v
+    velocity = led.T @ (ca.solve(at_led, y_rate) + follow @ f_rate) + free.T @ f_rate
     held = ca.substitute(f_acceleration, system.v, velocity)
     stiffness = ca.jacobian(held, system.q)
-    stiffness = stiffness[:, free] + stiffness[:, led] @ follow
+    stiffness = stiffness @ free.T + (stiffness @ led.T) @ follow
     n_f = n - m
-    a = ca.blockcat([[ca.SX(n_f, n_f), ca.SX.eye(n_f)], [stiffness, ca.jacobian(held, f_rate)]])
+    a = ca.blockcat(
+        [[ca.SX(n_f, n_f), ca.SX.eye(n_f)], [stiffness, ca.jacobian(held, system.v) @ free.T]]
+    )
     inputs = [system.q, y_rate, y_acceleration, system.parameters]
-    matrix, motion = (ca.substitute(ca.densify(x), f_rate, ca.SX.zeros(n_f)) for x in (a, held))
+    still = ca.SX.zeros(n, 1)
+    matrix, motion = (ca.substitute(ca.densify(x), system.v, still) for x in (a, held))
     return ZeroDynamics(
         system,
         function=ca.Function("zero_dynamics", inputs, [ca.cse(matrix)]),
@@ -162,22 +165,34 @@ def zero_dynamics(
     )
 
 
+def _selection(n: int, chosen: Iterable[int]) -> ca.SX:
+    """The rows of the unit matrix (n, n) with these numbers."""
+    numbers = list(chosen)
+    rows = ca.SX(len(numbers), n)
+    for row, number in enumerate(numbers):
+        rows[row, number] = 1
+    return rows
+
+
+def _others(n: int, chosen: Sequence[int]) -> ca.SX:
+    """The other rows of the unit matrix (n, n)."""
+    return _selection(n, (i for i in range(n) if i not in chosen))
+
+
 def _independent(matrix: ca.SX) -> tuple[int, ...]:
-    """The first m rows of a matrix (n, m) that can be independent, by its zeros alone."""
+    """The first m rows of a matrix (n, m) that are independent, as far as its symbols tell."""
     n, m = matrix.shape
-    rows = (each for each in combinations(range(n), m) if ca.sprank(matrix[each, :]) == m)
+    every = combinations(range(n), m)
+    rows = (each for each in every if not ca.det(_selection(n, each) @ matrix).is_zero())
     return next(rows, tuple(range(m)))
 
 
 def _annihilator(actuation: ca.SX) -> ca.SX:
     """N of N B = 0, (n - m, n): -B₂ B₁⁻¹ at m independent rows B₁ of B, and 1 at the others."""
-    n, m = actuation.shape
-    driven = list(_independent(actuation))
-    others = [i for i in range(n) if i not in driven]
-    undriven = ca.SX(n - m, n)
-    undriven[:, others] = ca.SX.eye(n - m)
-    undriven[:, driven] = -ca.solve(actuation[driven, :].T, actuation[others, :].T).T
-    return ca.sparsify(undriven)
+    driven = _independent(actuation)
+    first, rest = _selection(actuation.size1(), driven), _others(actuation.size1(), driven)
+    carried = ca.solve((first @ actuation).T, (rest @ actuation).T).T
+    return rest - carried @ first
 
 
 @lru_cache(maxsize=16)

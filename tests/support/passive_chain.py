@@ -51,7 +51,6 @@ class PassiveChain(PlanarRobot):
     name: str = "passive_chain"
     label: str = "Chain with passive joints"
     reach: tuple[float, float] = (0.0, 1.0)
-    home: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         place, statics = _statics(self.shape)
@@ -61,6 +60,10 @@ class PassiveChain(PlanarRobot):
         object.__setattr__(self, "at_home", q0)
         object.__setattr__(self, "offset", np.array(place(q0))[:, 0])
         object.__setattr__(self, "system", _equations(self.shape, self.offset))
+
+    @property
+    def home(self) -> tuple[float, float]:
+        return 0.0, 0.0
 
     @property
     def coordinate_names(self) -> tuple[str, ...]:

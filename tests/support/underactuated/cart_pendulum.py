@@ -101,8 +101,12 @@ class CartPendulum(PlanarRobot):
     name: str = "cart_pendulum"
     label: str = "Cart with a pendulum"
     coordinate_names: tuple[str, ...] = ("x_m", "z_m", "phi_rad")
-    home: tuple[float, float] = HOME
     reach: tuple[float, float] = (0.0, 0.35)
+
+    @property
+    def home(self) -> tuple[float, float]:
+        """See `PlanarRobot.home`."""
+        return HOME
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""

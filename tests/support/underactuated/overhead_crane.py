@@ -41,7 +41,7 @@ from onpath.models.systems.system import (
 )
 
 NAMES = ("bridge", "carriage", "rod", "load", "length", "alpha", "friction", "pivot")
-BRIDGE, CARRIAGE = 1.0, 0.5  # m1 and m2, [kg]
+BRIDGE, CARRIAGE = 1.0, 0.2  # m1 and m2, [kg]
 FRICTION = 0.5  # of the slides, [N s/m]
 HOME = (0.2, 0.1)  # the load at y = 0, in the robot's frame, [m]
 HALF = 0.15  # half of the width and height of the workspace, [m]
@@ -73,7 +73,7 @@ class CraneParameters(Parameters):
     )
     rod: float = number(0.0, "kg", (0, 1, 0.01), "mass of the rod", group="robot", label="Rod")
     load: float = number(
-        0.3, "kg", (0.01, 1, 0.01), "mass of the load", group="robot", label="Load"
+        0.2, "kg", (0.01, 1, 0.01), "mass of the load", group="robot", label="Load"
     )
     pivot: float = number(
         0.002,
@@ -136,15 +136,20 @@ class OverheadCrane(PlanarRobot):
     name: str = "overhead_crane"
     label: str = "Overhead crane"
     coordinate_names: tuple[str, ...] = ("x_m", "z_m", "phi_rad")
-    home: tuple[float, float] = HOME
     reach: tuple[float, float] = (0.0, 0.35)
+
+    @property
+    def home(self) -> tuple[float, float]:
+        """See `PlanarRobot.home`."""
+        return HOME
 
     def plant(self, parameters: Parameters) -> Array:
         """See `Robot.plant`."""
         own = own_parameters(CraneParameters, parameters)
-        given = {name: getattr(own, name) for name in ("rod", "load", "length", "alpha", "pivot")}
-        rest = {"bridge": BRIDGE, "carriage": CARRIAGE, "friction": FRICTION}
-        return self.system.parameter_vector(given | rest)
+        values: dict[str, float] = {"bridge": BRIDGE, "carriage": CARRIAGE, "friction": FRICTION}
+        values |= {"rod": own.rod, "load": own.load, "length": own.length}
+        values |= {"alpha": own.alpha, "pivot": own.pivot}
+        return self.system.parameter_vector(values)
 
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: the plant with the chosen error of the load."""
