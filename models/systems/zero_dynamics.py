@@ -60,7 +60,7 @@ class ZeroDynamics:
             y_rate, y_acceleration: y' and y'' along the path, shape (k, p) or (p,); None: at rest.
 
         Returns:
-            Shape (k, 2 (n - m)), [1/s].
+            Shape (k, 2 (n - m)), [1/s]; infinity where the decoupling matrix is singular.
         """
         still = np.zeros(self.system.p)
         given = (q, still if y_rate is None else y_rate)
@@ -68,8 +68,12 @@ class ZeroDynamics:
         rows = np.broadcast_shapes(*[np.atleast_2d(part).shape[:1] for part in given])
         inputs = [np.broadcast_to(part, (*rows, part.shape[-1])).T for part in given]
         size = 2 * (self.system.n - self.system.m)
-        columns = np.array(self.function(*inputs)).reshape(size, -1, size)
-        values: Complex = np.linalg.eigvals(columns.transpose(1, 0, 2)).astype(np.complex128)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            columns = np.array(self.function(*inputs)).reshape(size, -1, size)
+        matrices = columns.transpose(1, 0, 2)
+        singular = ~np.isfinite(matrices).all((1, 2), keepdims=True)
+        values: Complex = np.linalg.eigvals(np.where(singular, 0.0, matrices)).astype(np.complex128)
+        values[singular[:, 0, 0]] = np.inf
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
     def critical_alpha(self, q: Array, parameters: Array, highest: float = HIGHEST_ALPHA) -> float:
@@ -103,7 +107,8 @@ class ZeroDynamics:
     def _grows(self, q: Array, parameters: Array, alphas: Array) -> NDArray[np.bool_]:
         """For every α, whether an exponent has a positive real part, shape (k,) -> (k,)."""
         exponents = self.exponents(q, self.with_alpha(parameters, alphas))
-        return exponents[:, 0].real > _NEUTRAL * np.abs(exponents).max(-1)
+        largest = np.abs(exponents).max(-1)
+        return (exponents[:, 0].real > _NEUTRAL * largest) | np.isinf(largest)
 
     def with_alpha(self, parameters: Array, alphas: Array) -> Array:
         """The parameters with each α, shapes (size,) and (k,) -> (k, size)."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import assume, event, given, settings
+from hypothesis import assume, event, example, given, settings
 from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
@@ -25,6 +25,7 @@ from onpath.models.studies.experiments import on_path, run
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.zero_dynamics import zero_dynamics
 from tests.support.passive_chain import PassiveChain, Shape, entry_of
 from tests.support.underactuated.cart_pendulum import ROBOT as CART
 from tests.support.underactuated.cart_pendulum import CartParameters
@@ -32,6 +33,7 @@ from tests.support.underactuated.overhead_crane import ROBOT as CRANE
 from tests.support.underactuated.overhead_crane import CraneParameters, percussion
 
 FOLLOW = "path_following"
+CRITICAL = zero_dynamics(CRANE.make(CraneParameters()).system)
 CHAIN_LAWS = [name for name, law in LAWS.items() if not law.spatial]
 CRANES = st.builds(
     CraneParameters,
@@ -71,6 +73,15 @@ def test_the_growth_rate_is_that_of_the_closed_form(own: CraneParameters) -> Non
     expected = largest if largest > 1e-9 else min(largest, 0.0)
     found = growth_rate(robot, own, at_rest(robot))
     assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+@settings(deadline=None, max_examples=50)
+@given(CRANES)
+@example(CraneParameters())
+def test_the_critical_alpha_is_that_of_the_closed_form(own: CraneParameters) -> None:
+    robot = CRANE.make(own)
+    found = CRITICAL.critical_alpha(at_rest(robot), robot.plant(own))
+    assert found == pytest.approx(percussion(own) / own.length, abs=1e-6)
 
 
 @settings(deadline=None, max_examples=25)
