@@ -95,6 +95,7 @@ class Lab:
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level = "", "info"
         self._caution: Message | None = None
+        self._forecast: tuple[tuple[object, ...], Message | None] | None = None
         self.law_refusals: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
@@ -287,9 +288,13 @@ class Lab:
         caution = session.entry.caution(session.parameters)
         if caution or robot.system.n == robot.system.m or robot.system.modes or self.locked:
             return caution
-        q = robot.rest(robot.frame.lift(session.editor.blend.target.at(np.array(0.0))))
-        laws = session.chosen_laws.values()
-        return next(iter(forecasts(robot, laws, session.parameters, q)), None)
+        path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
+        asked = robot, laws, session.parameters, path
+        if self._forecast is None or self._forecast[0] != asked:
+            q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
+            found = forecasts(robot, laws, session.parameters, q)
+            self._forecast = asked, next(iter(found), None)
+        return self._forecast[1]
 
     def fault_words(self, key: str, **more: str) -> str:
         """Which robot has stopped last, when and why, in the words of a key; empty if none has."""
