@@ -63,8 +63,8 @@ def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Messag
         return NO_REST
     if rate < SLOWEST:
         return None
-    said = {"rate": f"{rate:.2g}", "time": f"{np.log(10) / rate:.2g}"}
-    return Message("forecast.unstable", said)
+    time = np.log(10) / rate
+    return Message("forecast.unstable", {"rate": f"{rate:.2g}", "time": f"{time:.2g}"})
 
 
 def growth_rate(robot: Robot, parameters: Parameters, q: Array) -> float | None:

@@ -70,10 +70,11 @@ class ZeroDynamics:
         size = 2 * (self.system.n - self.system.m)
         with np.errstate(divide="ignore", invalid="ignore"):
             columns = np.array(self.function(*inputs)).reshape(size, -1, size)
-        matrices = columns.transpose(1, 0, 2)
-        singular = ~np.isfinite(matrices).all((1, 2), keepdims=True)
-        values: Complex = np.linalg.eigvals(np.where(singular, 0.0, matrices)).astype(np.complex128)
-        values[singular[:, 0, 0]] = np.inf
+        matrices = columns.transpose(1, 0, 2).copy()
+        singular = ~np.isfinite(matrices.reshape(len(matrices), -1)).all(axis=1)
+        matrices[singular] = 0
+        values: Complex = np.linalg.eigvals(matrices).astype(np.complex128)
+        values[singular] = np.inf
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
     def critical_alpha(self, q: Array, parameters: Array, highest: float = HIGHEST_ALPHA) -> float:

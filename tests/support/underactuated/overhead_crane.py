@@ -154,7 +154,8 @@ class OverheadCrane(PlanarRobot):
     def model(self, parameters: Parameters) -> Array:
         """See `Robot.model`: the plant with the chosen error of the load."""
         own = own_parameters(CraneParameters, parameters)
-        values = dict(zip(NAMES, self.plant(own).tolist(), strict=True))
+        pairs = zip(self.system.parameter_names, self.plant(own).tolist(), strict=True)
+        values = dict(pairs)
         values["load"] *= 1 + own.error_load / 100
         return self.system.parameter_vector(values)
 
