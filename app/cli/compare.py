@@ -50,7 +50,7 @@ class CompareCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.cli.experiment import assignments
         from onpath.models.studies.comparison import as_data
-        from onpath.models.studies.experiments import on_path
+        from onpath.models.studies.experiments import forecast_text, on_path
         from onpath.models.studies.unused import unused_text
 
         check_plot(self.plot)
@@ -59,8 +59,10 @@ class CompareCommand:
         contest = self._contest()
         laws = _laws(self.law, contest)
         plain = on_path(contest.entry, contest.parameters, contest.curve)
-        if text := unused_text(plain, laws, assignments(self.set)):
-            print(f"onpath: {text}", file=sys.stderr)
+        told = assignments(self.set)
+        for text in (unused_text(plain, laws, told), forecast_text(plain, laws)):
+            if text:
+                print(f"onpath: {text}", file=sys.stderr)
         results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:

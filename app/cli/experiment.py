@@ -49,7 +49,13 @@ class ExperimentCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
-        from onpath.models.studies.experiments import experiments, never_held, run, summary
+        from onpath.models.studies.experiments import (
+            experiments,
+            forecast_text,
+            never_held,
+            run,
+            summary,
+        )
         from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
@@ -65,8 +71,9 @@ class ExperimentCommand:
         times = {} if self.profile is None else {"profile": self.profile}
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
-        if text := unused_text(chosen, laws, given):
-            print(f"onpath: {text}", file=sys.stderr)
+        for text in (unused_text(chosen, laws, given), forecast_text(chosen, laws)):
+            if text:
+                print(f"onpath: {text}", file=sys.stderr)
         runs = [run(chosen, name) for name in laws]
         result = summary(chosen, runs)
         if self.csv:

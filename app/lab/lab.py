@@ -12,6 +12,8 @@ from math import inf
 from time import perf_counter
 from typing import ClassVar
 
+import numpy as np
+
 from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.breakdown import Breakdown
 from onpath.app.lab.identification.in_background import Identification
@@ -25,6 +27,7 @@ from onpath.lessons.benches import bench_titles
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
+from onpath.models.control.forecast import forecasts
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.law_parameters import DISTANCE, LEVEL_SET
@@ -92,6 +95,7 @@ class Lab:
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level = "", "info"
         self._caution: Message | None = None
+        self._forecast: tuple[tuple[object, ...], Message | None] | None = None
         self.law_refusals: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
@@ -264,7 +268,7 @@ class Lab:
     def show_faults(self) -> None:
         """Report robots that have just stopped, and typed laws that could not be used."""
         faults, refusals = self.session.faults, self.session.law_changes.refusals
-        caution = self.session.entry.caution(self.session.parameters)
+        caution = self._foreseen()
         if caution != self._caution:
             self._caution = caution
             self.clear_message()
@@ -273,6 +277,24 @@ class Lab:
         if faults:
             faults.clear()
             self.show_message(self.fault_words("say.stopped"), "error")
+
+    def _foreseen(self) -> Message | None:
+        """What is known against the settings before the robots run.
+
+        The panel of a flexible link tells its zero dynamics itself. While a prediction is pending,
+        only what its robot's entry says is told.
+        """
+        session, robot = self.session, self.session.robot
+        caution = session.entry.caution(session.parameters)
+        if caution or robot.system.n == robot.system.m or robot.system.modes or self.locked:
+            return caution
+        path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
+        asked = robot, laws, session.parameters, path
+        if self._forecast is None or self._forecast[0] != asked:
+            q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
+            found = forecasts(robot, laws, session.parameters, q)
+            self._forecast = asked, next(iter(found), None)
+        return self._forecast[1]
 
     def fault_words(self, key: str, **more: str) -> str:
         """Which robot has stopped last, when and why, in the words of a key; empty if none has."""

@@ -17,7 +17,7 @@ from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
-from onpath.models.studies.experiments import on_path
+from onpath.models.studies.experiments import forecast_text, on_path
 from onpath.models.studies.unused import unused_text
 
 PATHS = ("circle", "ellipse", "rounded square", "clover")
@@ -88,8 +88,10 @@ def figure(
     values = own if own.keys() & NEWCOMER.keys() else {**NEWCOMER, **own}
     choice = chosen(robot, laws, curves, values, sliders, controls, choices)
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
-    if text := unused_text(first, choice.every_law, own):
-        warnings.warn(text, UserWarning, stacklevel=2)
+    laws = choice.every_law
+    for text in (unused_text(first, laws, own), forecast_text(first, laws)):
+        if text:
+            warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:
         scratch.write_text(figure_page(choice, Words(language), title), encoding="utf-8")
     return path

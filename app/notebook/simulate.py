@@ -92,11 +92,13 @@ def simulate(
     Raises:
         ValueError: an unknown name (the message lists the nearest ones), an invalid value (the
             message lists the valid ones), or one that contradicts another, such as `hold_at`
-            without `hold`.
+            without `hold`; or no run is possible, because the decoupling matrix is singular at the
+            start.
 
     Warns:
         UserWarning: a parameter that is given, but has no effect in this run, such as K4 with
-            task="speed".
+            task="speed"; or what is foreseen of a robot with coordinates without a motor, such as
+            unstable zero dynamics.
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -141,7 +143,12 @@ def simulate(
     ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, law))
-    for text in (unused_text(chosen, [law], given), experiments.never_held(chosen, run.trajectory)):
+    remarks = (
+        unused_text(chosen, [law], given),
+        experiments.forecast_text(chosen, [law]),
+        experiments.never_held(chosen, run.trajectory),
+    )
+    for text in remarks:
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     return run

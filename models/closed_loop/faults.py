@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.forecast import forecast
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
@@ -75,6 +76,7 @@ def _causes(
         across, along = channels
         causes += [Message("cause.poles_across")] * (not across.stable)
         causes += [Message("cause.poles_along")] * (not along.stable)
+    causes += _foreseen_at(robot, log, law, rows, parameters)
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):
@@ -83,6 +85,31 @@ def _causes(
     if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
         causes.append(Message("cause.model"))
     return causes
+
+
+def foreseen(robot: Robot, law: str, q: Array, parameters: Parameters) -> tuple[Message, ...]:
+    """The forecast as the cause of a stop, if there is one; see `forecast`.
+
+    The reasons of a flexible link speak of its zero dynamics themselves.
+
+    Args:
+        q: configuration at rest, shape (n,).
+    """
+    found = None if robot.system.modes else forecast(robot, law, parameters, q)
+    return () if found is None else (found,)
+
+
+def _foreseen_at(
+    robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
+) -> tuple[Message, ...]:
+    """What could be foreseen with the robot at rest where the rows begin; at home without any."""
+    if robot.system.n == robot.system.m:
+        return ()
+    try:
+        q = robot.rest(log.unpack(rows)["y"][0] if len(rows) else np.zeros(robot.system.p))
+    except ValueError:  # out of reach
+        return ()
+    return foreseen(robot, law, q, parameters)
 
 
 def _seen(last: dict[str, Array], parameters: Parameters, known: bool) -> list[Message]:

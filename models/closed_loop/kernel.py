@@ -190,7 +190,7 @@ def _advance(
         **moved,
         **_next_places(kind, law, state, settings, view, command),
         "integral": bounded(summed, settings, command),
-        **remembered(kind, state, acts, reading, measured_v[: system.m]),
+        **remembered(kind, state, acts, reading, measured_v[: system.joints]),
         **memory,
         **{n: ca.if_else(acts, command.memory[n], state[n]) for n, _ in law.memory},
         **drive.memory,

@@ -68,9 +68,9 @@ def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
             ("theta_ref", 1),  # reference point of laws that have one, [rad]
             ("speed_ref", 1),  # speed reference, which ramps to the wanted speed, [rad/s]
             ("integral", p),  # of λ, or of the error to the reference point
-            ("encoder", m),  # last reading, [rad]
-            ("encoder_rate", m),  # filtered velocity, [rad/s]
-            *(composite.MEMORY.fields if n > m else ()),
+            ("encoder", system.joints),  # last reading, [rad]
+            ("encoder_rate", system.joints),  # filtered velocity, [rad/s]
+            *(composite.MEMORY.fields if system.modes else ()),
             ("u", m),  # torque that is held, [N m]
             ("phase", 1),  # ticks since the control law was evaluated
             *memory,
@@ -98,7 +98,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
     """
     p, k = system.p, len(system.parameter_names)
     scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
-    flexible = (*composite.GAINS, "strain_noise") if system.n > system.m else ()
+    flexible = (*composite.GAINS, "strain_noise") if system.modes else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
     realism += ("stiction", "torque_step", "look_ahead", "delay_ticks", "sensor_noise", "seed")
     return _layout(

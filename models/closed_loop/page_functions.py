@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.faults import not_finite
+from onpath.models.closed_loop.faults import foreseen, not_finite
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.errors import Message
 from onpath.models.paths.projection import LocalCurve, basis
@@ -193,7 +193,10 @@ def stop_reasons(robot: Robot, parameters: Parameters, q: Array | None, law: str
         q: a configuration of the run, or None; see `Robot.reasons`.
     """
     fast = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
-    return [fast, *robot.reasons(q, parameters), NOT_FINITE, not_finite(law)]
+    reasons = [fast, *robot.reasons(q, parameters), NOT_FINITE]
+    if q is not None and (causes := foreseen(robot, law, q, parameters)):
+        reasons = [Message("stop.because", {"reason": r, "causes": causes}) for r in reasons]
+    return [*reasons, not_finite(law)]
 
 
 def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:

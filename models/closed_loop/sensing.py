@@ -19,7 +19,7 @@ from onpath.models.systems.system import MechanicalSystem
 def measure(
     system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """q and v as measured, each (n, 1), and the encoder readings, (m, 1), [rad].
+    """q and v as measured, each (n, 1), and the encoder readings, (joints, 1), [rad].
 
     Without encoders the state is exact. With encoders the joint angles are rounded to
     `encoder_step`, and the velocities are their differences behind a first-order low-pass filter of
@@ -27,39 +27,40 @@ def measure(
 
         v_f⁺ = v_f + T / (encoder_filter + T) ((q - q_previous) / T - v_f),   T = hold_ticks dt.
 
-    Encoders are on the first m coordinates; the others are exact, but for the noise of strain
-    gauges. Noise of the joint angles is added before they are rounded; it, too, calls for the
-    filter.
+    Encoders are on all joints, also on those without a motor; the modes of a flexible link are
+    exact, but for the noise of strain gauges. Noise of the joint angles is added before they are
+    rounded; it, too, calls for the filter.
     """
-    m, v = system.m, state["v"]
+    joints, v = system.joints, state["v"]
     q = state["q"] + _noise(system, state, settings) if kind.noise else state["q"]
     if not (kind.encoder or kind.noise):
-        return q, v, q[:m]
+        return q, v, q[:joints]
     step, dt = settings["encoder_step"], settings["dt"] * settings["hold_ticks"]
-    reading = step * ca.floor(q[:m] / step + 0.5) if kind.encoder else q[:m]
+    reading = step * ca.floor(q[:joints] / step + 0.5) if kind.encoder else q[:joints]
     weight = dt / (settings["encoder_filter"] + dt)
     difference = (reading - state["encoder"]) / dt
     rate = state["encoder_rate"] + weight * (difference - state["encoder_rate"])
     if not kind.encoder:  # exact velocities without noise of the angles
-        rate = ca.if_else(settings["sensor_noise"] > 0, rate, v[:m])
-    return ca.vertcat(reading, q[m:]), ca.vertcat(rate, v[m:]), reading
+        rate = ca.if_else(settings["sensor_noise"] > 0, rate, v[:joints])
+    return ca.vertcat(reading, q[joints:]), ca.vertcat(rate, v[joints:]), reading
 
 
 def readings(
     system: MechanicalSystem, kind: Kind, settings_layout: Layout, settings: Array, q: Array
 ) -> Array:
-    """The joint angles that the sensors read in a run from its first tick on, (ticks, m), [rad].
+    """What the encoders read in a run from its first tick on, (ticks, joints), [rad].
 
     Args:
         settings: flat vector of the run, of which the sensors' settings count.
         q: true coordinates in each tick, (ticks, n).
     """
+    joints = system.joints
     if not len(q):
-        return np.zeros((0, system.m))
+        return np.zeros((0, joints))
     symbol, fields = settings_layout.symbols("settings")
-    sizes = {"q": system.n, "v": system.n, "encoder": system.m, "encoder_rate": system.m}
+    sizes = {"q": system.n, "v": system.n, "encoder": joints, "encoder_rate": joints}
     state = {name: ca.SX.sym(name, size) for name, size in (sizes | {"ticks": 1}).items()}
-    read = measure(system, kind, state, fields)[0][: system.m]
+    read = measure(system, kind, state, fields)[0][:joints]
     function = ca.Function("readings", [symbol, state["q"], state["ticks"]], [read])
     ticks, constant = np.arange(len(q))[None], np.tile(settings[:, None], len(q))
     return np.asarray(function.map(len(q))(constant, q.T, ticks), dtype=float).T
@@ -72,13 +73,13 @@ def _noise(system: MechanicalSystem, state: Fields, settings: Fields) -> ca.SX:
     coordinates f_j, each with a standard deviation such that that of the deflection of the tip,
     Σ φ_j(l) f_j, is `strain_noise`. The rates of the modes are not affected.
     """
-    n, m = system.n, system.m
-    deviation = settings["sensor_noise"] * ca.SX.ones(m)
-    if n > m:
+    modes = system.modes
+    deviation = settings["sensor_noise"] * ca.SX.ones(system.joints)
+    if modes:
         own = system.parameter_names.index("l")
-        tip = ca.DM(beam_modes(n - m, 1.0).tip) / ca.sqrt(settings["model"][own])
-        deviation = ca.vertcat(deviation, settings["strain_noise"] / (tip * sqrt(n - m)))
-    return deviation * standard_normal(settings["seed"], state["ticks"], n)
+        tip = ca.DM(beam_modes(modes, 1.0).tip) / ca.sqrt(settings["model"][own])
+        deviation = ca.vertcat(deviation, settings["strain_noise"] / (tip * sqrt(modes)))
+    return deviation * standard_normal(settings["seed"], state["ticks"], system.n)
 
 
 def look_ahead(
@@ -130,8 +131,8 @@ def remembered(kind: Kind, state: Fields, acts: ca.SX, reading: ca.SX, rate: ca.
 
     Args:
         acts: whether the control law is evaluated in this tick.
-        reading: (m, 1), [rad].
-        rate: filtered velocity, (m, 1), [rad/s].
+        reading: (joints, 1), [rad].
+        rate: filtered velocity, (joints, 1), [rad/s].
     """
     counted = {"ticks": state["ticks"] + int(kind.noise)} if "ticks" in state else Fields()
     if not (kind.encoder or kind.noise):

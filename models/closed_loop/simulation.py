@@ -244,7 +244,7 @@ def first_state(
     velocity = np.zeros_like(q) if v is None else v
     y = robot.endpoint(q)
     theta = closest_parameter(robot.frame, curve, y)
-    m = robot.system.m
+    m, joints = robot.system.m, robot.system.joints
     memory = {name: np.zeros(size) for name, size in layouts.state.fields}
     return layouts.state.pack(
         memory
@@ -256,8 +256,8 @@ def first_state(
             "theta_ref": theta,
             "speed_ref": 0.0,
             "integral": np.zeros(robot.system.p),
-            "encoder": q[:m],
-            "encoder_rate": velocity[:m],
+            "encoder": q[:joints],
+            "encoder_rate": velocity[:joints],
             "u": np.zeros(m),
             "phase": 0.0,
         }

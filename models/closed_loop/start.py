@@ -89,7 +89,7 @@ def velocity_at(
 ) -> Array:
     """Joint velocities for a velocity of the end-point by the path, shape (n,).
 
-    Coordinates without a motor are at rest.
+    Coordinates without a motor are at rest: v = B w.
 
     Args:
         q: configuration, shape (n,).
@@ -99,22 +99,33 @@ def velocity_at(
     v = np.zeros_like(q)
     if along == 0 == across:
         return v
-    frame, system = robot.frame, robot.system
+    frame = robot.frame
     theta = closest_parameter(frame, curve, robot.endpoint(q))
     first = curve.at(np.array(theta), 1)
     rate = along * (first / np.linalg.norm(first)) + across * left_of(curve, theta)
-    y_rate = frame.lift(rate) - frame.lift(np.zeros(2))
-    gain = _jacobian(robot)(q, robot.plant(parameters)).full()[:, : system.m]
-    v[: system.m] = np.linalg.lstsq(gain, y_rate, rcond=None)[0]
-    return v
+    return driven_rates(robot, parameters, q, frame.lift(rate) - frame.lift(np.zeros(2)))
+
+
+def driven_rates(robot: Robot, parameters: Parameters, q: Array, y_rate: Array) -> Array:
+    """Joint velocities v = B w for a velocity of the end-point, (p,) -> (n,).
+
+    Coordinates without a motor are at rest.
+
+    Args:
+        q: configuration, shape (n,).
+    """
+    jacobian, actuation = _matrices(robot)(q, robot.plant(parameters))
+    drives = np.array(actuation)
+    inputs = np.linalg.lstsq(np.array(jacobian) @ drives, y_rate, rcond=None)[0]
+    return np.asarray(drives @ inputs, dtype=float)
 
 
 @lru_cache(maxsize=64)
-def _jacobian(robot: Robot) -> ca.Function:
-    """The function (q, parameters) -> dh/dq, (p, n)."""
+def _matrices(robot: Robot) -> ca.Function:
+    """The function (q, parameters) -> dh/dq, (p, n), and B, (n, m)."""
     system = robot.system
-    matrix = ca.densify(ca.jacobian(system.output, system.q))
-    return ca.Function("jacobian", [system.q, system.parameters], [matrix])
+    matrices = ca.densify(ca.jacobian(system.output, system.q)), ca.densify(system.actuation)
+    return ca.Function("matrices", [system.q, system.parameters], matrices)
 
 
 def lead(state: Array, layouts: LoopLayouts, curve: Curve, offset: float) -> Array:

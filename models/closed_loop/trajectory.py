@@ -118,7 +118,7 @@ def record(
 
 def measured_names(robot: Robot) -> list[str]:
     """Names of the columns of the joint angles as measured."""
-    units = (name.rpartition("_") for name in robot.coordinate_names[: robot.system.m])
+    units = (name.rpartition("_") for name in robot.coordinate_names[: robot.system.joints])
     return [f"{name}_measured_{unit}" for name, _, unit in units]
 
 
@@ -183,7 +183,7 @@ def write_csv(
         names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
         seen = [f[name] for name in names]
         sensed = (
-            [f.get(MEASURED, f["q"][:, : robot.system.m])] if read else []
+            [f.get(MEASURED, f["q"][:, : robot.system.joints])] if read else []
         )  # exact: as they are
         columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
         law = f'"{run.controller}"' if "," in run.controller else run.controller

@@ -119,7 +119,7 @@ def compensation(
         gains: the tuning parameters.
     """
     p = dict(zip(system.parameter_names, ca.vertsplit(model), strict=True))
-    modes = beam_modes(system.n - system.m, 1.0)
+    modes = beam_modes(system.modes, 1.0)
     omega = p["omega1"] * ca.DM(modes.overtones)
     tip = ca.DM(modes.tip) / ca.sqrt(p["l"])
     radius = p["l1"] * ca.cos(q[0]) - p["l"] * ca.cos(q[1])

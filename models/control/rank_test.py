@@ -60,34 +60,38 @@ def _matrix(robot: Robot) -> ca.Function:
     return decoupling_matrix(robot.system)
 
 
-def decoupling_matrices(robot: Robot, parameters: Parameters, q: Array) -> Array:
+def decoupling_matrices(
+    robot: Robot, parameters: Parameters, q: Array, by_model: bool = False
+) -> Array:
     """D = J g_v at several configurations, shape (k, n) -> (k, p, m), [(m/s²)/(N m)].
 
     Args:
-        parameters: of the plant.
         q: shape (k, n).
+        by_model: of the controller's model, not of the plant.
 
     Source: eq. (11).
     """
-    system, plant, function = robot.system, robot.plant(parameters), _matrix(robot)
+    system, function = robot.system, _matrix(robot)
+    numbers = robot.model(parameters) if by_model else robot.plant(parameters)
     found = np.empty((len(q), system.p, system.m))
     for begin in range(0, len(q), CHUNK):
         some = q[begin : begin + CHUNK]
-        columns = np.array(function(some.T, plant)).reshape(system.p, len(some), system.m)
+        columns = np.array(function(some.T, numbers)).reshape(system.p, len(some), system.m)
         found[begin : begin + CHUNK] = columns.transpose(1, 0, 2)
     return found
 
 
-def rank_number(robot: Robot, parameters: Parameters, q: Array) -> float:
+def rank_number(robot: Robot, parameters: Parameters, q: Array, by_model: bool = False) -> float:
     """σ_min / σ_max of J g_v at one configuration, in [0, 1].
 
     Args:
-        parameters: of the plant.
         q: shape (n,).
+        by_model: of the controller's model, not of the plant.
 
     Source: eq. (11).
     """
-    return float(conditioning(decoupling_matrices(robot, parameters, q[None]))[0])
+    matrices = decoupling_matrices(robot, parameters, q[None], by_model)
+    return float(conditioning(matrices)[0])
 
 
 def least_gain(matrices: Array) -> Array:

@@ -18,7 +18,7 @@ def begin_function(robot: Robot, kind: Kind, kernel: Kernel, arm: ArmGeometry) -
     start = table[:2, :] @ basis(ca.SX(0), kind.closed)
     q = arm.rest(lift_of(robot, kind)(start, False))
     theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
-    state = dict(state) | {"q": q, "encoder": q[: robot.system.m]} | theta
+    state = dict(state) | {"q": q, "encoder": q[: robot.system.joints]} | theta
     return ca.Function("begin", [table, symbol], [ca.densify(kernel.state.join(state))])
 
 

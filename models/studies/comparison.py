@@ -17,7 +17,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -34,6 +33,8 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
+from onpath.models.closed_loop.start import driven_rates
+from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
@@ -168,7 +169,15 @@ class Contest:
 def compare(
     contest: Contest, laws: Sequence[str], obstructions: Sequence[str]
 ) -> Iterator[list[Outcome]]:
-    """The outcomes of one law under one obstruction after the other, a list for each pair."""
+    """The outcomes of one law under one obstruction after the other, a list for each pair.
+
+    Raises:
+        CodedError: no run is possible.
+    """
+    robot = contest.robot
+    q = robot.rest(robot.frame.lift(contest.curve.at(np.array(0.0))))
+    for law in laws:
+        check_possible(robot, law, contest.parameters, q)
     torque = _largest_torque(contest)
     for law in laws:
         for name in obstructions:
@@ -264,8 +273,7 @@ def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: fl
     if obstruction.rests:
         return first_state(robot, kernel, curve, q)
     rate = robot.frame.lift(contest.parameters.speed * first) - robot.frame.lift(np.zeros(2))
-    jacobian = np.array(_jacobian(robot)(q, robot.plant(contest.parameters)))
-    v: Array = np.asarray(np.linalg.lstsq(jacobian, rate, rcond=None)[0], dtype=float)
+    v = driven_rates(robot, contest.parameters, q, rate)
     state = kernel.state.unpack(first_state(robot, kernel, curve, q, v))
     speed = contest.parameters.speed
     return kernel.state.pack({**state, "theta_rate": speed, "theta": place, "theta_ref": place})
@@ -293,14 +301,6 @@ def _loop(robot: Robot, kind: Kind) -> Loop:
     from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
 
     return fastest_loop(kernel_of(robot, kind))
-
-
-@lru_cache(maxsize=8)
-def _jacobian(robot: Robot) -> ca.Function:
-    """(q, parameters) -> dh/dq, (p, n)."""
-    system = robot.system
-    jacobian = ca.densify(ca.jacobian(system.output, system.q))
-    return ca.Function("jacobian", [system.q, system.parameters], [jacobian])
 
 
 def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Any:

@@ -6,7 +6,7 @@ They run in the interpreted loop. The same input gives the same bytes on machine
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -27,6 +27,7 @@ from onpath.models.closed_loop.simulation import (
     time_step,
 )
 from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
+from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import curve_faults
@@ -152,6 +153,16 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
         raise ValueError(f"{name}: {reasons}" if name else reasons)
 
 
+def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:
+    """What will go wrong under some of the laws; empty if nothing is foreseen.
+
+    `run` refuses a singular start.
+    """
+    robot = experiment.robot()
+    told = forecasts(robot, laws, experiment.parameters, robot.rest(experiment.begin()))
+    return "; ".join(str(each) for each in told if each != SINGULAR)
+
+
 def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
     """Why the brake of the schedule never acted in a run; empty if it did or was not asked for."""
     schedule = experiment.schedule
@@ -265,13 +276,15 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
         One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
 
     Raises:
-        ValueError: the controller is unknown, or the path is out of the robot's reach.
+        ValueError: the controller is unknown, the path is out of the robot's reach, or no run is
+            possible from the start.
     """
     law_named(controller)
     robot, curve = experiment.robot(), experiment.curve()
     check_level_set(experiment.parameters, curve)
     kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
     schedule, start = experiment.schedule, experiment.begin()
+    check_possible(robot, controller, experiment.parameters, robot.rest(start))
     scheduled = ScheduledRun(robot, kernel, curve, experiment.parameters, schedule, start)
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None

@@ -117,7 +117,7 @@ def linear_model(system: MechanicalSystem) -> LinearModel:
     """The regressors of a robot.
 
     Raises:
-        ValueError: it is not linear in its parameters.
+        ValueError: it is not linear in its parameters, or depends on none.
     """
     q, v, symbols = system.q, system.v, system.parameters
     momentum = system.mass @ v
@@ -127,6 +127,8 @@ def linear_model(system: MechanicalSystem) -> LinearModel:
     if not ca.jacobian(ca.vec(ca.densify(slopes)), symbols).is_zero():
         raise ValueError(f"{system.name}: its equations of motion are not linear in its parameters")
     used = [j for j in range(symbols.numel()) if not slopes[:, j].is_zero()]
+    if not used:
+        raise ValueError(f"{system.name}: its equations of motion depend on no parameter")
     chosen = ca.horzcat(*[slopes[:, j] for j in used])
     known = ca.substitute(both, symbols, ca.SX.zeros(symbols.numel()))
     n = system.n

@@ -62,7 +62,7 @@ def _columns(robot: Robot, measured: bool) -> list[str]:
     efforts = [n for n in known if n.startswith(("tau", "force"))]
     angles = list(robot.coordinate_names)
     if measured:
-        angles[: system.m] = measured_names(robot)
+        angles[: system.joints] = measured_names(robot)
     return ["t_s", *angles, *rates, *efforts]
 
 
@@ -90,5 +90,6 @@ def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> 
         raise CodedError("error.record_uneven", line=str(lines[at + 1]), step=step, usual=usual)
     q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
     if measured:
-        v[:, :m] = smooth_velocities(q[:, :m], dt)
+        joints = robot.system.joints
+        v[:, :joints] = smooth_velocities(q[:, :joints], dt)
     return MotionRecord(dt, q, v, u, force, measured)

@@ -166,6 +166,7 @@ def flexible_five_bar(
         mass=_mass(parts, rho) + load.inertia,
         bias=ca.vertcat(parts.bias, rho * parts.modal_bias) + load.bias,
         inputs=RIGID,
+        modes=modes,
         output=tip,
         controlled_output=_end_point(s, s.p["alpha"] * w),
         potential_energy=rho / 2 * ca.dot(s.stiffness, s.f**2) + load.energy,

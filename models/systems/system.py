@@ -41,6 +41,8 @@ class MechanicalSystem:
         output: h(q), the actual end-point, (p, 1), [m].
         controlled_output: the output that a control law is given, (p, 1), [m]; often h itself.
         energy: total mechanical energy ½ v^T M v + V(q), (1, 1), [J].
+        modes: number of modal coordinates of a flexible link, which are the last of q; 0: all links
+            are rigid. All other coordinates have encoders.
         n, m, p: numbers of coordinates, inputs and outputs.
     """
 
@@ -59,6 +61,7 @@ class MechanicalSystem:
     output: ca.SX
     controlled_output: ca.SX
     energy: ca.SX
+    modes: int = 0
     n: int = field(init=False)
     m: int = field(init=False)
     p: int = field(init=False)
@@ -67,6 +70,11 @@ class MechanicalSystem:
         object.__setattr__(self, "n", self.q.numel())
         object.__setattr__(self, "m", self.input_gain.size2())
         object.__setattr__(self, "p", self.output.numel())
+
+    @property
+    def joints(self) -> int:
+        """Number of coordinates that encoders measure, the first of q."""
+        return self.n - self.modes
 
     def function(self, *names: str) -> ca.Function:
         """The function (q, v, parameters) -> the named attributes (all but `acceleration`)."""
@@ -113,6 +121,7 @@ def mechanical_system(
     actuation: ca.SX | None = None,
     controlled_output: ca.SX | None = None,
     solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
+    modes: int = 0,
 ) -> MechanicalSystem:
     """A system from M, c, B and h.
 
@@ -125,6 +134,7 @@ def mechanical_system(
         actuation: B(q), (n, m), of rank m; None: it selects the first m coordinates.
         controlled_output: (p, 1), [m]; None: h.
         solve: (M, R) -> M⁻¹ R; replace it where M has structure.
+        modes: see `MechanicalSystem.modes`.
 
     Raises:
         ValueError: m is less than p or greater than n, or B does not have the shape (n, m).
@@ -153,6 +163,7 @@ def mechanical_system(
         output=output,
         controlled_output=output if controlled_output is None else controlled_output,
         energy=0.5 * ca.dot(v, mass @ v) + potential_energy,
+        modes=modes,
     )
 
 

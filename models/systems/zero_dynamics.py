@@ -9,8 +9,10 @@ the output stays on its path.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
 
 import casadi as ca
 import numpy as np
@@ -35,10 +37,13 @@ class ZeroDynamics:
         system: the system.
         function: (q, y', y'', parameters) -> A in η1' = A η1, (2 (n - m), 2 (n - m)), linearized
             about f' = 0 and the f in q.
+        acceleration: the same arguments -> f'' at f' = 0, (n - m, 1). At rest it is 0 where the
+            robot is in equilibrium.
     """
 
     system: MechanicalSystem
     function: ca.Function
+    acceleration: ca.Function
 
     def exponents(
         self,
@@ -55,7 +60,7 @@ class ZeroDynamics:
             y_rate, y_acceleration: y' and y'' along the path, shape (k, p) or (p,); None: at rest.
 
         Returns:
-            Shape (k, 2 (n - m)), [1/s].
+            Shape (k, 2 (n - m)), [1/s]; infinity where the decoupling matrix is singular.
         """
         still = np.zeros(self.system.p)
         given = (q, still if y_rate is None else y_rate)
@@ -63,8 +68,13 @@ class ZeroDynamics:
         rows = np.broadcast_shapes(*[np.atleast_2d(part).shape[:1] for part in given])
         inputs = [np.broadcast_to(part, (*rows, part.shape[-1])).T for part in given]
         size = 2 * (self.system.n - self.system.m)
-        columns = np.array(self.function(*inputs)).reshape(size, -1, size)
-        values: Complex = np.linalg.eigvals(columns.transpose(1, 0, 2)).astype(np.complex128)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            columns = np.array(self.function(*inputs)).reshape(size, -1, size)
+        matrices = columns.transpose(1, 0, 2).copy()
+        singular = ~np.isfinite(matrices.reshape(len(matrices), -1)).all(axis=1)
+        matrices[singular] = 0
+        values: Complex = np.linalg.eigvals(matrices).astype(np.complex128)
+        values[singular] = np.inf
         return np.take_along_axis(values, np.argsort(-values.real, axis=-1), axis=-1)
 
     def critical_alpha(self, q: Array, parameters: Array, highest: float = HIGHEST_ALPHA) -> float:
@@ -98,7 +108,8 @@ class ZeroDynamics:
     def _grows(self, q: Array, parameters: Array, alphas: Array) -> NDArray[np.bool_]:
         """For every α, whether an exponent has a positive real part, shape (k,) -> (k,)."""
         exponents = self.exponents(q, self.with_alpha(parameters, alphas))
-        return exponents[:, 0].real > _NEUTRAL * np.abs(exponents).max(-1)
+        largest = np.abs(exponents).max(-1)
+        return (exponents[:, 0].real > _NEUTRAL * largest) | np.isinf(largest)
 
     def with_alpha(self, parameters: Array, alphas: Array) -> Array:
         """The parameters with each α, shapes (size,) and (k,) -> (k, size)."""
@@ -107,12 +118,18 @@ class ZeroDynamics:
         return rows
 
 
-def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
+def zero_dynamics(
+    system: MechanicalSystem, following: tuple[int, ...] | None = None
+) -> ZeroDynamics:
     """Derive the zero dynamics of a system.
 
-    The rows of M v' + c = B u without an input, with the accelerations of the joints eliminated by
-    y'' = J v' + J' v, give f'' as a function of f, f', y' and y''. In the linearization the joints
-    follow f so that dy = 0.
+    With N(q) B = 0, the rows N (M v' + c) = 0 have no input. Of the coordinates, m follow the
+    output, y'' = J v' + J' v, and the others are f; so these rows give f'' as a function of f, f',
+    y' and y''. In the linearization the following coordinates move with f so that dy = 0.
+
+    Args:
+        following: numbers of the m coordinates that follow the output, for which dh/dq must be
+            invertible where it is evaluated; None: the first m, if it is invertible for these.
 
     Raises:
         ValueError: all coordinates have inputs, or the numbers of inputs and outputs differ.
@@ -124,24 +141,64 @@ def zero_dynamics(system: MechanicalSystem) -> ZeroDynamics:
         raise ValueError(f"{system.name}: no zero dynamics with {m} inputs, {system.p} outputs")
     y_rate, y_acceleration = ca.SX.sym("y_rate", m), ca.SX.sym("y_acceleration", m)
     jacobian = ca.jacobian(system.controlled_output, system.q)
-    joints, modes = jacobian[:, :m], jacobian[:, m:]
-    follow = -ca.solve(joints, modes)  # dq_joints / df at constant y
+    chosen = following or _independent(jacobian.T)
+    led, free = _selection(n, chosen), _others(n, chosen)
+    at_led, at_free = jacobian @ led.T, jacobian @ free.T
+    follow = -ca.solve(at_led, at_free)  # dq_led / df at constant y
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
-    rows = system.mass[m:, :]
-    carried = ca.solve(joints, y_acceleration - turning)
-    inertia = rows[:, m:] + rows[:, :m] @ follow
-    f_acceleration = -ca.solve(inertia, system.bias[m:] + rows[:, :m] @ carried)
+    undriven = _annihilator(system.actuation)
+    rows, bias = undriven @ system.mass, undriven @ system.bias
+    carried = ca.solve(at_led, y_acceleration - turning)
+    inertia = rows @ free.T + (rows @ led.T) @ follow
+    f_acceleration = -ca.solve(inertia, bias + (rows @ led.T) @ carried)
 
-    f_rate = system.v[m:]
-    velocity = ca.vertcat(ca.solve(joints, y_rate) + follow @ f_rate, f_rate)
-    held = ca.substitute(f_acceleration, system.v, ca.vertcat(velocity[:m], f_rate))
+    f_rate = free @ system.v
+    velocity = led.T @ (ca.solve(at_led, y_rate) + follow @ f_rate) + free.T @ f_rate
+    held = ca.substitute(f_acceleration, system.v, velocity)
     stiffness = ca.jacobian(held, system.q)
-    stiffness = stiffness[:, m:] + stiffness[:, :m] @ follow
+    stiffness = stiffness @ free.T + (stiffness @ led.T) @ follow
     n_f = n - m
-    a = ca.blockcat([[ca.SX(n_f, n_f), ca.SX.eye(n_f)], [stiffness, ca.jacobian(held, f_rate)]])
-    at_rest = ca.substitute(ca.densify(a), f_rate, ca.SX.zeros(n_f))
+    a = ca.blockcat(
+        [[ca.SX(n_f, n_f), ca.SX.eye(n_f)], [stiffness, ca.jacobian(held, system.v) @ free.T]]
+    )
     inputs = [system.q, y_rate, y_acceleration, system.parameters]
-    return ZeroDynamics(system, ca.Function("zero_dynamics", inputs, [ca.cse(at_rest)]))
+    still = ca.SX.zeros(n, 1)
+    matrix, motion = (ca.substitute(ca.densify(x), system.v, still) for x in (a, held))
+    return ZeroDynamics(
+        system,
+        function=ca.Function("zero_dynamics", inputs, [ca.cse(matrix)]),
+        acceleration=ca.Function("internal_acceleration", inputs, [ca.cse(motion)]),
+    )
+
+
+def _selection(n: int, chosen: Iterable[int]) -> ca.SX:
+    """The rows of the unit matrix (n, n) with these numbers."""
+    numbers = list(chosen)
+    rows = ca.SX(len(numbers), n)
+    for row, number in enumerate(numbers):
+        rows[row, number] = 1
+    return rows
+
+
+def _others(n: int, chosen: Sequence[int]) -> ca.SX:
+    """The other rows of the unit matrix (n, n)."""
+    return _selection(n, (i for i in range(n) if i not in chosen))
+
+
+def _independent(matrix: ca.SX) -> tuple[int, ...]:
+    """The first m rows of a matrix (n, m) that are independent, as far as its symbols tell."""
+    n, m = matrix.shape
+    every = combinations(range(n), m)
+    rows = (each for each in every if not ca.det(_selection(n, each) @ matrix).is_zero())
+    return next(rows, tuple(range(m)))
+
+
+def _annihilator(actuation: ca.SX) -> ca.SX:
+    """N of N B = 0, (n - m, n): -B₂ B₁⁻¹ at m independent rows B₁ of B, and 1 at the others."""
+    driven = _independent(actuation)
+    first, rest = _selection(actuation.size1(), driven), _others(actuation.size1(), driven)
+    carried = ca.solve((first @ actuation).T, (rest @ actuation).T).T
+    return rest - carried @ first
 
 
 @lru_cache(maxsize=16)

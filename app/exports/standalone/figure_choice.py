@@ -22,6 +22,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
+from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import law_name, law_named
 from onpath.models.errors import CodedError, said_by
 from onpath.models.paths.curves import Curve
@@ -84,9 +85,14 @@ class FigureChoice:
 
     def start(self, law: str, curve: Curve) -> Array:
         """The first state of a bench: at rest on the path at θ = 0."""
+        followed = raised(curve, self.parameters)
+        kernel = self.kernel(law, curve)
+        return first_state(self.machine, kernel, followed, self.start_at(curve))
+
+    def start_at(self, curve: Curve) -> Array:
+        """The configuration at rest on the path at θ = 0, shape (n,)."""
         robot, followed = self.machine, raised(curve, self.parameters)
-        start = robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
-        return first_state(robot, self.kernel(law, curve), followed, start)
+        return robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
 
     def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
         """The settings of a bench, with nothing in its way."""
@@ -174,6 +180,8 @@ def _check(figure: FigureChoice) -> None:
         try:
             check_path(robot, raised(curve, figure.parameters))
             check_level_set(figure.parameters, curve)
+            for law in figure.every_law:
+                check_possible(robot, law, figure.parameters, figure.start_at(curve))
         except ValueError as error:
             raise CodedError("error.path_named", name=repr(name), reason=said_by(error)) from None
     for name in figure.sliders:

@@ -1,0 +1,125 @@
+"""What will happen to a robot with coordinates without a motor, said before it runs.
+
+Laws that command y'' turn it into torques by D = J g_v. If D loses rank at the start, there are no
+such torques: the rank test (11). If it has full rank, the output moves as commanded, and it remains
+to ask what the other coordinates do meanwhile: the zero dynamics.
+
+All of it is for the robot at rest, and for the controller's model.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import lru_cache
+from itertools import combinations
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.control.laws.registry import law_named
+from onpath.models.control.rank_test import rank_number
+from onpath.models.errors import CodedError, Message
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
+from onpath.models.systems.system import MechanicalSystem, conditioning
+from onpath.models.systems.zero_dynamics import zero_dynamics
+
+SINGULAR = Message("forecast.singular")
+NO_REST = Message("forecast.no_rest")
+LEAST_RANK = 1e-6
+"""σ_min / σ_max of D up to which it counts as singular."""
+AT_REST = 1e-3
+"""Acceleration of the internal motion, SI, up to which a configuration is an equilibrium."""
+SLOWEST = 0.01
+"""Smallest growth rate that is told, [1/s]: less cannot be seen in a run."""
+NEUTRAL = 1e-7
+"""The same relative to the largest exponent: rounding error of undamped motion."""
+
+
+def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Message | None:
+    """What will go wrong under a law if the robot starts at rest at q; None if nothing is foreseen.
+
+    Args:
+        law: name of the control law. Nothing is foreseen of laws that command torques.
+        q: configuration at the start, shape (n,).
+
+    Returns:
+        `SINGULAR`, with which no run is possible; `NO_REST`; or "forecast.unstable", with the
+        growth rate [1/s] and the time [s] in which the internal motion grows tenfold.
+
+    Source: eqs. (10), (11).
+    """
+    system = robot.core.system
+    composite = getattr(parameters, "law", "redefined") == "composite"
+    if system.n == system.m or composite or not law_named(law).commands_acceleration:
+        return None
+    if not rank_number(robot, parameters, q, by_model=True) > LEAST_RANK:
+        return SINGULAR
+    if system.m != system.p:
+        return None
+    rate = growth_rate(robot, parameters, q)
+    if rate is None:
+        return NO_REST
+    if rate < SLOWEST:
+        return None
+    time = np.log(10) / rate
+    return Message("forecast.unstable", {"rate": f"{rate:.2g}", "time": f"{time:.2g}"})
+
+
+def growth_rate(robot: Robot, parameters: Parameters, q: Array) -> float | None:
+    """Largest real part of the exponents of the zero dynamics at rest at q, [1/s]; 0 if neutral.
+
+    None if the robot is not in equilibrium there, whatever its motors do.
+
+    Args:
+        q: shape (n,), where the decoupling matrix has full rank.
+    """
+    system, model = robot.core.system, robot.model(parameters)
+    zero = _zero_dynamics(system, _following(system, q, model))
+    still = np.zeros(system.p)
+    if np.abs(np.array(zero.acceleration(q, still, still, model))).max() > AT_REST:
+        return None
+    exponents = zero.exponents(q, model)[0]
+    rate = float(exponents[0].real)
+    return rate if rate > NEUTRAL * np.abs(exponents).max() else min(rate, 0.0)
+
+
+def forecasts(robot: Robot, laws: Iterable[str], parameters: Parameters, q: Array) -> list[Message]:
+    """The forecasts under several laws, each once."""
+    told = list[Message]()
+    for law in laws:
+        found = forecast(robot, law, parameters, q)
+        if found is not None and found not in told:
+            told.append(found)
+    return told
+
+
+def check_possible(robot: Robot, law: str, parameters: Parameters, q: Array) -> None:
+    """Refuse a start from which no run is possible.
+
+    Raises:
+        CodedError: the decoupling matrix is singular there.
+    """
+    if forecast(robot, law, parameters, q) == SINGULAR:
+        raise CodedError("forecast.singular")
+
+
+_zero_dynamics = lru_cache(maxsize=16)(zero_dynamics)
+
+
+@lru_cache(maxsize=16)
+def _jacobian(system: MechanicalSystem) -> ca.Function:
+    """(q, parameters) -> dh/dq of the controlled output, (p, n)."""
+    jacobian = ca.densify(ca.jacobian(system.controlled_output, system.q))
+    return ca.Function("jacobian", [system.q, system.parameters], [jacobian])
+
+
+def _following(system: MechanicalSystem, q: Array, model: Array) -> tuple[int, ...]:
+    """The coordinates that follow the output at q: the first m, or those that do so best."""
+    jacobian = np.array(_jacobian(system)(q, model))
+    first = tuple(range(system.m))
+    if conditioning(jacobian[:, first]) > LEAST_RANK:
+        return first
+    every = combinations(range(system.n), system.m)
+    return max(every, key=lambda some: float(conditioning(jacobian[:, some])))

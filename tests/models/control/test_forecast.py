@@ -1,0 +1,206 @@
+"""What is said before a run, against what the run does."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import assume, event, example, given, settings
+from hypothesis import strategies as st
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.control.forecast import (
+    NO_REST,
+    SINGULAR,
+    forecast,
+    growth_rate,
+)
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.rank_test import rank_number
+from onpath.models.errors import CodedError
+from onpath.models.paths.curves import circle
+from onpath.models.studies.experiments import on_path, run
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.zero_dynamics import zero_dynamics
+from tests.support.passive_chain import PassiveChain, Shape, entry_of
+from tests.support.underactuated.cart_pendulum import ROBOT as CART
+from tests.support.underactuated.cart_pendulum import CartParameters
+from tests.support.underactuated.overhead_crane import ROBOT as CRANE
+from tests.support.underactuated.overhead_crane import CraneParameters, percussion
+
+FOLLOW = "path_following"
+CRITICAL = zero_dynamics(CRANE.make(CraneParameters()).system)
+CHAIN_LAWS = [name for name, law in LAWS.items() if not law.spatial]
+CRANES = st.builds(
+    CraneParameters,
+    alpha=st.floats(-0.5, 1.5),
+    length=st.floats(0.1, 0.4),
+    rod=st.floats(0, 1),
+    load=st.floats(0.1, 1),
+    pivot=st.sampled_from([0.0, 0.002]),
+)
+
+
+def at_rest(robot: Robot) -> Array:
+    return robot.rest(np.array([0.03, 0.0]))
+
+
+def said(entry: RobotEntry, parameters: Parameters, law: str = FOLLOW) -> str | None:
+    robot = entry.make(parameters)
+    found = forecast(robot, law, parameters, at_rest(robot))
+    return found and found.code
+
+
+def ran(entry: RobotEntry, parameters: Parameters, law: str, seconds: float) -> Trajectory:
+    chosen = on_path(entry, parameters, circle(0.03)).with_values({"duration": seconds})
+    return run(chosen, law)
+
+
+@settings(deadline=None, max_examples=200)
+@given(CRANES)
+def test_the_growth_rate_is_that_of_the_closed_form(own: CraneParameters) -> None:
+    """s² + b s / (a M) - g / a = 0 with a = α l - L and M = m_r l / 2 + m l, beyond α = L / l."""
+    beyond = own.alpha * own.length - percussion(own)
+    assume(abs(beyond) > 0.01 * own.length)
+    robot = CRANE.make(own)
+    damping = own.pivot / (own.length * (own.rod / 2 + own.load))
+    roots = np.roots([beyond, -damping, -9.81])
+    largest = roots.real.max()
+    expected = largest if largest > 1e-9 else min(largest, 0.0)
+    found = growth_rate(robot, own, at_rest(robot))
+    assert found == pytest.approx(expected, rel=1e-6, abs=1e-6)
+
+
+@settings(deadline=None, max_examples=50)
+@given(CRANES)
+@example(CraneParameters())
+def test_the_critical_alpha_is_that_of_the_closed_form(own: CraneParameters) -> None:
+    robot = CRANE.make(own)
+    found = CRITICAL.critical_alpha(at_rest(robot), robot.plant(own))
+    assert found == pytest.approx(percussion(own) / own.length, abs=1e-6)
+
+
+@settings(deadline=None, max_examples=25)
+@given(CRANES)
+def test_the_crane_does_what_is_foretold(own: CraneParameters) -> None:
+    """Close to the critical α, torques that are held for a millisecond matter, too."""
+    critical = percussion(own) / own.length
+    assume(abs(own.alpha - critical) > 0.05)
+    code = said(CRANE, own)
+    assert code == ("forecast.unstable" if own.alpha > critical else None)
+    log = ran(CRANE, own, FOLLOW, 2.0)
+    swing = np.abs(log.fields["q"][:, 2])
+    event(str(code))
+    if code is None:
+        assert log.stopped_at is None and swing.max() < 0.5
+        assert np.abs(log.fields["xi"]).max() < 1e-4
+        return
+    fallen = int((swing > 0.3).argmax())
+    assert fallen > 0 and np.abs(log.fields["xi"][:fallen]).max() < 1e-4
+    begun = int((swing > 0.06).argmax())
+    rate = np.log(swing[fallen] / swing[begun]) / (log.t[fallen] - log.t[begun])
+    robot = CRANE.make(own)
+    foretold = growth_rate(robot, own, at_rest(robot))
+    assert rate == pytest.approx(foretold, rel=0.25)
+
+
+@pytest.mark.parametrize(("rod", "load", "length"), [(0.0, 0.3, 0.2), (0.0, 1.0, 0.4)])
+def test_a_crane_whose_load_is_the_output_is_refused(
+    rod: float, load: float, length: float
+) -> None:
+    own = CraneParameters(alpha=1.0, rod=rod, load=load, length=length)
+    assert percussion(own) == pytest.approx(length, rel=1e-12)
+    assert said(CRANE, own) == SINGULAR.code
+    with pytest.raises(CodedError, match="decoupling matrix is singular at the start"):
+        ran(CRANE, own, FOLLOW, 0.1)
+
+
+def test_a_crane_without_damping_is_not_foretold_to_fall() -> None:
+    for alpha in (-0.5, 0.0, 0.5, 0.9, 0.99):
+        assert said(CRANE, CraneParameters(alpha=alpha, pivot=0.0)) is None
+
+
+@pytest.mark.parametrize("law", [name for name, law in LAWS.items() if not law.square])
+def test_an_upright_pendulum_falls_and_a_hanging_one_does_not(law: str) -> None:
+    for pendulum, code in (("hanging", None), ("upright", "forecast.unstable")):
+        own = replace(CartParameters(speed=2.0), pendulum=pendulum)
+        expected = code if LAWS[law].commands_acceleration else None
+        assert said(CART, own, law) == expected
+        log = ran(CART, own, law, 3.0)
+        assert log.stopped_at is None
+        moves = bool(np.ptp(log.fields["theta"]) > 0.5)
+        fell = bool(np.abs(log.fields["q"][:, 2]).max() > 1.5)
+        assert fell == (pendulum == "upright" and moves)
+
+
+def test_a_pendulum_that_cannot_rest_where_it_starts_is_noticed() -> None:
+    own = CartParameters()
+    robot = CART.make(own)
+    assert forecast(robot, FOLLOW, own, np.array([0.0, 0.0, 0.4])) == NO_REST
+
+
+def test_robots_with_a_motor_for_every_coordinate_have_no_forecast() -> None:
+    for entry in ROBOTS.values():
+        robot = entry.make(entry.parameters())
+        if robot.system.n == robot.system.m:
+            q = robot.rest(robot.frame.lift(np.zeros(2)))
+            assert forecast(robot, FOLLOW, entry.parameters(), q) is None
+
+
+def test_what_is_foretold_of_the_flexible_link_is_its_critical_alpha() -> None:
+    entry = ROBOTS["flexible"]
+    link = entry.flexible_link
+    assert link is not None
+    for alpha in (0.5, 0.7, 0.8, 1.0):
+        own = replace(entry.parameters(), law="redefined", alpha=alpha)
+        robot = entry.make(own)
+        q = robot.rest(robot.frame.lift(np.array([0.05, 0.0])))
+        found = forecast(robot, FOLLOW, own, q)
+        critical = link.critical_alpha(own, q[: link.joints])
+        assert (found is not None) == (alpha > critical)
+        assert forecast(robot, FOLLOW, replace(own, law="composite"), q) is None
+
+
+@st.composite
+def shapes(draw: st.DrawFn) -> Shape:
+    """A chain of three or four links, with two or three motors."""
+    count = draw(st.integers(3, 4))
+    return Shape(
+        joints=tuple(draw(st.permutations(range(count)))),
+        motors=draw(st.integers(2, count - 1)),
+        gravity=draw(st.sampled_from([0.0, 9.81])),
+        start=tuple(draw(st.lists(st.floats(-2, 2), min_size=count, max_size=count))),
+    )
+
+
+@settings(deadline=None, max_examples=30)
+@given(shapes(), st.sampled_from(CHAIN_LAWS))
+def test_a_chain_with_passive_joints_runs_or_is_refused_in_words(shape: Shape, law: str) -> None:
+    try:
+        chain = PassiveChain(shape)
+        q = at_rest(chain)
+    except ValueError:
+        assume(False)
+    own = Parameters(speed=1.0)
+    entry = entry_of(chain)
+    if not LAWS[law].suits(chain.system):
+        with pytest.raises(CodedError, match="not possible with this robot"):
+            ran(entry, own, law, 0.1)
+        return
+    found = forecast(chain, law, own, q)
+    event(found.code if found else "nothing is foretold")
+    if found == SINGULAR:
+        with pytest.raises(CodedError, match="decoupling matrix is singular"):
+            ran(entry, own, law, 0.1)
+        return
+    log = ran(entry, own, law, 0.5)
+    assert log.stopped_at is None or log.reason
+    assert log.t.size and np.isfinite(log.fields["q"]).all()
+    steady = law == FOLLOW and chain.system.m == 2  # others may leave at once, for a far place
+    if steady and rank_number(chain, own, q) > 0.05 and (growth_rate(chain, own, q) or 1) < -0.5:
+        assert log.stopped_at is None
+        assert np.abs(log.fields["q"] - q).max() < 1.0

@@ -1,0 +1,1 @@
+"""Robots with fewer motors than coordinates, each a module as the catalogue finds them."""
