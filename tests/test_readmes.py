@@ -13,7 +13,7 @@ from tests.support.checkout import ROOT
 READMES = [
     file
     for file in sorted(ROOT.rglob("*.md"))
-    if not {".venv", "course", "onpath", ".git", "node_modules"} & set(file.relative_to(ROOT).parts)
+    if not {".venv", "course", "build", ".git", "node_modules"} & set(file.relative_to(ROOT).parts)
 ]
 
 
