@@ -53,7 +53,15 @@ thorough: $(TOOLS)
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
 
-check: $(TOOLS)
+# What onpath/__init__.py does for Python, pyright must see as folders.
+build/onpath: Makefile
+	rm -rf build
+	mkdir -p $@
+	ln -s ../../app ../../assets ../../lessons ../../models $@
+	ln -s ../../onpath/__init__.py ../../onpath/__main__.py $@
+	touch $@
+
+check: $(TOOLS) build/onpath
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright --pythonpath $(BIN)/python
@@ -77,4 +85,4 @@ wheel: $(TOOLS)
 	$(BIN)/python -m build
 
 clean:
-	rm -rf $(VENV) dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis

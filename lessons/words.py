@@ -65,4 +65,9 @@ class Words:
         return message.text(self.language) if isinstance(message, Message) else str(message)
 
 
+def language_name(language: str) -> str:
+    """The name of a language in itself; its code if its catalogue does not say."""
+    return Words(language).get(f"language.{language}", language)
+
+
 ENGLISH = Words()

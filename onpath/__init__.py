@@ -14,6 +14,7 @@ in figures and in the lab. A new lab and a figure begin more slowly, as with `**
 """
 
 from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -44,6 +45,10 @@ __all__ = (
     "simulate",
     "through",
 )
+
+# A wheel has app, assets, lessons and models in this folder; a checkout has them beside it.
+if not (Path(__file__).parent / "app").is_dir():
+    __path__.append(str(Path(__file__).parents[1]))
 
 
 def __getattr__(name: str) -> Any:

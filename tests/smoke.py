@@ -36,12 +36,15 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)  # heeded in the background, too
     server = subprocess.Popen([onpath, "--port", str(port)])
     try:
-        page = _page(f"http://127.0.0.1:{port}/", patience=20.0)
+        page = _page(f"http://127.0.0.1:{port}/", patience=120.0)
         assert b"<html" in page.lower(), page[:200]
     finally:
-        server.send_signal(signal.SIGINT)
-        code = server.wait(timeout=10)
-    assert code == 0, f"the server stopped with {code}"
+        if sys.platform == "win32":  # no program there can press Ctrl-C for another one alone
+            server.terminate()
+        else:
+            server.send_signal(signal.SIGINT)
+        code = server.wait(timeout=60)
+    assert code == 0 or sys.platform == "win32", f"the server stopped with {code}"
     sys.stdout.write("smoke test passed\n")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from importlib.metadata import version
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -13,7 +13,7 @@ from tests.support.checkout import ROOT
 READMES = [
     file
     for file in sorted(ROOT.rglob("*.md"))
-    if not {".venv", "course", "onpath", ".git", "node_modules"} & set(file.relative_to(ROOT).parts)
+    if not {".venv", "course", "build", ".git", "node_modules"} & set(file.relative_to(ROOT).parts)
 ]
 
 
@@ -50,6 +50,15 @@ def test_no_text_breaks_off(file: Path) -> None:
     assert re.search(r"(\.|\||```|-->)\n\Z", file.read_text("utf-8"))
 
 
-def test_the_version_to_cite_is_this_one() -> None:
-    text = (ROOT / "README.md").read_text("utf-8")
-    assert re.findall(r'"OnPath, version ([\d.]+)"', text) == [version("onpath")]
+def test_all_files_have_the_version_of_the_package() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    stated = {
+        "README.md": r'"OnPath, version ([\d.]+)"|onpath-([\d.]+)(?:\.tar|-py3)',
+        "CITATION.cff": r"^version: ([\d.]+)$",
+        "CHANGELOG.md": r"\A# Changelog\n\n## ([\d.]+) — [\d-]+$",
+        "assets/deploy/onpath.yaml": r"/onpath:([\d.]+)$",
+    }
+    for name, pattern in stated.items():
+        text = (ROOT / name).read_text("utf-8")
+        found = ["".join(each.groups(default="")) for each in re.finditer(pattern, text, re.M)]
+        assert found and set(found) == {version}, name

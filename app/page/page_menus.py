@@ -15,7 +15,7 @@ from onpath.app.page.panels.keys import help_text
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, add_menu, on_user_update
 from onpath.app.page.preferences import Preferences
-from onpath.lessons.words import Words, languages
+from onpath.lessons.words import Words, language_name, languages
 
 HALF = "dark"
 """Colour of buttons that share a row; assets/page/style.css makes them quiet and half as wide."""
@@ -46,14 +46,14 @@ class PageMenus:
 
     def _open_display(self) -> Callable[[], None]:
         gui, words = self._gui, self._words
-        names = {words(f"language.{code}"): code for code in languages()}
+        names = {language_name(code): code for code in languages()}
         with dialog(gui, words, words("display.title")) as close:
             add_menu(
                 gui,
                 words("lesson.language"),
                 names,
                 lambda code: chosen(c.SetLanguage(code)),
-                shown=words(f"language.{words.language}"),
+                shown=language_name(words.language),
             )
             large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
             labels = {"speaks": words("display.speaks"), "sounds": words("display.sounds")}

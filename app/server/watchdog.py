@@ -115,7 +115,7 @@ def _limit_processor_time(seconds: float) -> None:
 def _tell_systemd() -> None:
     """Tell systemd, if it asks (WatchdogSec in the unit), that this process is not suspended."""
     address = os.environ.get("NOTIFY_SOCKET", "")
-    if address:
+    if address:  # systemd is there, and so are Unix sockets
         with suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as to:
             to.sendto(b"WATCHDOG=1", address.replace("@", "\0", 1))
 

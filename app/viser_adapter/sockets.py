@@ -32,8 +32,11 @@ def listen_unix(file: Path) -> socket.socket:
     """Listen on a file that only this user can open.
 
     Raises:
-        OSError: the file cannot be created; the message names it.
+        OSError: the file, which the message names, cannot be created, or there are no such
+            sockets.
     """
+    if not hasattr(socket, "AF_UNIX"):  # Windows
+        raise OSError(f"cannot listen on {file}: this system has no Unix sockets")
     listener = socket.socket(socket.AF_UNIX)
     before = os.umask(0o177)
     try:

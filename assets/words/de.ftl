@@ -144,7 +144,6 @@ kind-explain = Verstehen
 kind-task = Aufgabe
 kind-quiz = Frage
 
-language-en = English
 language-de = Deutsch
 
 ## Antworten neben einer Vorhersage, und Antworten, die eine Zahl oder ein Text sind

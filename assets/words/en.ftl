@@ -147,7 +147,6 @@ kind-task = Do it
 kind-quiz = Question
 
 language-en = English
-language-de = Deutsch
 
 ## Answers beside a prediction, and answers that are a number or a text
 

@@ -11,6 +11,9 @@ from onpath.app.page.panels.glossary import glossary_html
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.glossary import glossary
 from onpath.lessons.words import Words, languages
+from tests.support.catalogues import COMPLETE
+
+TRANSLATED = [language for language in COMPLETE if language != "en"]
 
 
 @pytest.mark.parametrize("language", languages())
@@ -18,7 +21,7 @@ def test_every_language_has_the_same_entries(language: str) -> None:
     own, english = glossary(language), glossary("en")
     assert [entry.lesson for entry in own] == [entry.lesson for entry in english]
     assert len({entry.plain for entry in own}) == len({entry.term for entry in own}) == len(own)
-    assert language == "en" or own != english
+    assert language not in TRANSLATED or own != english
     symbols = re.compile(r"[Γηξθϖσα]\S?|Φ\S*|\d+")
     for one, other in zip(own, english, strict=True):
         assert symbols.findall(one.means) == symbols.findall(other.means)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.cli.main import run_command
-from onpath.assets.messages import identifier, languages
+from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.course import read_course
 from onpath.lessons.formulas import to_html
@@ -21,8 +22,10 @@ from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.schema import Sketch, Text
 from onpath.lessons.text_files import LARGEST
-from onpath.lessons.words import ELSEWHERE, Words
-from tests.support.catalogues import arguments, entries, messages
+from onpath.lessons.words import ELSEWHERE, Words, language_name
+from tests.support.built_in import built_in_course
+from tests.support.catalogues import COMPLETE, arguments, entries, messages
+from tests.support.checkout import ROOT
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 
@@ -347,17 +350,58 @@ def test_the_command_line_lists_and_checks(
     assert run_command(["lessons", "check", str(tmp_path / "none")]) == 1
 
 
-def test_every_language_says_everything() -> None:
-    assert {"en", "de"} <= set(languages())
+def test_a_catalogue_has_no_fault() -> None:
     for language in languages():
         own, english = messages(language), messages("en")
         written = [entry for entry in entries(language) if isinstance(entry, ast.Message)]
         assert not [entry for entry in entries(language) if isinstance(entry, ast.Junk)]
         assert len(written) == len(own), "an identifier twice"
-        elsewhere = tuple(identifier(beginning) for beginning in ELSEWHERE)
-        assert {key for key in own if not key.startswith(elsewhere)} == english.keys()
-        for key, message in english.items():
-            assert arguments(own[key]) == arguments(message), key
+        assert f"language-{language}" in own  # its name, in itself
+        for key in own.keys() & english.keys():
+            assert arguments(own[key]) == arguments(english[key]), key
+
+
+def test_a_complete_language_says_everything() -> None:
+    elsewhere = tuple(identifier(beginning) for beginning in (*ELSEWHERE, "language."))
+
+    def said(language: str) -> set[str]:
+        return {key for key in messages(language) if not key.startswith(elsewhere)}
+
+    for language in COMPLETE:
+        assert said(language) == said("en") and len(said("en")) > 500
+
+
+FRENCH = """
+language-fr = Français
+lesson-next = Suivant
+"""
+
+
+@pytest.fixture
+def begun(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Words]:
+    """A language of which only two messages exist."""
+    for file in (ROOT / "assets" / "words").glob("*.ftl"):
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+    (tmp_path / "fr.ftl").write_text(FRENCH, "utf-8")
+    monkeypatch.setattr("onpath.assets.messages.asset_path", lambda _: tmp_path)
+    yield Words("fr")
+    catalogue.cache_clear()
+
+
+def test_a_language_that_is_begun_says_the_rest_in_english(begun: Words) -> None:
+    assert begun.language == "fr" and begun("lesson.next") == "Suivant"
+    assert [language_name(each) for each in languages()] == ["Deutsch", "English", "Français"]
+    values = dict.fromkeys({a for m in messages("en").values() for a in arguments(m)}, 2)
+    keys = messages("en").keys() - {"lesson-next"}
+    assert [key for key in keys if begun(key, **values) != Words()(key, **values)] == []
+    course = built_in_course()[0]
+    name = next(iter(course.lessons))
+    assert course.lesson(name, "fr") == course.lesson(name, "en")
+
+
+def test_a_language_without_a_name_has_its_code(begun: Words, tmp_path: Path) -> None:
+    (tmp_path / "it.ftl").write_text("lesson-next = Avanti\n", "utf-8")
+    assert language_name("it") == "it"
 
 
 def test_a_missing_language_falls_back_to_english() -> None:

@@ -9,6 +9,9 @@ from fluent.syntax import FluentParser, ast
 
 from onpath.assets import asset_path
 
+COMPLETE = ("en", "de")
+"""Languages in which everything is said. Another one may be begun: what it lacks is in English."""
+
 
 @lru_cache
 def entries(language: str) -> tuple[ast.EntryType, ...]:

@@ -44,7 +44,7 @@ from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
 from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import RobotEntry, first_fault
-from tests.support.catalogues import arguments, counts, messages
+from tests.support.catalogues import COMPLETE, arguments, counts, messages
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
 
@@ -80,6 +80,7 @@ KEYS_MADE = (
 """Keys, or their beginnings, that are put together from what the program knows by other names."""
 PREFIXES = tuple(identifier(key) for key in KEYS_MADE)
 OTHERS = [language for language in languages() if language != "en"]
+TRANSLATED = [language for language in COMPLETE if language != "en"]
 
 
 @lru_cache
@@ -257,7 +258,7 @@ def keys_of(entry: RobotEntry) -> Iterator[str]:
             yield from (f"parameter.{name}.option.{option}" for option in spec.options)
 
 
-@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
+@pytest.mark.parametrize("words", [Words(language) for language in TRANSLATED])
 def test_what_stands_in_models_is_translated(words: Words) -> None:
     """The paths, and all of every robot that the language knows; a new robot is told in English."""
     known = catalogue(words.language)
@@ -319,7 +320,7 @@ def test_a_new_robot_speaks_english_until_it_is_translated(crane: RobotEntry) ->
         assert help_of(words, "hook", known["hook"]) == "which hook"
         assert option_of(words, "hook", "heavy") == "heavy"
         test_every_robot_has_labels_in_every_language(words)
-        if language in OTHERS:
+        if language in TRANSLATED:
             assert label_of(words, "K1", known["K1"]) != known["K1"].label  # as every robot
             test_what_stands_in_models_is_translated(words)
             test_no_language_translates_anything_that_does_not_exist(language)
@@ -327,7 +328,7 @@ def test_a_new_robot_speaks_english_until_it_is_translated(crane: RobotEntry) ->
 
 @pytest.mark.parametrize("language", OTHERS)
 def test_no_language_translates_anything_that_does_not_exist(language: str) -> None:
-    there_are = {f"path.{name}" for name in presets()}
+    there_are = {f"language.{language}", *(f"path.{name}" for name in presets())}
     for entry in ROBOTS.values():
         there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}
         for name, spec in specs(entry.parameters).items():
@@ -370,7 +371,7 @@ def test_every_code_has_words_and_exactly_its_arguments() -> None:
         assert given == arguments(known), (code, where)
 
 
-@pytest.mark.parametrize("language", OTHERS)
+@pytest.mark.parametrize("language", TRANSLATED)
 def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> None:
     for code, given, _ in said_in_code():
         error = CodedError(code, **dict.fromkeys(given, "7"))
@@ -453,7 +454,7 @@ def behaviours() -> Iterator[Message]:
             yield channel.behaviour()
 
 
-@pytest.mark.parametrize("words", [Words(language) for language in OTHERS])
+@pytest.mark.parametrize("words", [Words(language) for language in TRANSLATED])
 def test_reasons_and_behaviours_are_translated(words: Words) -> None:
     said = [*reasons(), *behaviours()]
     assert len({str(message) for message in said}) > 10

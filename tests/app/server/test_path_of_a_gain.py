@@ -21,10 +21,11 @@ from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.systems.parameters import Parameters
 from tests.app.server.test_hostile import Guest, wait_for
-from tests.support.checkout import ROOT
+from tests.support.checkout import FOLDERS, ROOT
 
 GAIN = 905.0  # no other number of the lab has this value
 PACKED = struct.pack(">d", GAIN)  # as in a message of the browser
+OURS = tuple(f"{folder}/" for folder in FOLDERS)
 
 
 def files_in_readme() -> list[str]:
@@ -81,9 +82,9 @@ class Follower:
     @property
     def own(self) -> list[str]:
         """The project's files, in the order in which the number came to them."""
-        base = f"{ROOT / 'onpath'}/"
+        base = f"{ROOT}/"
         files = [file.removeprefix(base) for file in tuple(self.files) if file.startswith(base)]
-        return [file for file in files if not file.startswith("tests/")]
+        return [file for file in files if file.startswith(OURS)]
 
 
 def packed_gain(session: Session, run: ClosedLoopRun) -> float:
