@@ -29,13 +29,18 @@ from onpath.models.paths.projection import basis
 
 Indices = NDArray[np.intp]
 BATCH = 256  # pairs of segments that are checked in one call
-ARGUMENTS: Mapping[str, Mapping[str, str]] = MappingProxyType(
+REASONS: Mapping[str, Message] = MappingProxyType(
     {
-        "bends": {"radius": f"{TUBE * 1e3:.0f}"},
-        "narrow": {"least": f"{2 * TUBE * 1e3:.0f}"},
+        "not_numbers": Message("fault.not_numbers"),
+        "outside": Message("fault.outside"),
+        "singular": Message("fault.singular"),
+        "bends": Message("fault.bends", {"radius": f"{TUBE * 1e3:.0f}"}),
+        "cusp": Message("fault.cusp"),
+        "crosses": Message("fault.crosses"),
+        "narrow": Message("fault.narrow", {"least": f"{2 * TUBE * 1e3:.0f}"}),
     }
 )
-"""Of the sentence about a check."""
+"""What a user is told of a check that fails."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +48,7 @@ class Fault:
     """One reason why a curve cannot be followed.
 
     Attributes:
-        check: the name of the check that fails, or "not_numbers".
+        check: the check that fails, a key of `REASONS`.
         points: where the fault is, shape (n, 2), or (n, 3) on a space curve, [m]; empty if it has
             no place.
     """
@@ -54,7 +59,7 @@ class Fault:
     @property
     def reason(self) -> Message:
         """One sentence for the user."""
-        return Message(f"fault.{self.check}", dict(ARGUMENTS.get(self.check, {})))
+        return REASONS[self.check]
 
 
 def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
