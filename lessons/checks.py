@@ -39,7 +39,7 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN, short_name
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 TINY = 1e-9  # smallest divisor of a ratio
 INSTANT = 1e-6  # [s], tolerance of durations, shorter than any tick
@@ -219,7 +219,7 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own["path"] = record.path if record.path in presets() else OWN
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
     value = own.get(check.name, getattr(record.parameters, check.name, None))
-    equals, wanted = setting_wanted(check, record.parameters, words)
+    equals, wanted = setting_wanted(check, words)
     if equals is not None:
         passed = _same(value, equals)
     else:
@@ -334,16 +334,12 @@ def compare_words(check: Compare, robots: Mapping[RobotName, str], words: Words)
     }
 
 
-def setting_wanted(
-    check: Setting, parameters: Parameters, words: Words
-) -> tuple[Value | None, str]:
+def setting_wanted(check: Setting, words: Words) -> tuple[Value | None, str]:
     """The value that a setting should have, None if only its bounds matter; and that in words."""
     if check.equals is None:
         unit = "mm" if check.name == "length" else ""
         return None, range_words(check.below, check.above, unit, words)
-    spec = specs(parameters).get(check.name)
-    equals = check.equals if spec is None else spec.present(check.equals)
-    return equals, words("check.equals", value=value_label(check.name, equals, words))
+    return check.equals, words("check.equals", value=value_label(check.name, check.equals, words))
 
 
 def stat_words(stat: Stat, quantity: str, words: Words) -> str:

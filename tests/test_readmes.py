@@ -45,11 +45,6 @@ def test_tests_that_are_named_exist() -> None:
     assert [each for each in named if not any(each in name for name in exist)] == []
 
 
-@pytest.mark.parametrize("file", READMES, ids=lambda file: str(file.relative_to(ROOT)))
-def test_no_text_breaks_off(file: Path) -> None:
-    assert re.search(r"(\.|\||```|-->)\n\Z", file.read_text("utf-8"))
-
-
 def test_all_files_have_the_version_of_the_package() -> None:
     version = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
     stated = {

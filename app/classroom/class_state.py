@@ -12,8 +12,7 @@ from onpath.app.classroom.admission import cleaned
 from onpath.app.classroom.classroom import MOST_MEMBERS, ClassState, Member, Orders, Push
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.commands import TakeSetup, TakeStep
-from onpath.app.lab.setups.setup import to_data
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 

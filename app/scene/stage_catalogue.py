@@ -14,7 +14,7 @@ from onpath.app.scene.stage import Stage
 from onpath.app.scene.tones import LIGHT, Tones
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT, RIGHT
-from onpath.models.paths.curve_faults import LEAST_MARGIN
+from onpath.models.paths.path_checks import LEAST_MARGIN
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 

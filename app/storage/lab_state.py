@@ -9,8 +9,9 @@ import msgspec
 
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.setup import Setup, to_data
-from onpath.app.lab.setups.stored import from_data, with_paths_of_today
+from onpath.app.lab.setups.former import with_paths_of_today
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes

@@ -9,6 +9,7 @@ from functools import cache
 from traceback import clear_frames
 from typing import Any
 
+from typing_extensions import override
 from viser import _messages as wire
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode, Frame, Opcode
@@ -157,8 +158,8 @@ class SecureConnection(CountedConnection):
         with suppress(RuntimeError):  # the protocol has ended its side already
             self.transport.write(_BAD_REQUEST)
 
+    @override
     def connection_lost(self, exc: Exception | None) -> None:
-        """See `asyncio.Protocol`."""
         super().connection_lost(exc)
         self.handle = None
         self._stop_waiting()

@@ -140,7 +140,7 @@ export class Path {
         this.scan("check", work, this.tried[1], rows, samples + 1)
         const length = numbers[rows + row * samples + 2]!
         for (let i = 0, next = rows + row; i < samples - 1; i++, next += row) {
-            numbers.set([0, 0, 0, 0, 1, i, length], work)
+            numbers.set([0, 0, 0, 0, length], work)
             this.scan("strands", work, next - row, next, samples - 1 - i)
             if (numbers[work]) numbers[next - 1] = 1
             if (numbers[work + 1]) fault.marks.push(this.spot(work + 2))

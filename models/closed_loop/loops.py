@@ -13,6 +13,7 @@ from math import prod
 from typing import Protocol
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
@@ -24,12 +25,13 @@ SHORT = 1000  # ticks, of all robots, up to which a compiled loop keeps the inte
 
 
 class Loop(Protocol):
-    """A kernel that can be run."""
+    """A kernel that can be run.
 
-    @property
-    def layouts(self) -> LoopLayouts:
-        """Layouts of its flat vectors."""
-        ...
+    Attributes:
+        layouts: of its flat vectors.
+    """
+
+    layouts: LoopLayouts
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """Advance by `ticks`.
@@ -59,7 +61,7 @@ class Loop(Protocol):
         ...
 
 
-class InterpretedLoop:
+class InterpretedLoop(Loop):
     """Runs a kernel in CasADi's virtual machine.
 
     Not thread-safe: use one instance per thread.
@@ -69,8 +71,8 @@ class InterpretedLoop:
         self.layouts = kernel.layouts
         self._blocks = {size: Buffered(kernel.block(size)) for size in (BLOCK, 1)}
 
+    @override
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
-        """See `Loop.run`."""
         rows = np.empty((ticks, self.layouts.log.size))
         done = 0
         while done < ticks:
@@ -80,6 +82,7 @@ class InterpretedLoop:
             done += size
         return state.copy(), rows
 
+    @override
     def run_many(
         self,
         states: Sequence[Array] | Array,
@@ -87,13 +90,12 @@ class InterpretedLoop:
         tables: Sequence[Array],
         ticks: int,
     ) -> tuple[Array, Array]:
-        """See `Loop.run_many`."""
         inputs = zip(states, settings, tables, strict=True)
         after, rows = zip(*[self.run(*own, ticks) for own in inputs], strict=True)
         return np.stack(after), np.stack(rows)
 
 
-class CompiledLoop:
+class CompiledLoop(Loop):
     """Runs machine code through ctypes. Thread-safe.
 
     Calls of more than `SHORT` ticks release the interpreter's lock. Shorter ones keep it: they take
@@ -114,11 +116,12 @@ class CompiledLoop:
         self._long = ctypes.CFUNCTYPE(*_SIGNATURE)(address)
         self._owner = owner
 
+    @override
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
-        """See `Loop.run`."""
         after, rows = self.run_many([state], [settings], [table], ticks)
         return after[0], rows[0]
 
+    @override
     def run_many(
         self,
         states: Sequence[Array] | Array,
@@ -126,7 +129,6 @@ class CompiledLoop:
         tables: Sequence[Array],
         ticks: int,
     ) -> tuple[Array, Array]:
-        """See `Loop.run_many`."""
         layouts, robots = self.layouts, len(states)
         after = _stacked(states, robots, layouts.state.size)
         own = _stacked(settings, robots, layouts.settings.size)

@@ -12,9 +12,9 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import LoopLayouts
 from onpath.models.closed_loop.simulation import first_state
 from onpath.models.errors import CodedError
-from onpath.models.paths.curve_faults import LEAST_MARGIN
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
+from onpath.models.paths.path_checks import LEAST_MARGIN
 from onpath.models.systems.parameter_specs import out_of_range
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot

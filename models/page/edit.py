@@ -1,6 +1,6 @@
 """What a page without a server computes while a control point of a path is dragged.
 
-The checks are those of models/paths/curve_faults.py. Functions and scans for `wasm_loop.py`.
+The checks are those of models/paths/path_checks.py. Functions and scans for `wasm_loop.py`.
 """
 
 from __future__ import annotations
@@ -14,18 +14,23 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import GRID, lift_of, placed, view_of
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.page.fit import mix_function, scan_of
-from onpath.models.paths.curve_faults import LEAST_MARGIN, SAMPLES, STRANDS_APART, TUBE
+from onpath.models.paths.path_checks import (
+    POINT_CHECKS,
+    PathPoint,
+    StrandPair,
+    crosses,
+    narrow,
+    sampled_theta,
+)
 from onpath.models.paths.path_design import REACH
-from onpath.models.paths.projection import LocalCurve, basis
+from onpath.models.paths.projection import basis
 from onpath.models.systems.robots import ArmGeometry, Robot
 
-CHECKS = ("outside", "singular", "bends", "cusp", "narrow")
+CHECKS = (*POINT_CHECKS, "narrow")
 """The last numbers of a row of `check`; "crosses" is found apart."""
 ROW = 3 + len(CHECKS)
 OUTLINE = 241
 """Points of a path as it is drawn."""
-LEAST_SPEED = 1e-4  # [m/rad]; slower, a curve has a cusp
-PARALLEL = 1e-18  # [m²]
 
 
 def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
@@ -80,20 +85,15 @@ def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bo
 
 
 def _check(kind: Kind, arm: ArmGeometry) -> Scan:
-    """See `edit_scans` and `curve_faults`; the last row of a closed curve is its first point."""
+    """See `edit_scans`; the last row of a closed curve is its first point."""
     state, table = ca.SX.sym("state", 4), ca.SX.sym("table", *kind.table_shape)
     number, length, before = state[0], state[1], state[2:]
-    inner = SAMPLES if kind.closed else SAMPLES - 1
-    theta = ca.fmin(number * (2 * np.pi / inner) - np.pi, np.pi)
-    local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
-    z, first, second = local.sigma, local.first, local.second
-    step, speed = z - before, ca.sqrt(ca.dot(first, first))
+    theta = sampled_theta(number, kind.closed)
+    z, first, second, _ = ca.vertsplit(table @ basis(theta, kind.closed), 2)
+    step = z - before
     length = ca.if_else(number == 0, 0, length + ca.sqrt(ca.dot(step, step)))
-    margin = arm.margin(z)
-    inside, near = margin > 0, margin < LEAST_MARGIN
-    bends = ca.fabs(_cross(first, second)) > speed**3 / TUBE
-    found = [ca.logic_not(inside), ca.logic_and(inside, near), bends, speed < LEAST_SPEED]
-    row = ca.vertcat(z, length, *found, 0)
+    at = PathPoint(first, second, arm.margin(z))
+    row = ca.vertcat(z, length, *(check(at) for check in POINT_CHECKS.values()), 0)
     after = ca.vertcat(number + 1, length, z)
     return scan_of(0, [state, table, ca.SX.sym("rows", 0)], [after, row])
 
@@ -101,33 +101,22 @@ def _check(kind: Kind, arm: ArmGeometry) -> Scan:
 def _strands(kind: Kind) -> Scan:
     """Whether the strand at a point comes near another one, or crosses it.
 
-    State: 1 if it is near one, 1 if it crosses one, where (2), how many points the next row is
-    after this one (1 at first), the number of this one, and the length of the path.
+    State: 1 if it is near one, 1 if it crosses one, where (2), and the length of the path.
     """
-    state = ca.SX.sym("state", 7)
+    state = ca.SX.sym("state", 5)
     own, rows = ca.SX.sym("own", 2 * ROW), ca.SX.sym("rows", 2 * ROW)
-    (a, d), (b, e) = _segment(own), _segment(rows)
-    between, cross = b - a, _cross(d, e)
     arc = ca.fabs(rows[2] - own[2])
     if kind.closed:
-        arc = ca.fmin(arc, state[6] - arc)
-    near = ca.logic_and(ca.dot(between, between) < (2 * TUBE) ** 2, arc >= STRANDS_APART)
-    s, t = _cross(between, e) / cross, _cross(between, d) / cross
-    hit = ca.fabs(cross) >= PARALLEL
-    for condition in (s >= 0, s < 1, t >= 0, t < 1, state[4] >= 2):
-        hit = ca.fmin(hit, condition)
-    if kind.closed:
-        hit = ca.fmin(hit, ca.fmax(state[5] > 0, state[4] < SAMPLES - 1))
-    place = ca.if_else(hit, a + s * d, state[2:4])
-    after = [ca.fmax(state[0], near), ca.fmax(state[1], hit), place, state[4] + 1, state[5:]]
+        arc = ca.fmin(arc, state[4] - arc)
+    (a, d), (b, e) = _segment(own), _segment(rows)
+    pair = StrandPair(a, d, b, e, arc)
+    near, hit = narrow(pair), crosses(pair)
+    place = ca.if_else(hit, pair.place, state[2:4])
+    after = ca.vertcat(ca.fmax(state[0], near), ca.fmax(state[1], hit), place, state[4])
     row = ca.vertcat(rows[: ROW - 1], ca.fmax(rows[ROW - 1], near))
-    return scan_of(ROW, [state, own, rows], [ca.vertcat(*after), row])
+    return scan_of(ROW, [state, own, rows], [after, row])
 
 
 def _segment(rows: ca.SX) -> tuple[ca.SX, ca.SX]:
     """From the point of a row to that of the next one: begin and direction."""
     return rows[:2], rows[ROW : ROW + 2] - rows[:2]
-
-
-def _cross(a: ca.SX, b: ca.SX) -> ca.SX:
-    return a[0] * b[1] - a[1] * b[0]

@@ -1,34 +1,46 @@
-"""Checks whether a robot can follow a curve, with the reason and the place of every fault.
-
-A path must lie in the workspace, stay away from singular configurations (14), and have a unique
-closest point (7) at every point of the tube of radius TUBE around it (section II.D of the paper);
-the control laws need that uniqueness. A closed curve has such a tube if and only if
-
-    |κ| <= 1 / TUBE,  and
-    |σ(a) - σ(b)| >= 2 TUBE  where the arc length between a and b is at least π TUBE.
-
-The first condition forbids sharp bends; by Schur's theorem it implies that points with less arc
-length between them are in no other strand. The second one forbids two strands side by side, and
-self-intersections. Strands of a space curve may cross in the plan view, 2 TUBE above each other.
-"""
+"""Which checks of `path_checks.py` a curve fails as a path for a robot, and where."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from types import MappingProxyType
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
-from onpath.models.paths.curves import Curve
+from onpath.models.evaluated import evaluated
+from onpath.models.paths.curves import ORDERS, TERMS, Curve
+from onpath.models.paths.path_checks import (
+    POINT_CHECKS,
+    SAMPLES,
+    STRAND_CHECKS,
+    STRANDS_APART,
+    TUBE,
+    PathPoint,
+    StrandPair,
+    sampled_theta,
+)
+from onpath.models.paths.projection import basis
 
 Indices = NDArray[np.intp]
-TUBE = 0.008  # [m], radius of the tube in which the closest point must be unique
-STRANDS_APART = np.pi * TUBE  # [m], arc length from which two points are in different strands
-LEAST_MARGIN = 0.2  # smallest admissible value of Robot.margin, which is 1 at home
-SAMPLES = 240  # points of the curve that are checked
+BATCH = 256  # pairs of segments that are checked in one call
+REASONS: Mapping[str, Message] = MappingProxyType(
+    {
+        "not_numbers": Message("fault.not_numbers"),
+        "outside": Message("fault.outside"),
+        "singular": Message("fault.singular"),
+        "bends": Message("fault.bends", {"radius": f"{TUBE * 1e3:.0f}"}),
+        "cusp": Message("fault.cusp"),
+        "crosses": Message("fault.crosses"),
+        "narrow": Message("fault.narrow", {"least": f"{2 * TUBE * 1e3:.0f}"}),
+    }
+)
+"""What a user is told of a check that fails."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -36,43 +48,39 @@ class Fault:
     """One reason why a curve cannot be followed.
 
     Attributes:
-        reason: one sentence for the user.
+        check: the check that fails, a key of `REASONS`.
         points: where the fault is, shape (n, 2), or (n, 3) on a space curve, [m]; empty if it has
             no place.
     """
 
-    reason: Message
+    check: str
     points: Array
+
+    @property
+    def reason(self) -> Message:
+        """One sentence for the user."""
+        return REASONS[self.check]
 
 
 def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
     """All faults of a curve as a path for a robot; an empty list if it can be followed.
 
-    The curve is checked at `SAMPLES` values of θ for: finite coordinates, margin > 0 (inside the
-    workspace), margin >= LEAST_MARGIN (away from singular configurations), |κ| <= 1 / TUBE, |σ'|
-    not nearly 0 (no cusp; on a space curve |z'| of the plan view, so that no tangent is vertical),
-    no self-intersections, and strands 2 TUBE apart. On a path of 1 m, the distance between samples
-    of two strands exceeds that between the strands by 1 % at most.
+    The curve is checked at `SAMPLES` values of θ. On a path of 1 m, the distance between samples of
+    two strands exceeds that between the strands by 1 % at most.
 
     Args:
         reach: the robot's `Robot.margin`, shape (n, d) -> (n,).
         curve: the candidate, in coordinates of the path's plane.
     """
-    z, first, second, _ = curve.all_orders(curve.sample(SAMPLES))
+    d = curve.dimension
+    (samples,) = evaluated(_samples(curve.closed, d), curve.table())
+    z = samples[:, :d]
     if not np.all(np.isfinite(z)):
-        return [Fault(Message("fault.not_numbers"), np.zeros((0, 2)))]
-    margin = reach(z)
-    speed = np.linalg.norm(first, axis=-1)
-    turn = _cross(first, second) if curve.dimension == 2 else np.cross(first, second)
-    bends = np.linalg.norm(turn.reshape(SAMPLES, -1), axis=1) > speed**3 / TUBE
-    checks = [
-        (margin <= 0, Message("fault.outside")),
-        ((margin > 0) & (margin < LEAST_MARGIN), Message("fault.singular")),
-        (bends, Message("fault.bends", {"radius": f"{TUBE * 1e3:.0f}"})),
-        (np.linalg.norm(first[:, :2], axis=-1) < 1e-4, Message("fault.cusp")),
-    ]
-    faults = [Fault(reason, z[bad]) for bad, reason in checks if bad.any()]
-    return faults + _strand_faults(z, curve.closed, bool(bends.any()))
+        return [Fault("not_numbers", np.zeros((0, 2)))]
+    (found,) = evaluated(_point_checks(d), samples[:, d:], reach(z))
+    bad = zip(POINT_CHECKS, found.T > 0, strict=True)
+    faults = [Fault(check, z[at]) for check, at in bad if at.any()]
+    return faults + strand_faults(z, curve.closed)
 
 
 def own_faults(curve: Curve) -> list[Fault]:
@@ -80,82 +88,79 @@ def own_faults(curve: Curve) -> list[Fault]:
     return curve_faults(lambda z: np.ones(len(z)), curve)
 
 
-def _strand_faults(z: Array, closed: bool, bends: bool) -> list[Fault]:
-    """Self-intersections or, if there are none, strands that are too close to each other.
+def strand_faults(z: Array, closed: bool) -> list[Fault]:
+    """Where strands cross each other or, if none do, where they are too close to each other.
 
     Args:
-        z: samples of the curve, shape (n, d), [m].
-        bends: whether the curve bends too sharply: only then does a strand intersect itself.
-    """
-    close, steps = close_strands(z, closed)
-    if not (len(close) or bends or steps.max() > TUBE):
-        return []
-    crossings = self_crossings(z, closed)
-    if len(crossings):
-        return [Fault(Message("fault.crosses"), crossings)]
-    least = Message("fault.narrow", {"least": f"{2 * TUBE * 1e3:.0f}"})
-    return [Fault(least, close)] if len(close) else []
-
-
-def close_strands(z: Array, closed: bool) -> tuple[Array, Array]:
-    """Points with a point of another strand nearer than 2 TUBE, and the lengths of the segments.
-
-    Two points are in different strands if the arc length between them is at least π TUBE.
-
-    Args:
-        z: corners of the polyline, shape (n, d), [m].
+        z: corners of a polyline, shape (n, d), [m].
         closed: whether the last corner is joined to the first.
-
-    Returns:
-        Shapes (k, d) and (n - 1 or n,), [m].
     """
     line = np.vstack([z, z[:1]]) if closed else z
-    steps = np.linalg.norm(np.diff(line, axis=0), axis=1)
-    s = np.concatenate([[0.0], np.cumsum(steps)])
-    i, j = _pairs_within(z, 2 * TUBE)
-    arc = np.abs(s[i] - s[j])
+    along = np.diff(line, axis=0)
+    steps = np.sqrt((along**2).sum(axis=1))
+    s, longest = np.concatenate([[0.0], np.cumsum(steps)]), float(steps.max(initial=0.0))
+    gap = int(min(STRANDS_APART / longest, len(z))) if longest else len(z)
+    i, j = _pairs_within(z, max(2 * TUBE, 2.01 * longest), max(1, gap))
+    arc = np.abs(s[j] - s[i])
     if closed:
         arc = np.minimum(arc, s[-1] - arc)
-    return z[np.unique(i[arc >= STRANDS_APART])], steps
+    else:
+        along = np.vstack([along, np.zeros_like(z[:1])])  # nothing begins at the last corner
+    near, hit, place = _checked(np.hstack([z[i], along[i], z[j], along[j], arc[:, None]]))
+    if hit.any():
+        return [Fault("crosses", place[hit])]
+    return [Fault("narrow", z[np.unique([i[near], j[near]])])] if near.any() else []
 
 
-def self_crossings(z: Array, closed: bool) -> Array:
-    """Points where a polyline intersects itself, shape (n, d) -> (k, d), [m].
-
-    Segments i and j intersect where a_i + s d_i = a_j + t d_j with s and t in [0, 1):
-
-        s = (a_j - a_i) × d_j / (d_i × d_j),    t = (a_j - a_i) × d_i / (d_i × d_j).
-
-    In space: where the plan views of two segments do that are near each other.
-
-    Args:
-        z: corners of the polyline, shape (n, d), [m].
-        closed: whether the last corner is joined to the first.
-    """
-    line = np.vstack([z, z[:1]]) if closed else z
-    a, d = line[:-1], np.diff(line, axis=0)
-    longest = np.linalg.norm(d, axis=1).max(initial=0.0)
-    i, j = _pairs_within(a, 2.01 * longest)  # the others are too far from each other
-    apart = (j >= i + 2) & ~((i == 0) & (j == len(a) - 1) & closed)
-    i, j = i[apart], j[apart]
-    between, cross = a[j] - a[i], _cross(d[i], d[j])
-    parallel = np.abs(cross) < 1e-18
-    safe = np.where(parallel, 1.0, cross)
-    s, t = _cross(between, d[j]) / safe, _cross(between, d[i]) / safe
-    hit = ~parallel & (s >= 0) & (s < 1) & (t >= 0) & (t < 1)
-    return a[i[hit]] + s[hit, None] * d[i[hit]]
+def _checked(pairs: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Array]:
+    """Which pairs of segments are too close, which cross, and where, shape (k, 4 d + 1)."""
+    count, d = len(pairs), pairs.shape[1] // 4
+    found = np.zeros((count, 2 + d))
+    for begin in range(0, count, BATCH):
+        part = pairs[begin : begin + BATCH]
+        padded = np.vstack([part, np.zeros((BATCH - len(part), part.shape[1]))])
+        found[begin : begin + BATCH] = evaluated(_strand_checks(d), padded)[0][: len(part)]
+    return found[:, 0] > 0, found[:, 1] > 0, found[:, 2:]
 
 
-def _pairs_within(z: Array, distance: float) -> tuple[Indices, Indices]:
-    """All i and j with |z_i - z_j| < distance, shape (n, d) -> two of shape (k,)."""
-    first, *others = z.T
-    squared = (first[:, None] - first) ** 2
-    for x in others:
-        squared += (x[:, None] - x) ** 2
-    i, j = np.nonzero(squared < distance**2)
+@lru_cache(maxsize=4)
+def _samples(closed: bool, d: int) -> ca.Function:
+    """`Curve.table` as a matrix -> z, σ' and σ'' at the `SAMPLES`, (3 d, SAMPLES)."""
+    number, table = ca.SX.sym("number"), ca.MX.sym("table", ORDERS * d, TERMS)
+    values = ca.Function("basis", [number], [basis(sampled_theta(number, closed), closed)])
+    return ca.Function("samples", [table], [table[: 3 * d, :] @ values(np.arange(SAMPLES)[None])])
+
+
+@lru_cache(maxsize=2)
+def _point_checks(d: int) -> ca.Function:
+    """(σ' and σ'', margin) of the `SAMPLES`, as columns -> 1 or 0 for the `POINT_CHECKS`."""
+    derivatives, margin = ca.SX.sym("derivatives", 2 * d), ca.SX.sym("margin")
+    at = PathPoint(derivatives[:d], derivatives[d:], margin)
+    bad = ca.vertcat(*(check(at) for check in POINT_CHECKS.values()))
+    return ca.Function("points", [derivatives, margin], [ca.densify(bad)]).map(SAMPLES)
+
+
+@lru_cache(maxsize=2)
+def _strand_checks(d: int) -> ca.Function:
+    """a, d, b, e and arc of `BATCH` pairs, as columns -> 1 or 0 for `STRAND_CHECKS`, and place."""
+    numbers = ca.SX.sym("pair", 4 * d + 1)
+    a, along, b, other, arc = ca.vertsplit(numbers, d)
+    pair = StrandPair(a, along, b, other, arc)
+    found = [check(pair) for check in STRAND_CHECKS.values()]
+    result = ca.densify(ca.vertcat(*found, pair.place))
+    return ca.Function("strands", [numbers], [result]).map(BATCH)
+
+
+def _pairs_within(z: Array, distance: float, gap: int) -> tuple[Indices, Indices]:
+    """i and j >= i + gap with |z_i - z_j| < distance, and perhaps some more: two of shape (k,)."""
+    squared, one = (z**2).sum(axis=1)[:, None], np.ones((len(z), 1))
+    between = np.hstack([-2 * z, squared, one]) @ np.hstack([z, one, squared]).T
+    near = (between < distance**2 + 1e-9 * (1 + squared.max())) & _later(len(z), gap)
+    i, j = np.divmod(np.flatnonzero(near), len(z))
     return i, j
 
 
-def _cross(a: Array, b: Array) -> Array:
-    """The planar cross product a1 b2 - a2 b1, shape (..., 2) -> (...)."""
-    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+@lru_cache(maxsize=8)
+def _later(count: int, gap: int) -> NDArray[np.bool_]:
+    """Where j >= i + gap, shape (count, count)."""
+    return np.triu(np.ones((count, count), dtype=bool), gap)

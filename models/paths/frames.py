@@ -12,6 +12,7 @@ from typing import Protocol, Self
 
 import casadi as ca
 import numpy as np
+from typing_extensions import override
 
 from onpath.models.arrays import Array
 
@@ -20,12 +21,12 @@ class PlaneCoordinates(Protocol):
     """An affine map between the output space R^p and planar coordinates, for symbols.
 
     Because the map is affine, time derivatives are mapped by its linear part: `rate=True`.
+
+    Attributes:
+        p: dimension of the output space.
     """
 
-    @property
-    def p(self) -> int:
-        """Dimension of the output space."""
-        ...
+    p: int
 
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
         """y -> (z, ζ), shapes (p, 1) -> (2, 1), (p - 2, 1), [m].
@@ -77,23 +78,21 @@ class Frame(PlaneCoordinates, Protocol):
         ...
 
 
-class _FixedPlane:
+class _FixedPlane(Frame, Protocol):
     """Common parts of frames whose place is no choice of the user; z shows y1 and y2."""
-
-    __slots__ = ()
 
     @property
     def numbers(self) -> tuple[float, float, float]:
         """See `Frame.numbers`: there are none."""
         return 0.0, 0.0, 0.0
 
+    @override
     def at(self, numbers: ca.SX) -> Self:
-        """See `Frame.at`."""
         return self
 
     @property
+    @override
     def axes(self) -> tuple[int, int]:
-        """See `Frame.axes`."""
         return 1, 2
 
 
@@ -103,20 +102,20 @@ class Plane(_FixedPlane):
 
     p: int = 2
 
+    @override
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `PlaneCoordinates.split`."""
         return y, ca.SX(0, 1)
 
+    @override
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `PlaneCoordinates.join`."""
         return z
 
+    @override
     def planar(self, y: Array) -> Array:
-        """See `Frame.planar`."""
         return y
 
+    @override
     def lift(self, z: Array) -> Array:
-        """See `Frame.lift`."""
         return z
 
     @property
@@ -131,25 +130,25 @@ class LevelPlane(_FixedPlane):
 
     p: int = 3
 
+    @override
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `PlaneCoordinates.split`."""
         return y[:2], y[2]
 
+    @override
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `PlaneCoordinates.join`."""
         return ca.vertcat(z, zeta)
 
+    @override
     def planar(self, y: Array) -> Array:
-        """See `Frame.planar`."""
         return y[..., :2]
 
+    @override
     def lift(self, z: Array) -> Array:
-        """See `Frame.lift`."""
         return z if z.shape[-1] == 3 else np.concatenate([z, np.zeros_like(z[..., :1])], axis=-1)
 
     @property
+    @override
     def space(self) -> Space:
-        """See `Frame.space`."""
         return _SPACE
 
 
@@ -159,25 +158,25 @@ class Space(_FixedPlane):
 
     p: int = 3
 
+    @override
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `PlaneCoordinates.split`."""
         return y, ca.SX(0, 1)
 
+    @override
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `PlaneCoordinates.join`."""
         return z
 
     def planar(self, y: Array) -> Array:
         """The plan view of points y, shape (..., 3) -> (..., 2), [m]."""
         return y[..., :2]
 
+    @override
     def lift(self, z: Array) -> Array:
-        """See `Frame.lift`."""
         return LevelPlane().lift(z)
 
     @property
+    @override
     def space(self) -> Space:
-        """See `Frame.space`."""
         return self
 
 
@@ -185,7 +184,7 @@ _SPACE = Space()  # shared, because kernels are kept by it
 
 
 @dataclass(frozen=True, slots=True)
-class SlantedPlane:
+class SlantedPlane(Frame):
     """The plane y1 = b y2 + d in R³, with z = (y2, y3 - c) and ζ = y1 - b y2 - d.
 
     A circle of z is an ellipse in space, longer along y2 by sqrt(1 + b²).
@@ -204,30 +203,30 @@ class SlantedPlane:
     centre: float = 0.0
     p: int = 3
 
+    @override
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `PlaneCoordinates.split`."""
         return self._coordinates.split(y, rate)
 
+    @override
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `PlaneCoordinates.join`."""
         return self._coordinates.join(z, zeta, rate)
 
+    @override
     def planar(self, y: Array) -> Array:
-        """See `Frame.planar`."""
         return y[..., 1:] - np.array([0.0, self.centre])
 
+    @override
     def lift(self, z: Array) -> Array:
-        """See `Frame.lift`."""
         lifted = np.concatenate([self.b * z[..., :1] + self.d, z], axis=-1)
         return lifted + np.array([0.0, 0.0, self.centre])
 
     @property
+    @override
     def numbers(self) -> tuple[float, float, float]:
-        """See `Frame.numbers`."""
         return self.b, self.d, self.centre
 
+    @override
     def at(self, numbers: ca.SX) -> PlaneCoordinates:
-        """See `Frame.at`."""
         b, d, centre = ca.vertsplit(numbers)
         return _SlantedCoordinates(b, d, centre)
 
@@ -236,8 +235,8 @@ class SlantedPlane:
         return self.at(ca.SX(ca.DM(list(self.numbers))))
 
     @property
+    @override
     def axes(self) -> tuple[int, int]:
-        """See `Frame.axes`."""
         return 2, 3
 
     @property
@@ -247,7 +246,7 @@ class SlantedPlane:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _SlantedCoordinates:
+class _SlantedCoordinates(PlaneCoordinates):
     """Coordinates of a slanted plane; see `SlantedPlane`."""
 
     b: ca.SX
@@ -255,14 +254,14 @@ class _SlantedCoordinates:
     centre: ca.SX
     p: int = 3
 
+    @override
     def split(self, y: ca.SX, rate: bool = False) -> tuple[ca.SX, ca.SX]:
-        """See `PlaneCoordinates.split`."""
         if rate:
             return y[1:], y[0] - self.b * y[1]
         return ca.vertcat(y[1], y[2] - self.centre), y[0] - self.b * y[1] - self.d
 
+    @override
     def join(self, z: ca.SX, zeta: ca.SX, rate: bool = False) -> ca.SX:
-        """See `PlaneCoordinates.join`."""
         if rate:
             return ca.vertcat(zeta + self.b * z[0], z)
         return ca.vertcat(zeta + self.b * z[0] + self.d, z[0], z[1] + self.centre)

@@ -16,7 +16,7 @@ from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.table_file import Table, read_table
 from onpath.models.systems.robots import Robot
 
-LAWS = ("law", "controller")  # name of the column of the law, now and in earlier versions
+LAW = "law"  # name of its column
 UNEVEN = 0.1  # deviation of a time step from the others, relative to them, that is refused
 
 
@@ -30,7 +30,7 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
         OSError: it cannot be read.
     """
     measured, table = _table(path, robot)
-    laws = next((table.texts[name] for name in LAWS if name in table.texts), None)
+    laws = table.texts.get(LAW)
     keys = list(zip(*table.texts.values(), strict=True)) or [()] * len(table.lines)
     records = list[tuple[str, MotionRecord]]()
     for _, part in groupby(range(len(keys)), key=keys.__getitem__):
@@ -46,7 +46,7 @@ def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
     missing: CodedError | None = None
     for measured in (True, False):
         try:
-            return measured, read_table(path, _columns(robot, measured), ("bench", *LAWS))
+            return measured, read_table(path, _columns(robot, measured), ("bench", LAW))
         except CodedError as error:
             if error.message.code != "error.table_no_column":
                 raise

@@ -29,7 +29,6 @@ from onpath.models.systems.system import MechanicalSystem, mechanical_system
 from onpath.models.systems.tip_load import no_load, tip_load
 
 PLANTS = ("lagrangian", "unit_modes")
-FORMER_PLANTS = {"as_printed": "unit_modes"}  # names in existing share codes, labs and lessons
 HOME = np.array([np.pi / 2, np.pi, 0.0])
 RIGID = 3  # number of joints, the first coordinates of q
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.beam import MOST_MODES
-from onpath.models.systems.flexible_five_bar import FORMER_PLANTS, PLANTS
+from onpath.models.systems.flexible_five_bar import PLANTS
 from onpath.models.systems.parameter_specs import choice, model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters
 
@@ -120,7 +120,6 @@ class FlexibleParameters(Parameters):
         "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: odd units, no joint friction",
         group="robot",
         label="Plant",
-        former=FORMER_PLANTS,
     )
     modes: int = choice(
         3,

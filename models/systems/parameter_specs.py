@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from typing import Any
@@ -28,7 +27,6 @@ class Spec:
         options: of a choice; empty for a number.
         help: one line.
         on: for a parameter of which 0 means "off": the value that switches it on.
-        former: former names of options, which are still accepted.
     """
 
     group: str
@@ -40,11 +38,6 @@ class Spec:
     options: tuple[Any, ...]
     help: str
     on: float | None = None
-    former: Mapping[str, str] | None = None
-
-    def present(self, value: Any) -> Any:
-        """The present name of an option; any other value unchanged."""
-        return self.former.get(str(value), value) if self.former else value
 
 
 def number(
@@ -69,10 +62,9 @@ def choice(
     *,
     group: str,
     label: str,
-    former: Mapping[str, str] | None = None,
 ) -> Any:
-    """A dataclass field for one of `options`; former names are accepted."""
-    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text, former=former)
+    """A dataclass field for one of `options`."""
+    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text)
     return field(default=default, metadata={"spec": spec})
 
 
@@ -109,9 +101,8 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
         ValueError: not a finite number in range, or not one of the options.
     """
     if spec.options:
-        present = str(spec.present(value))
         for option in spec.options:
-            if str(option) == present:
+            if str(option) == str(value):
                 return option
         options = ", ".join(str(option) for option in spec.options)
         raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)

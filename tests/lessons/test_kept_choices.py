@@ -19,7 +19,8 @@ from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setups.setup import Setup, to_data
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.stored import to_data
 from onpath.app.page import lesson_html as page
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.course import Course, read_course

@@ -118,7 +118,7 @@ def _(check: Only, parameters: Parameters, robots: dict[Any, str], words: Words)
 @_more.register
 def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     spec = specs(parameters).get(check.name)
-    equals, wanted = setting_wanted(check, parameters, words)
+    equals, wanted = setting_wanted(check, words)
     present = getattr(parameters, check.name, None)
     options = _named(check.name) if spec is None else spec.options
     return {

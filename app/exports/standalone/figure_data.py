@@ -37,8 +37,8 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.page.edit import CHECKS, OUTLINE, ROW
 from onpath.models.page.fit import FINE, PIECE
 from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
-from onpath.models.paths.curve_faults import SAMPLES
 from onpath.models.paths.curves import TERMS, Curve
+from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.systems.parameters import specs, time_step
 
 

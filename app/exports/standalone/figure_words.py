@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from onpath.lessons.words import Words
 from onpath.models.control.benches import BENCHES
-from onpath.models.paths.curve_faults import TUBE
 from onpath.models.paths.curve_fit import SHORTEST
+from onpath.models.paths.path_checks import TUBE
 
 PLAIN = (
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),

@@ -6,6 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
+from typing_extensions import override
+
 from onpath.app.lab.commands.path import finish
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.setup import Setup
@@ -19,8 +21,8 @@ class Freeze(Command):
     from_teacher: ClassVar[bool] = True
     on: bool
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if self.on == lab.frozen:
             return
         if self.on:
@@ -39,8 +41,8 @@ class TakeSetup(Command):
     from_teacher: ClassVar[bool] = True
     setup: Setup
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         run = lab.lessons
         run.take(self.setup, lab)
         text = run.words("class.setup" if run.lesson is None else "class.setup_in_step")
@@ -63,8 +65,8 @@ class TakeStep(Command):
     route: str = ""
     again: bool = False
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         run = lab.lessons
         elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
         run.open_at(self.lesson, self.step, lab, self.route)
@@ -84,8 +86,8 @@ class KeepWithin(Command):
     from_teacher: ClassVar[bool] = True
     pace: Pace | None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         run = lab.lessons
         run.set_pace(self.pace)
         if self.pace is not None and not self.pace.holds(run.progress.lesson, run.index):
@@ -101,8 +103,8 @@ class ReportState(Command):
     from_teacher: ClassVar[bool] = True
     to: Callable[[Lab], None]
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         self.to(lab)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
@@ -25,8 +26,8 @@ class Hold(Command):
     on: bool | None = None
     bench: str | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.return_to_present()
         session, names = lab.session, list[str](BENCHES)
         if self.bench is not None:
@@ -45,8 +46,8 @@ class SetHoldDirection(Command):
 
     direction: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         direction = check_direction(self.direction)
         lab.return_to_present()
         session = lab.session
@@ -67,8 +68,8 @@ class Grab(Command):
     bench: str
     target: Array
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         name = checks.bench(self.bench)
         target = checks.point(self.target, lab.session.robot.system.p)
         lab.return_to_present()
@@ -81,8 +82,8 @@ class Release(Command):
 
     bench: str | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if self.bench in (None, lab.session.grips.grabbed):
             lab.session.grips.release()
 
@@ -94,8 +95,8 @@ class MoveHand(Command):
     right: float
     up: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         by = np.array([checks.finite(self.right), checks.finite(self.up)])
         lab.return_to_present()
         session, grips = lab.session, lab.session.grips
@@ -110,6 +111,6 @@ class SetCopy(Command):
 
     on: bool
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.copy = bool(self.on)

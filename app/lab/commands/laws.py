@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from typing_extensions import override
+
 from onpath.app.lab.commands import checks
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.control.benches import checked_laws
@@ -24,8 +26,8 @@ class ChooseLaw(Command):
     bench: str
     law: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session = lab.session
         law = checked_laws({self.bench: self.law}, session.entry)[self.bench]
         if not session.suits(law):
@@ -47,8 +49,8 @@ class TypeLaw(Command):
     bench: str
     text: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         bench = checks.bench(self.bench)
         try:
             own_law(self.text)  # names of the registry are not typed laws

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from typing_extensions import override
+
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
 from onpath.lessons.action_schema import Action
@@ -16,8 +18,8 @@ class OpenLesson(Command):
 
     name: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.open(self.name, lab)
 
 
@@ -27,8 +29,8 @@ class FollowRoute(Command):
 
     name: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.follow_route(self.name, lab)
 
 
@@ -36,8 +38,8 @@ class FollowRoute(Command):
 class CloseLesson(Command):
     """Close the lesson and restore the lab as it was before."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.close(lab)
 
 
@@ -45,8 +47,8 @@ class CloseLesson(Command):
 class FinishLesson(Command):
     """Show the end of the open lesson."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.finish()
 
 
@@ -56,8 +58,8 @@ class GoToStep(Command):
 
     by: int
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.go(int(self.by), lab)
 
 
@@ -76,8 +78,8 @@ class Predict(Command):
     reason: int | None = None
     why: str = ""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         told = self.sure, self.reason, self.why
         lab.lessons.predict(Answer(self.option, self.times, self.values, *told), lab.session)
         lab.show_message("")  # that a prediction is missing
@@ -87,8 +89,8 @@ class Predict(Command):
 class PlayStep(Command):
     """Play the step's demonstration."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         step = lab.lessons.step
         if step is not None and step.script is not None:
             lab.lessons.play(player_of(step.script), lab)
@@ -98,8 +100,8 @@ class PlayStep(Command):
 class BeginStepAnew(Command):
     """Set the lab up for the step again."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.begin_anew(lab)
 
 
@@ -109,8 +111,8 @@ class ShowHint(Command):
 
     task: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.hint(self.task)
 
 
@@ -121,8 +123,8 @@ class AnswerQuiz(Command):
     block: int
     option: int
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.answer_quiz(self.block, self.option)
 
 
@@ -133,8 +135,8 @@ class AnswerNumber(Command):
     block: int
     given: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.answer_number(self.block, self.given)
 
 
@@ -145,8 +147,8 @@ class AnswerInWords(Command):
     block: int
     typed: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.answer_in_words(self.block, self.typed)
 
 
@@ -156,8 +158,8 @@ class Act(Command):
 
     actions: tuple[Action, ...]
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         for action in self.actions:
             if action.run:
                 lab.lessons.check_unlocked()
@@ -171,8 +173,8 @@ class SetLanguage(Command):
 
     language: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.set_language(self.language)
         lab.clear_message()
 
@@ -183,6 +185,6 @@ class SetPresenting(Command):
 
     on: bool
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.lessons.set_presenting(bool(self.on))

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from typing_extensions import override
+
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.session import Session
 from onpath.lessons.benches import law_label
@@ -31,8 +33,8 @@ class SetParameter(Command):
     name: str
     value: Any
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session, before = lab.session, lab.session.parameters
         wanted = changed(before, self.name, self.value)
         if self.name in PATH_MATTERS:
@@ -78,8 +80,8 @@ def _check_plane(session: Session, wanted: Parameters) -> None:
 class ResetParameters(Command):
     """Set all parameters to their defaults."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         _check_plane(lab.session, lab.session.entry.parameters())
         _set(lab, lab.session.entry.parameters())
 
@@ -88,8 +90,8 @@ class ResetParameters(Command):
 class Identify(Command):
     """Give the controllers the model identified from the follower's recent motion, once it is."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.identification.begin(lab.session.robot, lab.session.history.copy())
 
 
@@ -99,8 +101,8 @@ class ChooseRobot(Command):
 
     name: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if self.name not in ROBOTS:
             raise unknown_name(self.name, list(ROBOTS), "robot")
         if ROBOTS[self.name] is lab.session.entry:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.commands.time import StepOnce
@@ -24,8 +25,8 @@ class ChoosePath(Command):
 
     name: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if self.name not in lab.session.presets:
             raise unknown_name(self.name, list(lab.session.presets), "path")
         commit(lab, lab.session.presets[self.name])
@@ -37,8 +38,8 @@ class SelectPoint(Command):
 
     index: int | None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.editor.select(self.index)
 
 
@@ -46,8 +47,8 @@ class SelectPoint(Command):
 class SelectNext(Command):
     """Select the control point after the selected one, or the first."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         editor = lab.session.editor
         editor.select((-1 if editor.selected is None else editor.selected) + 1)
         if editor.selected is None:
@@ -68,8 +69,8 @@ class MovePoint(Command):
     target: Array
     finished: bool = True
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         editor, target = lab.session.editor, point(self.target, 2)
         if editor.proposed is None or editor.selected != self.index:
             editor.finish()  # of another point
@@ -83,8 +84,8 @@ class MovePoint(Command):
 class EndMove(Command):
     """End the drag of a control point at its current position."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         finish(lab)
 
 
@@ -95,8 +96,8 @@ class NudgePoint(Command):
     right: float
     up: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         index = lab.session.editor.selected
         if index is None:
             if self.right > 0:
@@ -114,8 +115,8 @@ class PlacePoint(Command):
     first: float | None = None
     second: float | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         index, design = _selected(lab), lab.session.editor.design
         old = design.points[index]
         wanted = zip(old, (self.first, self.second), strict=True)
@@ -128,8 +129,8 @@ class PlacePoint(Command):
 class AddPoint(Command):
     """Add a control point after the selected one."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         editor = lab.session.editor
         index = 0 if editor.selected is None else editor.selected
         commit(lab, editor.design.added(index))
@@ -140,8 +141,8 @@ class AddPoint(Command):
 class RemovePoint(Command):
     """Remove the selected control point."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         commit(lab, lab.session.editor.design.removed(_selected(lab)))
 
 
@@ -155,8 +156,8 @@ class DrawPath(Command):
 
     stroke: Array
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
@@ -171,8 +172,8 @@ class DrawPath(Command):
 class Undo(Command):
     """Undo the last edit of the path."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         words = lab.words
         lab.show_message("" if lab.session.editor.undo() else words("say.nothing_to_undo"))
 
@@ -181,8 +182,8 @@ class Undo(Command):
 class Redo(Command):
     """Redo the last undone edit of the path."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         words = lab.words
         lab.show_message("" if lab.session.editor.redo() else words("say.nothing_to_redo"))
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.external_forces import displaced
@@ -22,8 +23,8 @@ FRAMES, FRAME = 8, 1 / 60  # the hand moves along with the end-point [s]
 class _PullAcross(Command):
     """Pull both end-points outwards, each across the path at its own place."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session = lab.session
         rows = {name: run.shown() for name, run in session.runs.items()}
         session.grips.pull({name: self._hand(session, row) for name, row in rows.items()})
@@ -41,8 +42,8 @@ class Pulse(Command):
 
     lets_time_run: ClassVar[bool] = True
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.return_to_present()
         session = lab.session
         if lab.script is not None or session.grips.grabbed is not None:

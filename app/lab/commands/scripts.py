@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.commands.checks import point
 from onpath.app.lab.commands.forces import Release
@@ -36,8 +37,8 @@ class ScriptHold(Command):
     on: bool
     only: RobotName | Literal[""] = ""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.grips.hold(_benches(self.only), self.on, lab.session.editor.curve)
 
 
@@ -53,8 +54,8 @@ class ScriptPull(Command):
     by: tuple[float, float]
     only: RobotName | Literal[""] = ""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session, name = lab.session, BENCH_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
         there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
@@ -67,8 +68,8 @@ class ScriptLaws(Command):
 
     laws: Laws
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         for bench, law in checked_laws(self.laws.named, lab.session.entry).items():
             lab.session.change_law(bench, law)
 
@@ -79,8 +80,8 @@ class ScriptRate(Command):
 
     rate: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         wanted = self.rate * lab.lessons.rate_before
         lab.session.rate = min(max(wanted, RATES[0]), RATES[-1])
 
@@ -91,8 +92,8 @@ class ScriptStart(Command):
 
     start: RunStart
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         start = Start(**self.start.numbers)
         lab.session.check_start(start)
         lab.session.start = start
@@ -107,8 +108,8 @@ class ScriptMove(Command):
     right: float
     up: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         points = lab.session.editor.design.points
         if not 0 <= self.index < len(points):
             raise CodedError("error.no_point", index=self.index, count=len(points))

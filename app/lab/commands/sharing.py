@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from typing_extensions import override
+
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.share_code import decode, encode
@@ -13,8 +15,8 @@ from onpath.app.lab.setups.share_code import decode, encode
 class Share(Command):
     """Make a share code of the lab's current set-up."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.shared = encode(capture(lab.session))
 
 
@@ -24,7 +26,7 @@ class UseShared(Command):
 
     text: str
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.set_up(decode(self.text))
         lab.remark(lab.words("say.set_up"))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from typing_extensions import override
+
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
@@ -23,8 +25,8 @@ class SetStart(Command):
     name: str
     value: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if self.name not in BOUNDS:
             raise unknown_name(self.name, list(BOUNDS), "start")
         _take(lab, replace(lab.session.start, **{self.name: finite(self.value)}))
@@ -40,8 +42,8 @@ class MoveStart(Command):
 
     target: Array
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session = lab.session
         target = point(self.target, 2)
         _take(lab, nearest_start(session.editor.curve, target, session.start))
@@ -51,8 +53,8 @@ class MoveStart(Command):
 class StartOnPath(Command):
     """Start on the path at θ = 0, at rest, as a new lab does."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         _take(lab, ON_PATH)
 
 

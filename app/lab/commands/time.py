@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+from typing_extensions import override
+
 from onpath.app.lab.commands.checks import finite, within
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.looking_back import go_on, look_back, undo_going_on
@@ -18,8 +20,8 @@ class SetRunning(Command):
     lets_time_run: ClassVar[bool] = True
     running: bool | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         running = not lab.session.running if self.running is None else self.running
         if running:
             lab.return_to_present()
@@ -32,8 +34,8 @@ class StepOnce(Command):
 
     lets_time_run: ClassVar[bool] = True
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.return_to_present()
         lab.lessons.check_unlocked()
         lab.session.step_once()
@@ -43,8 +45,8 @@ class StepOnce(Command):
 class Reset(Command):
     """Put both robots at the start, at rest; path and parameters are kept."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.reset()
         lab.show_message("")
 
@@ -57,8 +59,8 @@ class ReplayBreakdown(Command):
     a reset.
     """
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session = lab.session
         if lab.breakdown.begin(session):
             bends = session.entry.flexible_link is not None
@@ -73,8 +75,8 @@ class UseEarlierSettings(Command):
 
     lets_time_run: ClassVar[bool] = True
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.breakdown.use_earlier_settings(lab.session)
         lab.show_message("")
 
@@ -85,8 +87,8 @@ class SetRate(Command):
 
     rate: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.rate = within("speed", self.rate, RATES)
 
 
@@ -96,8 +98,8 @@ class AskPhase(Command):
 
     on: bool
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.phase_asked = bool(self.on)
 
 
@@ -107,8 +109,8 @@ class LookAt(Command):
 
     ago: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         _look_back(lab, finite(self.ago))
 
 
@@ -118,8 +120,8 @@ class LookBack(Command):
 
     by: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         now, viewing = lab.session.time, lab.session.viewing
         _look_back(lab, now - (now if viewing is None else viewing) + finite(self.by))
 
@@ -130,8 +132,8 @@ class GoOn(Command):
 
     lets_time_run: ClassVar[bool] = True
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         discarded = go_on(lab.session)
         if discarded is None:
             lab.clear_message()
@@ -145,8 +147,8 @@ class GoOn(Command):
 class UndoGoOn(Command):
     """Swap the current history with the one replaced by the last `GoOn`."""
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         if undo_going_on(lab.session):
             lab.remark(lab.words("say.brought_back", time=f"{lab.session.time:.1f}"))
         else:
@@ -159,8 +161,8 @@ class SetExaggeration(Command):
 
     factor: float
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         lab.session.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
 
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from typing_extensions import override
 
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.lab import Command, Lab
@@ -31,8 +32,8 @@ class SetWall(Command):
 
     on: bool | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         session = lab.session
         on = session.wall is None if self.on is None else bool(self.on)
         if on != (session.wall is not None):
@@ -50,8 +51,8 @@ class MoveWall(Command):
 
     target: Array
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         target, now = point(self.target, 2), lab.session.wall
         if now is not None:
             lab.return_to_present()
@@ -70,8 +71,8 @@ class SwingWall(Command):
     end: int
     target: Array
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         target, now = point(self.target, 2), lab.session.wall
         if now is None:
             return
@@ -95,8 +96,8 @@ class NudgeWall(Command):
     up: float = 0.0
     turn: float = 0.0
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         by, turn = np.array([finite(self.right), finite(self.up)]), finite(self.turn)
         now = lab.session.wall
         if now is None:
@@ -114,8 +115,8 @@ class PlaceWall(Command):
     second: float | None = None
     angle: float | None = None
 
+    @override
     def apply(self, lab: Lab) -> None:
-        """See `Command.apply`."""
         now = lab.session.wall
         if now is None:
             return

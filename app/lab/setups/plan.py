@@ -17,8 +17,7 @@ from onpath.app.lab.setups.setup import (
     Path,
     RobotSetup,
     Setup,
-    StoredSetup,
-    to_data,
+    plain,
 )
 from onpath.models.closed_loop.obstacles import Wall, check_direction
 from onpath.models.closed_loop.simulation import raised
@@ -76,7 +75,7 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
         ValueError: an unknown name, a number out of range, points that do not form a path, or a
             law that does not suit the robot.
     """
-    msgspec.convert(to_data(setup), StoredSetup)  # one made in Python has not been validated
+    msgspec.convert(plain(setup), Setup)  # one made in Python has not been validated
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
     robots = dict(setup.robots)

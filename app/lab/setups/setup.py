@@ -1,9 +1,7 @@
 """A lab's set-up as plain data, to be stored, shared and restored.
 
-It holds the differences from a new lab, so a new lab is `Setup()`. Its data name the version of the
-defaults that they differ from, so that data of an earlier version keep their meaning. Lengths of a
-path are whole micrometres and numbers have six digits, so that capturing a restored set-up gives
-the same one.
+It holds the differences from a new lab, so a new lab is `Setup()`. Lengths of a path are whole
+micrometres and numbers have six digits, so that capturing a restored set-up gives the same one.
 """
 
 from __future__ import annotations
@@ -13,7 +11,6 @@ from typing import Annotated, Any
 
 import msgspec
 
-from onpath.app.lab.setups.former_defaults import DEFAULTS
 from onpath.models.closed_loop.obstacles import ALONG
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.expressions import LONGEST
@@ -82,23 +79,13 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     hold: Word = ALONG
 
 
-class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
-    """A set-up as data: `defaults` is the version of the defaults that it differs from."""
-
-    defaults: Annotated[int, msgspec.Meta(ge=1, le=DEFAULTS)] = 1
-
-
-def to_data(setup: Setup) -> dict[str, Any]:
-    """Convert a set-up to JSON data, without default values."""
-    return {"defaults": DEFAULTS, **_plain(setup)}
-
-
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
+    """A set-up or a part of it as JSON data, without default values."""
     if isinstance(value, msgspec.Struct):
         new = type(value)()
         names = zip(value.__struct_encode_fields__, value.__struct_fields__, strict=True)
         own = {stored: (getattr(value, name), getattr(new, name)) for stored, name in names}
-        return {stored: _plain(now) for stored, (now, before) in own.items() if now != before}
+        return {stored: plain(now) for stored, (now, before) in own.items() if now != before}
     if isinstance(value, Mapping):
-        return {name: _plain(item) for name, item in value.items()}
+        return {name: plain(item) for name, item in value.items()}
     return list(value) if isinstance(value, tuple) else value

@@ -13,9 +13,9 @@ import zlib
 import msgspec
 
 from onpath.app.common.access_codes import as_meant, is_code
-from onpath.app.lab.setups.former_defaults import DEFAULTS
-from onpath.app.lab.setups.setup import Setup, to_data
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.former import DEFAULTS
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.models.errors import CodedError, said_by
 
 VERSION = 1

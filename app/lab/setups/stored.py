@@ -1,20 +1,31 @@
-"""Stored set-ups, brought up to the present: former defaults, and paths that are refused today."""
+"""Set-ups as plain data.
+
+Data name the version of the defaults that they differ from, so that those of an earlier version
+keep their meaning.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from typing import Annotated, Any
 
 import msgspec
 
-from onpath.app.lab.setups.former_defaults import former_defaults
+from onpath.app.lab.setups.former import DEFAULTS, brought_up
 from onpath.app.lab.setups.plan import planned
-from onpath.app.lab.setups.setup import Path, RobotSetup, Setup, StoredSetup
-from onpath.models.closed_loop.start import ON_PATH
+from onpath.app.lab.setups.setup import Setup, plain
 from onpath.models.control.benches import checked_laws
-from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS
+
+
+class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
+    """A set-up as data: `defaults` is the version of the defaults that it differs from."""
+
+    defaults: Annotated[int, msgspec.Meta(ge=1, le=DEFAULTS)] = 1
+
+
+def to_data(setup: Setup) -> dict[str, Any]:
+    """Convert a set-up to JSON data, without default values."""
+    return {"defaults": DEFAULTS, **plain(setup)}
 
 
 def from_data(data: Any) -> Setup:
@@ -24,46 +35,8 @@ def from_data(data: Any) -> Setup:
         ValueError: it is not a valid set-up.
     """
     stored = msgspec.convert(data, StoredSetup)
-    robots = _brought_up(stored.robots, stored.defaults)
+    robots = brought_up(stored.robots, stored.defaults)
     own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
     setup = Setup(**{**own, "robots": robots})
     entry = planned(setup, presets())[setup.robot].entry
     return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
-
-
-def _brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, RobotSetup]:
-    """The same set-ups of robots, as differences from the present defaults.
-
-    Args:
-        version: of the defaults that they differ from.
-    """
-    found = dict(robots)
-    for name in ROBOTS:
-        if former := former_defaults(name, version):
-            robot = robots.get(name, RobotSetup())
-            own = {**former, **robot.parameters}
-            found[name] = msgspec.structs.replace(robot, parameters=own)
-    return found
-
-
-def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
-    """A kept set-up with the circle in place of every path that is refused today, and why it is.
-
-    A path that was accepted when it was kept may be refused now. A start that is not possible, too,
-    is replaced by that of a new lab.
-
-    Raises:
-        ValueError: the set-up is impossible for another reason.
-    """
-    robots, told = dict(setup.robots), tuple[Message, ...]()
-    for name, wanted in planned(setup, presets()).items():
-        if reasons := wanted.path_faults:
-            kept = robots.get(name, RobotSetup())
-            robots[name] = msgspec.structs.replace(kept, path=Path(), start={})
-            told = (*told, *reasons)
-        elif wanted.start != ON_PATH:
-            try:
-                wanted.check_start()
-            except ValueError:
-                robots[name] = msgspec.structs.replace(robots[name], start={})
-    return msgspec.structs.replace(setup, robots=robots), told

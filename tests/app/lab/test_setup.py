@@ -20,10 +20,11 @@ from onpath.app.lab.commands import (
 )
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture, capture_path, kept
+from onpath.app.lab.setups.former import DEFAULTS
 from onpath.app.lab.setups.plan import DRAWN_POINTS
 from onpath.app.lab.setups.restore import restore
-from onpath.app.lab.setups.setup import DEFAULTS, Path, RobotSetup, Setup, to_data
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import PathDesign

@@ -11,9 +11,8 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.restore import restore
-from onpath.app.lab.setups.setup import to_data
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.models.closed_loop.profile_shapes import profile_of

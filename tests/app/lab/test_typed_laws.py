@@ -22,9 +22,9 @@ from onpath.app.lab.commands.scripts import ScriptLaws
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.setup import Setup, to_data
+from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.storage.lab_state import keep, put_back

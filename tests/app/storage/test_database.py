@@ -26,8 +26,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.restore import restore
-from onpath.app.lab.setups.setup import to_data
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.storage import records as database
 from onpath.app.storage import write_behind
 from onpath.app.storage.engine import opened_file, parsed

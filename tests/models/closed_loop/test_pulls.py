@@ -55,7 +55,7 @@ def check(
 def test_nothing_stops_the_follower(
     robot: str, rate: int, counts: float, noise: float, seed: int, path: str
 ) -> None:
-    check(robot, rate, counts, noise, seed, pulls=6, path=path)
+    check(robot, rate, counts, noise, seed, pulls=3, path=path)
 
 
 @pytest.mark.thorough

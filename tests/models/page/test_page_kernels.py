@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from typing import Any
 
 import casadi as ca
@@ -17,6 +19,7 @@ from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.control.poles import channels
 from onpath.models.errors import CodedError, Message
+from onpath.models.evaluated import evaluated
 from onpath.models.page.edit import CHECKS, ROW, edit_scans
 from onpath.models.page.fit import (
     PIECE,
@@ -26,15 +29,15 @@ from onpath.models.page.fit import (
     table_function,
 )
 from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
-from onpath.models.paths.curve_faults import SAMPLES, curve_faults
+from onpath.models.paths.curve_blend import blend
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, open_through
-from onpath.models.paths.curves import TERMS, Curve
-from onpath.models.paths.path_design import PathDesign, presets
+from onpath.models.paths.curves import TERMS, Curve, circle, ellipse, from_terms
+from onpath.models.paths.path_checks import SAMPLES
+from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import changed
-
-pytestmark = pytest.mark.thorough
 
 RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.parameters()).geometry]
 
@@ -66,6 +69,7 @@ def fitted(points: Array, closed: bool) -> tuple[Array, float]:
     return table_function(closed)(sums).full().ravel(order="F"), float(sums[0])
 
 
+@pytest.mark.thorough
 @settings(max_examples=12)
 @given(st.booleans(), st.integers(3, 16), st.randoms(use_true_random=False))
 def test_a_curve_is_fitted_as_in_the_lab(closed: bool, count: int, random: Any) -> None:
@@ -78,6 +82,7 @@ def test_a_curve_is_fitted_as_in_the_lab(closed: bool, count: int, random: Any) 
     np.testing.assert_allclose(table, expected.table(), atol=1e-10)
 
 
+@pytest.mark.thorough
 def test_points_that_coincide_and_short_paths_are_refused() -> None:
     points = presets()["circle"].points.copy()
     points[3] = points[2] + 5e-5
@@ -89,59 +94,127 @@ def test_points_that_coincide_and_short_paths_are_refused() -> None:
     assert spline_function(False, 2)(2 * short.T)[2][0] == 0
 
 
-def found_faults(name: str, curve: Curve) -> dict[str, Array]:
-    """Check -> where it fails, as a page finds it."""
+Checks = Callable[[Curve], dict[str, Array]]
+"""Curve -> check -> where it fails."""
+
+
+@cache
+def page_checks(name: str, closed: bool) -> Checks:
+    """What a page without a server finds wrong with a curve."""
     entry = ROBOTS[name]
     robot = entry.make(entry.parameters())
     assert robot.geometry
-    kind = kind_of("path_following", entry.parameters(), curve)
-    scans, table = edit_scans(robot, kind, robot.geometry), curve.table()
-    table = table.reshape(kind.table_shape, order="F")
-    _, rows = scanned(scans["check"], np.zeros(4), table, np.zeros((0, SAMPLES + 1)), SAMPLES + 1)
+    kind = kind_of("path_following", entry.parameters(), circle(0.05) if closed else LINE)
+    scans = edit_scans(robot, kind, robot.geometry)
+    check = scans["check"].step.mapaccum(SAMPLES + 1)
     i, j = np.triu_indices(SAMPLES, 1)
-    state = np.zeros((7, len(i)))
-    state[4:] = j - i, i, np.full(len(i), rows[2, -1])
-    both = np.vstack([rows[:, :-1], rows[:, 1:]])
-    step = scans["strands"].step.map(len(i))
-    after = step(state, both[:, i], both[:, j])[0].full()
-    for end in (i, j):
-        np.maximum.at(rows[ROW - 1], end, after[0])
-    crossings = after[2:4, after[1] > 0].T
-    found = {
-        check: rows[:2, :SAMPLES][:, bad].T
-        for k, check in enumerate(CHECKS)
-        if (bad := rows[3 + k, :SAMPLES] > 0).any()
-    }
-    if len(crossings):
-        found.pop("narrow", None)
-        found["crosses"] = crossings
+    strands = scans["strands"].step.map(len(i))
+
+    def found(curve: Curve) -> dict[str, Array]:
+        every = np.tile(curve.table(), SAMPLES + 1)
+        _, rows = evaluated(check, np.zeros(4), every, np.zeros((SAMPLES + 1, 0)))
+        state = np.zeros((len(i), 5))
+        state[:, 4] = rows[-1, 2]
+        both = np.hstack([rows[:-1], rows[1:]])
+        after, _ = evaluated(strands, state, both[i], both[j])
+        for end in (i, j):
+            np.maximum.at(rows[:, ROW - 1], end, after[:, 0])
+        crossings = after[after[:, 1] > 0, 2:4]
+        failed = {
+            each: rows[:SAMPLES, :2][bad]
+            for k, each in enumerate(CHECKS)
+            if (bad := rows[:SAMPLES, 3 + k] > 0).any()
+        }
+        if len(crossings):
+            failed.pop("narrow", None)
+            failed["crosses"] = crossings
+        return failed
+
     return found
 
 
+@cache
+def lab_checks(name: str) -> Checks:
+    """What the lab finds wrong with it, for the same robot."""
+    entry = ROBOTS[name]
+    arm, z = entry.make(entry.parameters()).geometry, ca.SX.sym("z", 2)
+    assert arm
+    margin = ca.Function("margin", [z], [arm.margin(z)]).map(SAMPLES)
+
+    def reach(points: Array) -> Array:
+        return evaluated(margin, points)[0][:, 0]
+
+    return lambda curve: {fault.check: fault.points for fault in curve_faults(reach, curve)}
+
+
+LINE = presets()["segment"].curve
+
+
+def agreed(name: str, curve: Curve) -> set[str]:
+    """The checks that a curve fails, the same ones in the same places in lab and page."""
+    lab, page = lab_checks(name)(curve), page_checks(name, curve.closed)(curve)
+    assert list(lab) == list(page)
+    for check, points in lab.items():
+        if check != "crosses":  # a page marks one crossing for each point of the curve
+            np.testing.assert_array_equal(points, page[check])
+    return set(lab)
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", RIGID)
 def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
-    entry, rng, seen = ROBOTS[name], np.random.default_rng(3), set[str]()
-    robot = entry.make(entry.parameters())
-    designs = [presets()[preset] for preset in ("clover", "segment", "figure of eight")]
-    for design in designs:
+    rng, seen = np.random.default_rng(3), set[str]()
+    for design in (presets()[preset] for preset in ("clover", "segment", "figure of eight")):
         for index in range(8):
             moved = design.moved(index % len(design.points), rng.uniform(-0.2, 0.2, 2))
-            seen |= _compared(name, moved, robot.margin)
+            seen |= agreed(name, moved.curve)
     assert seen >= {"outside", "bends", "crosses"}
-    bent = _compared(name, presets()["clover"].moved(0, np.array([0.03, 0.0])), robot.margin)
-    assert bent
+    assert agreed(name, presets()["clover"].moved(0, np.array([0.03, 0.0])).curve)
 
 
-def _compared(name: str, design: PathDesign, reach: Any) -> set[str]:
-    found = found_faults(name, design.curve)
-    expected = curve_faults(reach, design.curve)
-    assert [fault.reason.code for fault in expected] == [f"fault.{check}" for check in found]
-    for fault, points in zip(expected, found.values(), strict=True):
-        if not fault.reason.code.endswith("crosses"):  # there, one for each point of the curve
-            np.testing.assert_allclose(fault.points, points, atol=1e-12)
-    return set(found)
+def wavy(rng: np.random.Generator) -> Curve:
+    """A random closed or open curve, some of them as good paths as the presets."""
+    start = presets()[str(rng.choice(["circle", "clover", "segment", "figure of eight"]))].curve
+    terms = start.terms().copy()
+    terms[:9] += rng.normal(0, rng.choice([0.0, 0.002, 0.02]), terms[:9].shape)
+    return from_terms(start.closed, rng.uniform(0.5, 1.5) * terms)
 
 
+WAIST = [[8, 0], [5, 3], [0, 0.6], [-5, 3], [-8, 0], [-5, -3], [0, -0.6], [5, -3]]
+"""Control points of a path with a waist of 12 mm, [cm]."""
+
+
+def flat(half_width: float) -> Curve:
+    return ellipse((0.06, half_width))
+
+
+def test_lab_and_page_agree_on_both_sides_of_every_threshold() -> None:
+    """Where a check changes its mind on the way from one curve to another, to the last bit."""
+    rng, seen, name = np.random.default_rng(1), set[str](), RIGID[0]
+    pinched, apart = (closed_through(np.array(WAIST) * (0.01, each)) for each in (0.01, 0.03))
+    ways = [(wavy(rng), wavy(rng)) for _ in range(10)]
+    ways += [(circle(0.05), circle(0.15)), (circle(0.05), flat(0.004)), (flat(1e-3), flat(1e-5))]
+    ways += [(apart, pinched), (apart, presets()["figure of eight"].curve)]
+    for begin, end in ways:
+        if begin.closed == end.closed:
+            for check in agreed(name, begin) ^ agreed(name, end):
+                sides = threshold(name, check, begin, end)
+                before, after = (agreed(name, blend(begin, end, share)) for share in sides)
+                assert check in before ^ after
+                seen.add(check)
+    assert seen == {*CHECKS, "crosses"}
+
+
+def threshold(name: str, check: str, begin: Curve, end: Curve) -> tuple[float, float]:
+    """Neighbouring shares of the way between which a check of the lab changes its mind."""
+    low, high, first = 0.0, 1.0, check in lab_checks(name)(begin)
+    while low < (middle := (low + high) / 2) < high:
+        same = (check in lab_checks(name)(blend(begin, end, middle))) == first
+        low, high = (middle, high) if same else (low, middle)
+    return low, high
+
+
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", RIGID)
 def test_the_symbols_of_an_arm_are_its_functions(name: str) -> None:
     entry, rng = ROBOTS[name], np.random.default_rng(0)
@@ -159,6 +232,7 @@ def test_the_symbols_of_an_arm_are_its_functions(name: str) -> None:
 GAINS = st.floats(0, 1000)
 
 
+@pytest.mark.thorough
 @settings(max_examples=30)
 @given(
     st.tuples(GAINS, st.floats(0, 100), st.sampled_from([0.0, 50.0, 3000.0])),
@@ -202,6 +276,7 @@ def test_poles_are_those_of_the_lab(
             assert float(str(said.arguments["seconds"])) == pytest.approx(found[-2], rel=0.06)
 
 
+@pytest.mark.thorough
 def test_the_poles_of_a_new_lab_are_the_double_ones_of_the_text() -> None:
     parameters = replace(FiveBarParameters(), K1=400.0, K2=40.0, K3=0.0)
     layout = settings_layout(ROBOTS["five_bar"].make(parameters).system)

@@ -7,10 +7,11 @@ import pytest
 
 from onpath.models.arrays import Array
 from onpath.models.paths.curve_blend import blend
-from onpath.models.paths.curve_faults import TUBE, curve_faults
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, fourier, segment
 from onpath.models.paths.distance import closest_parameter, near_distances, path_distance
 from onpath.models.paths.frames import LevelPlane, Plane, SlantedPlane, Space
+from onpath.models.paths.path_checks import TUBE
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import in_space, saddle
 from onpath.models.systems.spatial_arm import spatial_arm_robot

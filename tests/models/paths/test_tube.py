@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from onpath.models.arrays import Array
-from onpath.models.paths.curve_faults import TUBE, curve_faults
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve, circle, ellipse, nearest, segment
+from onpath.models.paths.path_checks import TUBE
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
 from onpath.models.paths.tube import curve_frames, local_widths, offset, tube_width

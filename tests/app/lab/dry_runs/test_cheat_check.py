@@ -56,7 +56,13 @@ EXPLOITS = [
         ),
     ),
     *(
-        ("08", task, 12.5, (Action(path=path), STIFF, Action(at=0.5, reset=True), *TWICE))
+        pytest.param(
+            "08",
+            task,
+            12.5,
+            (Action(path=path), STIFF, Action(at=0.5, reset=True), *TWICE),
+            marks=() if path == "clover" else pytest.mark.thorough,
+        )
         for task in ("own-path", "real-one")
         for path in presets()
     ),

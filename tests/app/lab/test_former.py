@@ -1,34 +1,46 @@
-"""What was stored keeps its motion, whatever the defaults are today.
+"""What was kept or shared before is read as it was meant: `app/lab/setups/former.py`.
 
 `tests/data/setups_version_2.json` was written with version 2 of the defaults: the defaults of all
 robots, and share codes with what they meant and where the end-points were after 0.4 s, held from
-0.2 s on.
+0.2 s on. `tests/data/two_laws` was written when a lab had two fixed laws: a database with two labs,
+one in a lesson with a sketch, its truth and two passed tasks, and with a class of two that was sent
+a set-up.
 """
 
 from __future__ import annotations
 
 import dataclasses
 import json
+import sqlite3
 from collections.abc import Mapping
+from contextlib import closing
+from datetime import datetime
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from onpath.app.classroom.class_state import push_data, read_push
+from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setups import former_defaults, setup
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.setups import former, stored
 from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.former_defaults import CHANGES, DEFAULTS, Change
-from onpath.app.lab.setups.setup import RobotSetup, Setup, to_data
+from onpath.app.lab.setups.former import CHANGES, DEFAULTS, Change, former_defaults
+from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.setups.stored import from_data
+from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.storage.lab_state import keep, put_back
+from onpath.app.storage.records import Records, file_url
+from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.flexible_parameters import FlexibleParameters
+from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
-from tests.support.lab import do, new_lab, run, states, y
+from tests.support.lab import do, new_lab, run, states, store, y
 
 WRITTEN = json.loads((ROOT / "tests/data/setups_version_2.json").read_text("utf-8"))
 CASES = {case["name"]: case for case in WRITTEN["cases"]}
@@ -128,15 +140,15 @@ def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
 @pytest.mark.parametrize("robot", WRITTEN["defaults"])
 def test_a_default_that_has_changed_has_a_line(robot: str) -> None:
     present = dataclasses.asdict(ROBOTS[robot].parameters())
-    former = former_defaults.former_defaults(robot, WRITTEN["version"])
+    then = former_defaults(robot, WRITTEN["version"])
     for name, value in WRITTEN["defaults"][robot].items():
-        assert former.get(name, present[name]) == value, f"add a line to CHANGES for {name}"
+        assert then.get(name, present[name]) == value, f"add a line to CHANGES for {name}"
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_change_is_one_line(robot: str, monkeypatch: pytest.MonkeyPatch) -> None:
     old = {"defaults": DEFAULTS, "robot": robot, "benches": {robot: {"parameters": {"K2": 30.0}}}}
-    monkeypatch.setattr(former_defaults, "CHANGES", (*CHANGES, Change(DEFAULTS + 1, "K1", 123.0)))
+    monkeypatch.setattr(former, "CHANGES", (*CHANGES, Change(DEFAULTS + 1, "K1", 123.0)))
     found = from_data(old)
     assert found.robots[robot].parameters == {"K1": 123.0, "K2": 30.0}
     others = [name for name in ROBOTS if name != robot]
@@ -147,15 +159,15 @@ def test_the_value_of_a_version_is_that_before_the_next_change(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     changes = (*CHANGES[:2], Change(3, "K1", 123.0), Change(4, "K3", 77.0), Change(5, "K1", 321.0))
-    monkeypatch.setattr(former_defaults, "CHANGES", changes)
-    values = [former_defaults.former_defaults("five_bar", version) for version in range(1, 6)]
+    monkeypatch.setattr(former, "CHANGES", changes)
+    values = [former_defaults("five_bar", version) for version in range(1, 6)]
     assert [value.get("K1") for value in values] == [123.0, 123.0, 321.0, 321.0, None]
     assert [value.get("K3") for value in values] == [0.0, 77.0, 77.0, None, None]
     assert [change.since for change in CHANGES] == sorted(change.since for change in CHANGES)
 
 
 def test_a_share_code_of_a_newer_version_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(setup, "DEFAULTS", DEFAULTS + 1)
+    monkeypatch.setattr(stored, "DEFAULTS", DEFAULTS + 1)
     code = encode(Setup())
     lab = new_lab()
     do(lab, c.UseShared(code))
@@ -211,3 +223,101 @@ def test_a_new_lab_has_the_integral_and_its_data_say_so() -> None:
 def test_an_invalid_version_is_refused(version: object) -> None:
     with pytest.raises(ValueError):
         from_data({"defaults": version})
+
+
+# A lab had two fixed laws.
+
+DATA = ROOT / "tests" / "data" / "two_laws"
+COURSE = built_in_course()[0]
+LESSON = "01-path-or-timetable"
+DAY = datetime(2026, 11, 23)
+ELLIPSE = (
+    "ONPATH1-VNDISD44OEAHFNRFFBKGVCNRJ7LRYGECAY5EAO4MFXGQZDMB62MBXGUYQD42MIAJCNBYRKAFJAKKMFRCBAITHUEB"
+    "FDKEKEUMVUC5UXKSTYHYZOV45T4MJIS4FSXAIBVRWEY5BEKAAAAA-MX2GGNI"
+)
+"""An ellipse with a point moved and K1 = 900, and K2 = 33 for the two-link arm."""
+SLOW = "ONPATH1-VNDI2L6UXA2UDC22RTMKYBIA-C45SUEI"
+"""The flexible robot in slow motion, drawn four times larger, without copying."""
+
+
+@pytest.fixture
+def records(tmp_path: Path) -> Records:
+    file = tmp_path / "onpath.db"
+    with closing(sqlite3.connect(file)) as raw:
+        raw.executescript((DATA / "database.sql").read_text("utf-8"))
+    return Records(file_url(file), lambda: 1.8e9)
+
+
+@pytest.mark.parametrize("code", [ELLIPSE, SLOW])
+def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
+    lab = new_lab()
+    lab.session.change_law(LEFT, "set_point")
+    do(lab, c.UseShared(code))
+    assert lab.message == lab.words("say.set_up") and lab.session.laws == DEFAULT_LAWS
+    assert decode(code).laws == {} and "laws" not in to_data(capture(lab.session))
+    if code == ELLIPSE:
+        assert lab.session.parameters.K1 == 900.0
+        assert lab.session.earlier["two_link_arm"][0].K2 == 33.0
+    else:
+        session = lab.session
+        told = session.entry.name, session.rate, session.copy, session.exaggeration
+        assert told == ("flexible", 0.5, False, 4.0)
+
+
+def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
+    kept = records.load("c0de01")
+    assert kept is not None
+    lab = Lab(store(), course=COURSE)
+    put_back(lab, kept)
+    assert lab.session.laws == DEFAULT_LAWS and lab.lessons.progress.lesson == LESSON
+    notes = lab.lessons.notes
+    assert notes.answers["1"].values == (0.0, 1.0, 30.0, 2.0)
+    assert max(notes.truths["1"].tracker) > 40 > 5 > max(notes.truths["1"].follower)
+    assert set(notes.tasks) == {"hold-two-seconds", "thirty-times"}
+    page = report(LessonState(COURSE, lab.lessons.progress), "", DAY).decode()
+    assert "Tracker" in page and "Follower" in page
+    do(lab, c.CloseLesson())
+    assert lab.session.parameters.K1 == 900.0 and lab.session.editor.design.name == "edited"
+    records.close()
+
+
+# The plant unit_modes was called as_printed.
+
+OLD, NEW = "as_printed", "unit_modes"
+SHARED = "ONPATH1-VPDBKH3IOEAASQKDSCTQU4QS6NAODHCYDRPVBFEZA6ZAZ2CQFRYV2CYA-NCGI2VI"
+"""Made when the plant had its old name."""
+OLD_PLANT = {"robot": "flexible", "benches": {"flexible": {"parameters": {"plant": OLD}}}}
+
+
+def plant(lab: Lab) -> str:
+    assert isinstance(lab.session.parameters, FlexibleParameters)
+    assert lab.session.robot.system.name == "flexible_five_bar"
+    return lab.session.parameters.plant
+
+
+def test_a_share_code_with_the_old_name_opens() -> None:
+    lab = new_lab()
+    do(lab, c.UseShared(SHARED))
+    assert plant(lab) == NEW
+    own = {
+        "plant": NEW,
+        "alpha": 1.0,
+        "tracker_integral": "on",
+        "at_limit_for": "path_following",
+    }  # as it was then
+    assert capture(lab.session).robots["flexible"].parameters == own
+
+
+def test_an_old_stored_plant_is_restored_and_stored_under_the_new_name() -> None:
+    lab, kept = new_lab(), list[dict[str, Any]]()
+    put_back(lab, {"setup": OLD_PLANT, "lessons": {}, "before": OLD_PLANT})
+    assert plant(lab) == NEW
+    keep(lab, lambda state: kept.append(state()))
+    assert NEW in json.dumps(kept[0]["setup"]) and OLD not in json.dumps(kept[0]["setup"])
+
+
+def test_a_teacher_s_set_up_with_the_old_name_is_accepted() -> None:
+    lab = new_lab()
+    lab.post(TakeSetup(from_data(OLD_PLANT)))
+    lab.drain()
+    assert plant(lab) == NEW
