@@ -38,8 +38,9 @@ from onpath.lessons.task_schema import (
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN, short_name
+from onpath.models.control.settable import specs, values_of
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 TINY = 1e-9  # smallest divisor of a ratio
 INSTANT = 1e-6  # [s], tolerance of durations, shorter than any tick
@@ -218,7 +219,8 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own |= {"length": record.length()}
     own["path"] = record.path if record.path in presets() else OWN
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
-    value = own.get(check.name, getattr(record.parameters, check.name, None))
+    own = values_of(record.parameters) | own
+    value = own.get(check.name)
     equals, wanted = setting_wanted(check, record.parameters, words)
     if equals is not None:
         passed = _same(value, equals)

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.setups.capture import capture_path, kept
 from onpath.app.lab.setups.setup import RobotSetup, Setup
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import PathDesign, drawn, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import specs
 
 CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=50)
 PRESETS = presets()

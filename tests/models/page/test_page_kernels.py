@@ -16,6 +16,7 @@ from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.control.poles import channels
+from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError, Message
 from onpath.models.page.edit import CHECKS, ROW, edit_scans
 from onpath.models.page.fit import (
@@ -32,7 +33,6 @@ from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import changed
 
 pytestmark = pytest.mark.thorough
 
