@@ -94,6 +94,6 @@ def test_it_is_exported_with_sliders_for_its_gains(tmp_path: Path) -> None:
     assert run_command(["export", "figure", str(file), "--law", LAW, "--set", "reach=3"]) == 0
     assert "Sliding mode" in file.read_text("utf-8")
     figure = chosen("five_bar", (LAW,), {"circle": circle(0.05)}, {"reach": 3.0})
-    assert {"slope", "reach"} <= {*figure.sliders}
+    assert {"boundary", "reach"} <= {*figure.sliders}
     german = slider_data(figure, "reach", Words("de"))
     assert (german["label"], german["value"]) == ("Reach", 3.0) and german["place"] > 0
