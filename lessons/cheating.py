@@ -17,10 +17,10 @@ from onpath.lessons.task_schema import Only, Reference, Task
 from onpath.lessons.vocabulary.names import one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import specs
 
 LEAST = 8.0
 """Shortest time that a cheat is given, [s]."""

@@ -38,6 +38,7 @@ from onpath.lessons.task_schema import (
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN, short_name
+from onpath.models.control.settable import values_of
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.parameters import Parameters
 
@@ -218,7 +219,8 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own |= {"length": record.length()}
     own["path"] = record.path if record.path in presets() else OWN
     own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
-    value = own.get(check.name, getattr(record.parameters, check.name, None))
+    own = values_of(record.parameters) | own
+    value = own.get(check.name)
     equals, wanted = setting_wanted(check, words)
     if equals is not None:
         passed = _same(value, equals)

@@ -6,8 +6,9 @@ from onpath.lessons.benches import law_label
 from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 OTHERS = {
     "path": "check.path",

@@ -21,8 +21,8 @@ from onpath.lessons.schema import LabLink, Text
 from onpath.lessons.vocabulary.fences import fence_faults
 from onpath.lessons.vocabulary.setups import action_faults
 from onpath.models.control.benches import BENCHES
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 
 HTML = re.compile(
     r"</?[A-Za-z][\w-]*(\s+[\w:-]+(\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s<>\"']+))?)*\s*/?>|<!--"

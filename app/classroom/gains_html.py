@@ -11,8 +11,8 @@ from onpath.app.classroom.class_sync import GAINS
 from onpath.app.common.templates import render
 from onpath.lessons.labels import setting_label
 from onpath.lessons.words import Words
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import FIVE_BAR
-from onpath.models.systems.parameters import specs
 
 PAIRS = (("K1", "K2"), ("K4", "K5"), ("K1", "K3"), ("K1", "K5"))
 """Gains along the two axes: which spring goes with which damping first."""

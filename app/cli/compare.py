@@ -80,20 +80,19 @@ class CompareCommand:
 
     def _contest(self) -> Contest:
         from onpath.app.cli.experiment import assignments
+        from onpath.models.control.settable import with_values
         from onpath.models.paths.curves import circle
         from onpath.models.studies.comparison import Contest
         from onpath.models.systems.catalogue import ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
-        from onpath.models.systems.parameters import changed, rise_of
+        from onpath.models.systems.parameters import rise_of
 
         if self.robot not in ROBOTS:
             raise unknown_name(self.robot, list(ROBOTS), "robot")
         if not 0.005 <= self.radius <= 0.12:
             raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
         entry = ROBOTS[self.robot]
-        parameters = entry.parameters()
-        for name, value in assignments(self.set).items():
-            parameters = changed(parameters, name, value)
+        parameters = with_values(entry.parameters(), assignments(self.set))
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")
         if parameters.speed_profile != "constant":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -64,9 +64,9 @@ class FigureCommand:
 
     def _rank(self) -> dict[str, Any]:
         from onpath.app.exports.rank_figure import draw_rank_figure, rank_summary
+        from onpath.models.control.settable import changed
         from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
-        from onpath.models.systems.parameters import changed
 
         name = self.robot or FIVE_BAR.name
         if name not in ROBOTS:
@@ -85,11 +85,11 @@ class FigureCommand:
 
 def _matters_at_rest(entry: RobotEntry, parameters: Parameters, name: str) -> bool:
     """Whether a parameter selects another robot, or changes the numbers of its model."""
-    from onpath.models.systems.parameters import specs
+    from onpath.models.control.settable import changed, specs
 
     spec, robot = specs(parameters)[name], entry.make(parameters)
     for value in spec.options or (spec.low, spec.high):
-        other = replace(parameters, **{name: value})
+        other = changed(parameters, name, value)
         if entry.make(other) is not robot:
             return True
         if (robot.plant(other) != robot.plant(parameters)).any():

@@ -69,24 +69,11 @@ class CheckLessons:
 class ListNames:
     """List all names that a lesson may use: robots, parameters, paths, laws, plots, quantities…"""
 
-    into: Path | None = None
-    """A Markdown file, such as lessons/README.md, in which to replace the lists."""
-
     def run(self) -> int:
-        """Print the lists, or write them.
+        """Print the lists."""
+        from onpath.lessons.vocabulary.lists import names_markdown
 
-        Raises:
-            ValueError: the file does not say where they are.
-        """
-        from onpath.app.common.atomic_file import whole_file
-        from onpath.lessons.vocabulary.lists import names_markdown, with_names
-
-        if self.into is None:
-            print(names_markdown(), end="")
-        else:
-            text = with_names(self.into.read_text("utf-8"))
-            with whole_file(self.into) as path:
-                path.write_text(text, "utf-8")
+        print(names_markdown(), end="")
         return 0
 
 

@@ -17,9 +17,10 @@ from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.control.settable import specs, values_of
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 ALWAYS = ("K1", "K2", "K3", "K4", "K5", "speed")
 """Parameters that are told in any case; the others only if they are not those of a new lab."""
@@ -97,15 +98,13 @@ def history_figure(
 
 def parameter_line(parameters: Parameters, usual: Parameters, words: Words) -> str:
     """The gains, the speed, and whatever else is not as in a new lab, in one line."""
-    known = specs(parameters)
-    names = [
-        name
-        for name in known
-        if name in ALWAYS or getattr(parameters, name) != getattr(usual, name)
-    ]
-    return ", ".join(
-        _written(name, known[name], getattr(parameters, name), words) for name in names
-    )
+    known, normal = specs(parameters), values_of(usual)
+    shown = {
+        name: value
+        for name, value in values_of(parameters).items()
+        if name in ALWAYS or value != normal[name]
+    }
+    return ", ".join(_written(name, known[name], value, words) for name, value in shown.items())
 
 
 def _written(name: str, spec: Spec, value: float | int | str, words: Words) -> str:

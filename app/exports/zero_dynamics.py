@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from onpath.models.control.settable import changed, specs
 from onpath.models.systems.beam import MOST_MODES, beam_modes
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
-from onpath.models.systems.parameters import changed, specs
 from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dynamics, natural_rate
 
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)

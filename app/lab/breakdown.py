@@ -9,9 +9,10 @@ import numpy as np
 from onpath.app.lab.plot_samples import samples_of
 from onpath.app.lab.segments import Instant, Segment
 from onpath.app.lab.session import Session
+from onpath.models.control.settable import values_of
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 SPAN, LASTS = 0.3, 6.0
 """Simulated time that is shown again, at most, and how long that takes, [s]."""
@@ -76,7 +77,8 @@ class Breakdown:
         if self._well is None or self._well[0] != session.entry.name or not _stopped(session):
             return {}
         well, now = self._well[1], session.parameters
-        return {n: getattr(well, n) for n in specs(well) if getattr(well, n) != getattr(now, n)}
+        before, present = values_of(well), values_of(now)
+        return {name: value for name, value in before.items() if value != present[name]}
 
     def use_earlier_settings(self, session: Session) -> None:
         """Reset, with the settings that did well.

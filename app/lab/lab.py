@@ -28,10 +28,10 @@ from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.control.forecast import forecasts
+from onpath.models.control.settable import changed
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.law_parameters import DISTANCE, LEVEL_SET
-from onpath.models.systems.parameters import changed
 
 MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
 

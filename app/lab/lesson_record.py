@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -18,6 +17,7 @@ from onpath.lessons.record import ROBOTS, Happening, Record
 from onpath.lessons.task_schema import Better, Once
 from onpath.models.arrays import Array
 from onpath.models.control.benches import LEFT
+from onpath.models.control.settable import values_of
 from onpath.models.layout import Layout
 from onpath.models.systems.law_parameters import LEVEL_SET
 
@@ -47,7 +47,7 @@ class Beginning:
 def settings_of(session: Session) -> dict[str, object]:
     """Everything that a task may ask to be left as it is, by the names of `Only`."""
     return {
-        **dataclasses.asdict(session.parameters),
+        **values_of(session.parameters),
         **session.chosen_laws,
         "path": session.editor.design.name,
         "robot": session.entry.name,

@@ -22,6 +22,7 @@ from onpath.app.notebook.arguments import (
 )
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
+from onpath.models.control.settable import specs, values_of
 from onpath.models.errors import CodedError
 from onpath.models.paths import curves
 from onpath.models.paths.curve_faults import own_faults
@@ -33,7 +34,6 @@ from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.unused import unused_text
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec, unknown_name
-from onpath.models.systems.parameters import specs
 
 
 def simulate(
@@ -203,11 +203,8 @@ def parameters(robot: str = "five_bar") -> dict[str, str]:
     '400, 0 to 2500 1/s²: spring that pulls back onto the path'
     """
     entry = entry_named(robot)
-    defaults, own = entry.parameters(), specs(entry.parameters)
-    return {
-        public: _described(own[name], getattr(defaults, name))
-        for public, name in _names(entry).items()
-    }
+    defaults, own = values_of(entry.parameters()), specs(entry.parameters)
+    return {public: _described(own[name], defaults[name]) for public, name in _names(entry).items()}
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:

@@ -17,8 +17,8 @@ from onpath.app.scene.captions import Captions, spoken
 from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 
 MOST = 2
 """Settings that are named on a button."""

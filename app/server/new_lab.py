@@ -7,8 +7,8 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Belongings
 from onpath.lessons.course import Course
+from onpath.models.control.settable import with_values
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed
 
 
 def new_lab(store: LoopCache, course: Course) -> Lab:
@@ -16,9 +16,6 @@ def new_lab(store: LoopCache, course: Course) -> Lab:
     lab = Lab(store, course=course)
     session = lab.session
     for name, entry in ROBOTS.items():
-        parameters = entry.parameters()
-        for parameter, value in NEWCOMER.items():
-            parameters = changed(parameters, parameter, value)
-        session.earlier[name] = Belongings(parameters)
+        session.earlier[name] = Belongings(with_values(entry.parameters(), NEWCOMER))
     session.set_parameters(session.earlier.pop(session.entry.name).parameters)
     return lab

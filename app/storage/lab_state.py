@@ -11,7 +11,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.former import with_paths_of_today
 from onpath.app.lab.setups.setup import Setup
-from onpath.app.lab.setups.stored import from_data, to_data
+from onpath.app.lab.setups.stored import from_data, to_data, without_absent_laws
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes
@@ -79,20 +79,26 @@ def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:
 
 
 def put_back(lab: Lab, state: LabState) -> None:
-    """Restore a stored state into a new lab; the user is told if its path is refused today.
+    """Restore a stored state into a new lab; the user is told what of it is not possible today.
 
     Raises:
         ValueError: the state is invalid; the lab is then unchanged.
     """
-    setup, refused = with_paths_of_today(from_data(state.get("setup")))
+    data, absent = without_absent_laws(state.get("setup"))
+    setup, refused = with_paths_of_today(from_data(data))
     progress = read_progress(state.get("lessons"))
-    before = state.get("before")
+    before = without_absent_laws(state.get("before"))[0]
     earlier = with_paths_of_today(from_data(before))[0] if before else None
     lab.set_up(setup)
     lab.lessons.resume(progress, earlier, lab)
+    told = list[str]()
     if refused:
         reasons = "; ".join(map(lab.words.sentence, refused))
-        lab.show_message(lab.words("say.path_of_then", reasons=reasons), "warning")
+        told.append(lab.words("say.path_of_then", reasons=reasons))
+    if absent:
+        told.append(lab.words("say.laws_of_then", names=", ".join(absent)))
+    if told:
+        lab.show_message(" ".join(told), "warning")
 
 
 def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:

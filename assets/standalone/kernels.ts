@@ -1,6 +1,7 @@
 // The functions of the WebAssembly module, and the memory on which they work.
 
 import type { Point } from "./data"
+import { mathematics } from "./mathematics"
 
 type Exported = (...places: number[]) => void
 
@@ -20,9 +21,8 @@ export class Kernels {
     static async from(text: string): Promise<Kernels> {
         const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
         const memory = new WebAssembly.Memory({ initial: PAGES })
-        const { sin, cos, log, tanh, acos, atan2 } = Math
         const { instance } = await WebAssembly.instantiate(bytes, {
-            Math: { memory, sin, cos, log, tanh, acos, atan2 },
+            Math: { memory, ...mathematics },
         })
         return new Kernels(instance.exports as unknown as Record<string, Exported>, memory)
     }

@@ -1373,6 +1373,7 @@ error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem ne
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
 error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
 error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+say-laws_of_then = Dieses OnPath hat diese Gesetze oder Verstärkungen nicht, die mit diesem Labor gespeichert wurden: { $names }. Es läuft ohne sie weiter.
 say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
 say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen: { $reason }
 

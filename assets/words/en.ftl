@@ -1091,6 +1091,7 @@ error-database_tables_newer = its tables ({ $revision }) are of a newer OnPath, 
 error-database_newer = it is of version { $version }, made by a newer OnPath, which is needed here
 error-lab_newer = this lab was kept by a newer OnPath
 error-lab_unreadable = what was kept of this lab cannot be read
+say-laws_of_then = This OnPath does not have these laws or gains, which were kept with this lab: { $names }. It goes on without them.
 say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
 

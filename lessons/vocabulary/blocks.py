@@ -25,9 +25,9 @@ from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
 from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
-from onpath.models.systems.parameters import specs
 
 
 def prediction_faults(prediction: Prediction) -> Iterator[str]:

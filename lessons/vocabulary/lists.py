@@ -1,4 +1,4 @@
-"""All names that a lesson may use, as Markdown, which is a part of lessons/README.md."""
+"""All names that a lesson may use, as Markdown."""
 
 from __future__ import annotations
 
@@ -11,13 +11,10 @@ from onpath.lessons.task_schema import During, Stat
 from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS, EVENTS
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import specs, value_of
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import specs
-
-BEGIN, END = "<!-- names: begin -->\n", "<!-- names: end -->\n"
-"""Lines of a file between which the lists stand."""
 
 
 def names_markdown() -> str:
@@ -40,19 +37,6 @@ def names_markdown() -> str:
     return "\n".join([*lines, "", *heads, *_parameter_rows()]) + "\n"
 
 
-def with_names(text: str) -> str:
-    """A text in which the lists between the marks are those of today.
-
-    Raises:
-        ValueError: it has no such marks.
-    """
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not begin or not end:
-        raise ValueError(f"there must be the lines {BEGIN.strip()} and {END.strip()}")
-    return f"{before}{BEGIN}\n{names_markdown()}\n{END}{after}"
-
-
 def _told(each: tuple[str, str]) -> str:
     name, label = each
     return f"`{name}` {label}".rstrip()
@@ -63,7 +47,7 @@ def _parameter_rows() -> Iterator[str]:
     found = defaultdict[tuple[str, ...], list[str]](list)
     for robot, entry in ROBOTS.items():
         for name, spec in specs(entry.parameters).items():
-            default = _value(getattr(entry.parameters(), name))
+            default = _value(value_of(entry.parameters(), name))
             found[name, spec.label, spec.unit, _values(spec), default].append(robot)
     for (name, label, unit, values, default), robots in found.items():
         where = "" if len(robots) == len(ROBOTS) else f" ({', '.join(robots)})"

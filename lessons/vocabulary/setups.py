@@ -30,11 +30,12 @@ from onpath.lessons.vocabulary.names import (
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.closed_loop.start import Start, check_start
 from onpath.models.control.benches import checked_laws
+from onpath.models.control.settable import changed, specs, with_values
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
-from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters
 
 
 def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
@@ -130,8 +131,7 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
     design = presets().get(name)
     if design is None:
         return
-    for setting, value in scene.set.items():
-        parameters = changed(parameters, setting, value)
+    parameters = with_values(parameters, scene.set)
     try:
         check_level_set(parameters, design.curve)
     except ValueError as error:

@@ -157,7 +157,7 @@ def law_view(
         task=task,
         clock=clock,
         gains=Gains(*[settings[name] for name in GAINS]),
-        own_gains={name: settings[name] for name in law.gains if name not in GAINS},
+        own_gains={gain.name: settings[gain.name] for gain in law.own_gains},
         integral=state["integral"],
         lag=lag(system, kind, settings),
         measured=measure(system, kind, state, settings)[:2],

@@ -1,14 +1,117 @@
-"""CasADi's scalar operations, of which the compilers of loops translate some."""
+"""CasADi's scalar operations, and what each is in the languages to which loops are translated.
+
+In LLVM each gives the same bits as in CasADi's virtual machine, since both call the same C library.
+In WebAssembly all but the functions of `LIBRARY` do; those are the browser's, and may differ in the
+last bit, hypot in the last two. `fmod` and `remainder` are exact everywhere.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import casadi as ca
 
 from onpath.models.errors import CodedError
 
 
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """An operation in both languages.
+
+    Attributes:
+        llvm: instructions; {0} and {1} are the operands, {v} is the result.
+        wasm: stack code; 0 and 1 are the operands, =x is a constant. Empty: there is none.
+    """
+
+    llvm: str
+    wasm: str
+
+    @property
+    def operands(self) -> int:
+        """How many operands it has, one or two."""
+        return 2 if "{1}" in self.llvm else 1
+
+
+_CIRCULAR = ("sin", "cos", "tan", "asin", "acos", "atan")
+_OTHERS = ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "expm1", "log1p", "erf")
+_OF_TWO = ("atan2", "pow", "hypot", "fmod", "remainder")
+LIBRARY = {**{name: 1 for name in (*_CIRCULAR, *_OTHERS)}, **{name: 2 for name in _OF_TWO}}
+"""Functions of the C library, and how many arguments each takes."""
+MATHEMATICS = tuple(name for name in LIBRARY if name != "erf")
+"""Those that a page provides to WebAssembly: `mathematics` in assets/standalone/mathematics.ts."""
+
+
+def _called(name: str) -> Operation:
+    """A call of a function of the library."""
+    places = range(LIBRARY[name])
+    given = ", ".join(f"double {{{i}}}" for i in places)
+    stack = " ".join([*map(str, places), name]) if name in MATHEMATICS else ""
+    return Operation(f"{{v}} = call double @{name}({given})", stack)
+
+
+def _compared(llvm: str, wasm: str) -> Operation:
+    """A comparison, 0 or 1."""
+    truth = f"{{v}}.is = fcmp {llvm}\n  {{v}} = uitofp i1 {{v}}.is to double"
+    return Operation(truth, f"{wasm} f64.convert_i32_u")
+
+
+def _connected(word: str) -> Operation:
+    """Two operands, connected by "and" or "or"; whatever is not 0 is true, also NaN."""
+    llvm = [f"{{v}}.{i} = fcmp une double {{{i}}}, 0.0" for i in (0, 1)]
+    llvm += [f"{{v}}.is = {word} i1 {{v}}.0, {{v}}.1", "{v} = uitofp i1 {v}.is to double"]
+    return Operation("\n  ".join(llvm), f"0 =0 f64.ne 1 =0 f64.ne i32.{word} f64.convert_i32_u")
+
+
+_SIGN = """{v}.up = fcmp ogt double {0}, 0.0
+  {v}.down = fcmp olt double {0}, 0.0
+  {v}.not = select i1 {v}.up, double 1.0, double {0}
+  {v} = select i1 {v}.down, double -1.0, double {v}.not"""
+_IF_ELSE_ZERO = """{v}.is = fcmp une double {0}, 0.0
+  {v} = select i1 {v}.is, double {1}, double 0.0"""
+
+OPERATIONS = {
+    ca.OP_ADD: Operation("{v} = fadd double {0}, {1}", "0 1 f64.add"),
+    ca.OP_SUB: Operation("{v} = fsub double {0}, {1}", "0 1 f64.sub"),
+    ca.OP_MUL: Operation("{v} = fmul double {0}, {1}", "0 1 f64.mul"),
+    ca.OP_DIV: Operation("{v} = fdiv double {0}, {1}", "0 1 f64.div"),
+    ca.OP_NEG: Operation("{v} = fneg double {0}", "0 f64.neg"),
+    ca.OP_INV: Operation("{v} = fdiv double 1.0, {0}", "=1 0 f64.div"),
+    ca.OP_SQ: Operation("{v} = fmul double {0}, {0}", "0 0 f64.mul"),
+    ca.OP_TWICE: Operation("{v} = fadd double {0}, {0}", "0 0 f64.add"),
+    ca.OP_SQRT: Operation("{v} = call double @llvm.sqrt.f64(double {0})", "0 f64.sqrt"),
+    ca.OP_FABS: Operation("{v} = call double @llvm.fabs.f64(double {0})", "0 f64.abs"),
+    ca.OP_FLOOR: Operation("{v} = call double @llvm.floor.f64(double {0})", "0 f64.floor"),
+    ca.OP_CEIL: Operation("{v} = call double @llvm.ceil.f64(double {0})", "0 f64.ceil"),
+    ca.OP_COPYSIGN: Operation(
+        "{v} = call double @llvm.copysign.f64(double {0}, double {1})", "0 1 f64.copysign"
+    ),
+    ca.OP_SIGN: Operation(_SIGN, "=-1 =1 0 =0 0 f64.lt select 0 =0 f64.lt select"),
+    # of a NaN and a number the number, of equal ones the first
+    ca.OP_FMIN: Operation(
+        "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
+        "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
+    ),
+    ca.OP_FMAX: Operation(
+        "{v} = call double @llvm.maxnum.f64(double {0}, double {1})",
+        "0 1 1 0 f64.le 1 1 f64.ne i32.or select",
+    ),
+    ca.OP_LT: _compared("olt double {0}, {1}", "0 1 f64.lt"),
+    ca.OP_LE: _compared("ole double {0}, {1}", "0 1 f64.le"),
+    ca.OP_EQ: _compared("oeq double {0}, {1}", "0 1 f64.eq"),
+    ca.OP_NE: _compared("une double {0}, {1}", "0 1 f64.ne"),
+    ca.OP_NOT: _compared("oeq double {0}, 0.0", "0 =0 f64.eq"),
+    ca.OP_AND: _connected("and"),
+    ca.OP_OR: _connected("or"),
+    ca.OP_IF_ELSE_ZERO: Operation(_IF_ELSE_ZERO, "1 =0 0 =0 f64.ne select"),
+    ca.OP_CONSTPOW: _called("pow"),
+    **{getattr(ca, f"OP_{name.upper()}"): _called(name) for name in LIBRARY},
+}
+"""CasADi's number of an operation -> the operation. Of those on scalars, erfinv and printme are
+lacking."""
+
+
 def no_translation(owner: str, operation: int, target: str) -> CodedError:
-    """The error of an operation that a compiler does not translate.
+    """The error of an operation that cannot be translated.
 
     Args:
         owner: the law or function that contains it.

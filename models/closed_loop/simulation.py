@@ -148,7 +148,8 @@ def settings_vector(
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
     return layouts.settings.pack(
-        {name: getattr(parameters, name) for name in (*GAINS, *OWN_GAINS)}
+        {name: getattr(parameters, name) for name in GAINS}
+        | {name: gain.of(parameters) for name, gain in OWN_GAINS.items()}
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),

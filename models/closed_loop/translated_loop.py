@@ -16,41 +16,14 @@ import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
-from onpath.models.closed_loop.operations import no_translation
+from onpath.models.closed_loop.operations import LIBRARY, OPERATIONS, no_translation
 from onpath.models.errors import CodedError
 
 if TYPE_CHECKING:
     from llvmlite.binding import TargetMachine
 
-_LIBRARY = ("sin", "cos", "log", "tanh")  # LLVM calls these from the C library
-OPERATIONS = {
-    ca.OP_ADD: "{v} = fadd double {0}, {1}",
-    ca.OP_SUB: "{v} = fsub double {0}, {1}",
-    ca.OP_MUL: "{v} = fmul double {0}, {1}",
-    ca.OP_DIV: "{v} = fdiv double {0}, {1}",
-    ca.OP_NEG: "{v} = fneg double {0}",
-    ca.OP_INV: "{v} = fdiv double 1.0, {0}",
-    ca.OP_SQ: "{v} = fmul double {0}, {0}",
-    ca.OP_TWICE: "{v} = fadd double {0}, {0}",
-    ca.OP_SQRT: "{v} = call double @llvm.sqrt.f64(double {0})",
-    ca.OP_SIN: "{v} = call double @llvm.sin.f64(double {0})",
-    ca.OP_COS: "{v} = call double @llvm.cos.f64(double {0})",
-    ca.OP_LOG: "{v} = call double @llvm.log.f64(double {0})",
-    ca.OP_TANH: "{v} = call double @tanh(double {0})",
-    ca.OP_FABS: "{v} = call double @llvm.fabs.f64(double {0})",
-    ca.OP_FLOOR: "{v} = call double @llvm.floor.f64(double {0})",
-    ca.OP_FMIN: "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
-    ca.OP_FMAX: "{v} = call double @llvm.maxnum.f64(double {0}, double {1})",
-    ca.OP_LT: "{v}.is = fcmp olt double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
-    ca.OP_LE: "{v}.is = fcmp ole double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
-    ca.OP_EQ: "{v}.is = fcmp oeq double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
-    ca.OP_NE: "{v}.is = fcmp une double {0}, {1}\n  {v} = uitofp i1 {v}.is to double",
-    ca.OP_NOT: "{v}.is = fcmp oeq double {0}, 0.0\n  {v} = uitofp i1 {v}.is to double",
-    ca.OP_IF_ELSE_ZERO: "{v}.is = fcmp une double {0}, 0.0\n"
-    "  {v} = select i1 {v}.is, double {1}, double 0.0",
-}
 _LOOP = """
-declare double @tanh(double)
+{library}
 
 define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
                                 ptr noalias %log, i64 %ticks) {{
@@ -111,14 +84,16 @@ def translate(kernel: Kernel) -> str:
     tick += [line for k in range(columns) for line in _product(rows, terms, k)]
     inputs, outputs = (*given, "%values"), ("%state", "%row")
     tick += instructions(kernel.tick(), inputs, outputs, "v", kernel.law)
+    text = "\n  ".join(tick)
     return _LOOP.format(
+        library="\n".join(map(_declared, _functions(text))),
         basis=terms * columns,
         values=rows * columns,
         settings=kernel.settings.size,
         curve=rows * terms,
         state=kernel.state.size,
         log=kernel.log.size,
-        tick="\n  ".join(tick),
+        tick=text,
     )
 
 
@@ -158,7 +133,7 @@ def instructions(
             given = [values[operand] for operand in operands]
             if code not in OPERATIONS:
                 raise no_translation(owner, code, "LLVM")
-            works.append(OPERATIONS[code].format(*given, v=v))
+            works.append(OPERATIONS[code].llvm.format(*given, v=v))
             values[into[0]] = v
     return [*reads, *works, *writes]
 
@@ -191,6 +166,16 @@ def _product(rows: int, terms: int, column: int) -> list[str]:
     ]
 
 
+def _functions(text: str) -> list[str]:
+    """The functions of the C library that instructions call."""
+    return [name for name in LIBRARY if f"@{name}(" in text]
+
+
+def _declared(name: str) -> str:
+    """A function that depends on its arguments only, so that sin and cos can be found together."""
+    return f"declare double @{name}({', '.join(['double'] * LIBRARY[name])}) memory(none)"
+
+
 def _place(v: str, matrix: str, index: int) -> str:
     return f"{v}.at = getelementptr double, ptr {matrix}, i64 {index}"
 
@@ -211,12 +196,13 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    module = llvm.parse_assembly(translate(kernel), llvm.create_context())
+    text = translate(kernel)
+    module = llvm.parse_assembly(text, llvm.create_context())
     code = _machine().emit_object(module)
     # The engine's own module is empty and in the global context: any other one is freed too early.
     engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), _machine())
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
-    missing = [name for name in _LIBRARY if llvm.address_of_symbol(name) is None]
+    missing = [name for name in _functions(text) if llvm.address_of_symbol(name) is None]
     if missing:  # otherwise LLVM would abort the process
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()

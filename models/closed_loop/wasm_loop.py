@@ -1,8 +1,7 @@
 """Translates kernels and other CasADi functions to WebAssembly, for pages without a server.
 
-The scalar instructions are translated one by one, like those of `translated_loop.py`. Each rounds
-exactly as in CasADi's virtual machine, except for sin, cos, log, tanh, acos and atan2, which are
-the browser's and may differ in the last bit.
+The scalar instructions are translated one by one, like those of `translated_loop.py`; see
+`operations.py`.
 """
 
 from __future__ import annotations
@@ -15,41 +14,11 @@ from types import MappingProxyType
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.operations import no_translation
-from onpath.models.closed_loop.wasm_module import MATHEMATICS, Part, WasmFunction, wasm_module
+from onpath.models.closed_loop.operations import MATHEMATICS, OPERATIONS, no_translation
+from onpath.models.closed_loop.wasm_module import Part, WasmFunction, wasm_module
 
 DOUBLE = 8  # bytes
-OPERATIONS = {
-    ca.OP_ADD: "0 1 f64.add",
-    ca.OP_SUB: "0 1 f64.sub",
-    ca.OP_MUL: "0 1 f64.mul",
-    ca.OP_DIV: "0 1 f64.div",
-    ca.OP_NEG: "0 f64.neg",
-    ca.OP_INV: "=1 0 f64.div",
-    ca.OP_SQ: "0 0 f64.mul",
-    ca.OP_TWICE: "0 0 f64.add",
-    ca.OP_SQRT: "0 f64.sqrt",
-    ca.OP_SIN: "0 sin",
-    ca.OP_COS: "0 cos",
-    ca.OP_LOG: "0 log",
-    ca.OP_TANH: "0 tanh",
-    ca.OP_ACOS: "0 acos",
-    ca.OP_ATAN2: "0 1 atan2",
-    ca.OP_FABS: "0 f64.abs",
-    ca.OP_FLOOR: "0 f64.floor",
-    ca.OP_FMIN: "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
-    ca.OP_FMAX: "0 1 1 0 f64.le 1 1 f64.ne i32.or select",
-    ca.OP_LT: "0 1 f64.lt f64.convert_i32_u",
-    ca.OP_LE: "0 1 f64.le f64.convert_i32_u",
-    ca.OP_EQ: "0 1 f64.eq f64.convert_i32_u",
-    ca.OP_NE: "0 1 f64.ne f64.convert_i32_u",
-    ca.OP_NOT: "0 =0 f64.eq f64.convert_i32_u",
-    ca.OP_AND: "0 =0 f64.ne 1 =0 f64.ne i32.and f64.convert_i32_u",
-    ca.OP_IF_ELSE_ZERO: "1 =0 0 =0 f64.ne select",
-}
-"""Stack code of each operation: 0 and 1 are its operands, =x a constant. fmin and fmax return the
-other operand of a NaN, and the first of equal ones."""
-_CODES = {code: text.split() for code, text in OPERATIONS.items()}
+_CODES = {code: each.wasm.split() for code, each in OPERATIONS.items() if each.wasm}
 _PLACES = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)  # what is no operation
 
 

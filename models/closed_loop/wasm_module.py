@@ -11,13 +11,12 @@ import struct
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from onpath.models.closed_loop.operations import LIBRARY, MATHEMATICS
+
 Part = str | tuple[str, int | float]
 """An instruction, and its number: of a local variable, a function, a depth, or a constant. Those of
 f64.load and f64.store are offsets in bytes."""
 
-MATHEMATICS = ("sin", "cos", "log", "tanh", "acos", "atan2")
-"""Functions that a module imports from "Math": the first numbers of ("call", number)."""
-_OF_TWO = ("atan2",)
 _PLAIN = {
     "end": 0x0B,
     "select": 0x1B,
@@ -32,12 +31,14 @@ _PLAIN = {
     "i32.or": 0x72,
     "f64.abs": 0x99,
     "f64.neg": 0x9A,
+    "f64.ceil": 0x9B,
     "f64.floor": 0x9C,
     "f64.sqrt": 0x9F,
     "f64.add": 0xA0,
     "f64.sub": 0xA1,
     "f64.mul": 0xA2,
     "f64.div": 0xA3,
+    "f64.copysign": 0xA6,
     "f64.convert_i32_u": 0xB8,
 }
 _NUMBERED = {"br_if": 0x0D, "call": 0x10, "local.get": 0x20, "local.set": 0x21}
@@ -66,8 +67,8 @@ class WasmFunction:
 def wasm_module(functions: Sequence[WasmFunction]) -> bytes:
     """A module that exports these functions and works on imported memory.
 
-    It imports "memory" and the functions `MATHEMATICS` from "Math". Its own functions have the
-    numbers after those, in their order.
+    It imports "memory" and the functions `MATHEMATICS` from "Math": the first numbers of ("call",
+    number). Its own functions have the numbers after those, in their order.
     """
     kinds = sorted({function.pointers for function in functions})
     unary = _FUNCTION + _list([_F64]) + _list([_F64])
@@ -75,7 +76,7 @@ def wasm_module(functions: Sequence[WasmFunction]) -> bytes:
     taken = [_FUNCTION + _list([_I32] * count) + _list([]) for count in kinds]
     memory = _name("Math") + _name("memory") + b"\x02\x00" + _whole(1)
     imports = [
-        _name("Math") + _name(name) + b"\x00" + _whole(name in _OF_TWO) for name in MATHEMATICS
+        _name("Math") + _name(name) + b"\x00" + _whole(LIBRARY[name] - 1) for name in MATHEMATICS
     ]
     own = [_whole(2 + kinds.index(function.pointers)) for function in functions]
     exports = [

@@ -36,6 +36,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.start import driven_rates
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import LAWS, law_named
+from onpath.models.control.settable import values_of
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.parameters import Parameters, time_step
@@ -307,7 +308,7 @@ def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome
     """The content of `--json`; numbers have nine significant digits."""
     return {
         "robot": contest.entry.name,
-        "parameters": dataclasses.asdict(contest.parameters),
+        "parameters": values_of(contest.parameters),
         "laws": {
             law: {
                 name: [_rounded(dataclasses.asdict(o)) for o in outcomes]

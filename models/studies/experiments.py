@@ -29,6 +29,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
 from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.settable import changed, specs
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve, circle
@@ -40,7 +41,7 @@ from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
+from onpath.models.systems.parameters import Parameters, rise_of
 from onpath.models.systems.robots import Robot, RobotEntry
 
 NEAR = 1e-9  # [m], as good as on the path

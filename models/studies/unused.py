@@ -14,9 +14,10 @@ from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.control.laws.own import law_title
+from onpath.models.control.settable import changed, specs, value_of
 from onpath.models.studies.experiments import Experiment
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import Parameters, specs, time_step
+from onpath.models.systems.parameters import Parameters, time_step
 
 SPEED = ("speed", "ramp")
 """Settings of a loop that a speed profile sets."""
@@ -58,10 +59,9 @@ def _matters(experiment: Experiment, law: str, name: str) -> bool:
     if name in ("profile", "reverse_at"):
         return _reaches_motion(experiment, kernel, _places(kernel, SPEED))
     spec = specs(own)[name]
-    for value in _others(spec, getattr(own, name)):
-        other = dataclasses.replace(own, **{name: value})
-        changed = dataclasses.replace(experiment, parameters=other)
-        if _is_another(experiment, changed, law):
+    for value in _others(spec, value_of(own, name)):
+        other = changed(own, name, value)
+        if _is_another(experiment, dataclasses.replace(experiment, parameters=other), law):
             return True
         if _reaches_motion(experiment, kernel, _changes(experiment, kernel, other)):
             return True

@@ -12,7 +12,10 @@ DISTANCE, LEVEL_SET = "distance", "level_set"  # what ξ measures across the pat
 
 @dataclass(frozen=True, slots=True)
 class LawParameters:
-    """Gains and task; `Parameters` adds the realism. The defaults suit the rigid five-bar."""
+    """Gains that laws share, and task; `Parameters` adds the realism.
+
+    The defaults suit the rigid five-bar. The other gains are declared in the modules of their laws.
+    """
 
     K1: float = number(
         400.0,
@@ -117,43 +120,6 @@ class LawParameters:
         group="gains",
         label="Across is",
     )
-    clock_gain: float = number(
-        50.0,
-        "1/s",
-        (0, 200, 1),
-        "how strongly the waiting clock feels the error along the path; 0: an ordinary clock",
-        group="gains",
-        label="Clock waits",
-    )
-    contour_ratio: float = number(
-        0.1,
-        "",
-        (0.01, 1, 0.01),
-        "contouring: how stiff it is along the path, as a share of across",
-        group="gains",
-        label="Along / across",
-    )
-    field_gain: float = number(
-        10.0,
-        "1/s",
-        (0, 40, 0.5),
-        "velocity field: how quickly it leads back to the path",
-        group="gains",
-        label="Field to path",
-    )
-    field_circulation: float = number(
-        30.0,
-        "1/(J s)",
-        (0, 100, 1),
-        "velocity field: how quickly the velocity turns into the field",
-        group="gains",
-        label="Field turns",
-    )
-    field_energy: float = number(
-        0.2,
-        "J",
-        (0.02, 2, 0.01),
-        "velocity field: energy of the robot and the flywheel together",
-        group="gains",
-        label="Field energy",
-    )
+    own_gains: tuple[tuple[str, float], ...] = ()
+    """Gains of single laws by name, where they differ from the laws' defaults: see `changed` in
+    models/control/settable.py."""

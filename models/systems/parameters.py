@@ -1,7 +1,8 @@
-"""All numbers and choices that a user can set, each declared once with unit, range and help.
+"""The numbers and choices of every robot, each declared once with unit, range and help.
 
 Widgets, the command line and files are generated from these declarations. Gains and task are in
-law_parameters.py, what only one robot has is in the module of that robot.
+law_parameters.py, what only one robot has is in the module of that robot, and what only one law has
+is in the module of that law.
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from onpath.models.systems.law_parameters import LawParameters
-from onpath.models.systems.parameter_specs import Spec, checked, choice, number, unknown_name
+from onpath.models.systems.parameter_specs import Spec, choice, number
 
 TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
 
@@ -140,29 +141,15 @@ class Parameters(LawParameters):
     )
 
 
-def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
-    """Name -> declaration of all parameters, in the order of declaration."""
-    return _specs(kind if isinstance(kind, type) else type(kind))
-
-
 @cache
-def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
-    return MappingProxyType({f.name: f.metadata["spec"] for f in dataclasses.fields(kind)})
+def declared(kind: type[Parameters]) -> Mapping[str, Spec]:
+    """Name -> declaration of the parameters of a robot, in the order of declaration.
 
-
-def changed(parameters: Parameters, name: str, value: Any) -> Parameters:
-    """The parameters with one value changed; the same object if it has that value already.
-
-    Raises:
-        ValueError: unknown name or bad value.
+    The gains that only single laws have are not among them: for all see `specs` in
+    models/control/settable.py.
     """
-    known = specs(parameters)
-    if name not in known:
-        raise unknown_name(name, list(known))
-    value = checked(known[name], name, value)
-    if getattr(parameters, name) == value:
-        return parameters
-    return dataclasses.replace(parameters, **{name: value})
+    fields = dataclasses.fields(kind)
+    return MappingProxyType({f.name: f.metadata["spec"] for f in fields if "spec" in f.metadata})
 
 
 def own_parameters(kind: type[P], parameters: Parameters) -> P:

@@ -12,7 +12,8 @@ import pytest
 import onpath
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.laws.own import LABEL
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.control.settable import specs
+from onpath.models.systems.parameters import Parameters
 from tests.support.checkout import ROOT
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_reader import WAIT, SiteReader

@@ -16,7 +16,7 @@ from viser import _messages
 from onpath.app.lab import commands as c
 from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
-from onpath.models.systems.parameters import specs
+from onpath.models.control.settable import specs
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough

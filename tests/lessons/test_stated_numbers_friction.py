@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from onpath.models.control.settable import specs
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import specs
 from tests.support.stated_numbers import (
     Motion,
     Run,

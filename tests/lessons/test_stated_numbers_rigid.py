@@ -13,9 +13,9 @@ import pytest
 from onpath.lessons.action_schema import Action
 from onpath.models.arrays import Array
 from onpath.models.control.poles import channels
+from onpath.models.control.settable import specs
 from onpath.models.systems.five_bar import inverse_kinematics, load_links
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import specs
 from tests.support.rig import jacobian
 from tests.support.stated_numbers import (
     WORST,

@@ -10,8 +10,8 @@ import pytest
 
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.words import ENGLISH, Words, languages
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 from tests.support.catalogues import COMPLETE, arguments, messages
 from tests.support.stated_numbers import numbers
 

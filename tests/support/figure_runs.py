@@ -18,6 +18,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.page_functions import view_of
 from onpath.models.closed_loop.simulation import FREE, brake_at, raised, settings_vector
+from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
@@ -127,7 +128,7 @@ class PythonFigure:
             bench.hold(value)
         elif what == "set":
             name = self.figure.sliders[value[0]]
-            bench.parameters = replace(bench.parameters, **{name: value[1]})
+            bench.parameters = changed(bench.parameters, name, value[1])
         elif what == "pull":
             bench.pull(value)
         elif what == "change" and number == value[0]:

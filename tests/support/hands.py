@@ -18,7 +18,7 @@ from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import label_of
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.benches import RIGHT
-from onpath.models.systems.parameters import specs
+from onpath.models.control.settable import specs, value_of
 from tests.support.browser import Tab, wait_for
 
 ROBOT = RIGHT
@@ -71,7 +71,7 @@ class Hands:
         own = self.session.parameters
         known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
         name = known[min((full for full in known if full.startswith(label)), key=len)]
-        return abs(getattr(own, name) - value) <= near + 1e-9
+        return abs(value_of(own, name) - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
         """Whether an output is near a point of the path's plane, shape (2,), [m]."""

@@ -17,9 +17,9 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.trajectory import Trajectory, join
 from onpath.models.control.benches import BENCHES, LEFT, RIGHT
+from onpath.models.control.settable import specs, value_of
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.parameter_specs import checked
-from onpath.models.systems.parameters import specs
 
 FRAME = 1 / 60
 FOLLOWER, TRACKER = RIGHT, LEFT
@@ -83,7 +83,7 @@ def assert_sound(lab: Lab) -> None:
         assert np.isfinite(run_.row).all()
         assert run_.diverged is None or run_.diverged.reason
     for name, spec in specs(lab.session.parameters).items():
-        value = getattr(lab.session.parameters, name)
+        value = value_of(lab.session.parameters, name)
         assert checked(spec, name, value) == value
     editor = lab.session.editor
     assert curve_faults(lab.session.robot.margin, editor.design.curve) == []

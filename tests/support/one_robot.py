@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cache, lru_cache
 from typing import Any
 
@@ -22,6 +21,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.control.settable import with_values
 from onpath.models.paths.curves import circle
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.catalogue import ROBOTS
@@ -50,7 +50,7 @@ class Driven:
 
     def __init__(self, who: str = FOLLOWER, robot: str = "five_bar", **settings: object) -> None:
         self.who, self.push, self.time = who, FREE, 0.0
-        self.parameters = replace(ROBOTS[robot].parameters(), **settings)  # type: ignore[arg-type]
+        self.parameters = with_values(ROBOTS[robot].parameters(), settings)
         self.robot = ROBOTS[robot].make(self.parameters)
         kernel = kernel_of(self.robot, kind_of(who, self.parameters, CURVE))
         begin = self.robot.frame.lift(CURVE.at(np.array(0.0)))
@@ -79,7 +79,7 @@ class Driven:
 
     def set(self, **settings: object) -> Driven:
         """Change parameters from now on."""
-        self.parameters = replace(self.parameters, **settings)  # type: ignore[arg-type]
+        self.parameters = with_values(self.parameters, settings)
         return self
 
     def hold(self) -> Driven:

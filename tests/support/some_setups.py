@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.setups.capture import capture_path, kept
 from onpath.app.lab.setups.setup import RobotSetup, Setup
+from onpath.models.control.settable import specs, value_of
 from onpath.models.paths.path_design import PathDesign, drawn, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import specs
 
 CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=50)
 PRESETS = presets()
@@ -57,7 +57,7 @@ def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
     lab = ROBOTS[robot].parameters()
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
     values = {name: draw(_value(spec)) for name, spec in some}
-    own = {name: value for name, value in values.items() if value != getattr(lab, name)}
+    own = {name: value for name, value in values.items() if value != value_of(lab, name)}
     return RobotSetup(own, capture_path(draw(designs), PRESETS))
 
 

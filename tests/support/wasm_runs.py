@@ -10,15 +10,17 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.wasm_loop import wasm_of
+from tests.support.checkout import ROOT
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
+_MATHEMATICS = ROOT / "assets" / "standalone" / "mathematics.ts"
 _RUN = """async ([module, vectors, row, ticks]) => {
+    MATHEMATICS
     const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
     const memory = new WebAssembly.Memory({initial: 100})
-    const {sin, cos, log, tanh, acos, atan2} = Math
-    const imports = {Math: {memory, sin, cos, log, tanh, acos, atan2}}
+    const imports = {Math: {memory, ...mathematics}}
     const {instance} = await WebAssembly.instantiate(bytes(module), imports)
     const numbers = new Float64Array(memory.buffer)
     let end = 0
@@ -42,7 +44,10 @@ def rows_in_browser(
     """The log rows of `Loop.run`."""
     vectors = [_text(vector.tobytes()) for vector in (state, settings, table)]
     module = _text(wasm_of({}, {"loop": kernel}))
-    rows = page.evaluate(_RUN, [module, vectors, kernel.log.size, ticks])
+    own = _MATHEMATICS.read_text("utf-8").replace(": number", "").replace("export ", "")
+    rows = page.evaluate(
+        _RUN.replace("MATHEMATICS", own), [module, vectors, kernel.log.size, ticks]
+    )
     return np.frombuffer(b64decode(rows)).reshape(ticks, -1)
 
 

@@ -10,8 +10,9 @@ import numpy as np
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.lessons.action_schema import Value
 from onpath.models.closed_loop.simulation import check_level_set
+from onpath.models.control.settable import changed, specs, value_of, with_values
 from onpath.models.paths.curves import Curve
-from onpath.models.systems.parameters import Parameters, changed, specs, time_step
+from onpath.models.systems.parameters import Parameters, time_step
 
 Writes = list[tuple[int, float]]
 """Places in the settings, and the numbers that belong there."""
@@ -19,17 +20,6 @@ Writes = list[tuple[int, float]]
 
 class Unsupported(ValueError):
     """A page without a server cannot do it, because other loops or numbers would be needed."""
-
-
-def with_values(parameters: Parameters, values: Mapping[str, Value]) -> Parameters:
-    """The parameters with other values.
-
-    Raises:
-        ValueError: an unknown name or a value out of range.
-    """
-    for name, value in values.items():
-        parameters = changed(parameters, name, value)
-    return parameters
 
 
 def writes(figure: FigureChoice, values: Mapping[str, Value], before: Parameters) -> Writes:
@@ -80,14 +70,14 @@ def _others(parameters: Parameters, name: str) -> Iterator[Parameters]:
     """The parameters with the least and the largest value of one, or with each of its options."""
     spec = specs(parameters)[name]
     for value in spec.options or (spec.low, spec.high):
-        yield dataclasses.replace(parameters, **{name: value})
+        yield changed(parameters, name, value)
 
 
 def _differing(
     figure: FigureChoice, law: str, curve: Curve, after: Parameters, other: Parameters, name: str
 ) -> set[int]:
     """Places that depend on one parameter, whatever its value was before."""
-    swapped = dataclasses.replace(after, **{name: getattr(other, name)})
+    swapped = changed(after, name, value_of(other, name))
     if not _goes_on(figure, law, curve, after, swapped):
         return set()
     now, then = (figure.settings(law, curve, own) for own in (after, swapped))

@@ -27,6 +27,7 @@ from onpath.lessons.schema import (
 )
 from onpath.lessons.task_schema import Reference, Setting, Task
 from onpath.lessons.words import Words
+from onpath.models.control.settable import values_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +115,8 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
         "paths": list(choice.paths),
     }
     names = [c.name for task in step.tasks() for c in task.check if isinstance(c, Setting)]
-    known = {n: getattr(parameters, n) for n in (*names, *choice.sliders) if hasattr(parameters, n)}
+    values = values_of(parameters)
+    known = {name: values[name] for name in (*names, *choice.sliders) if name in values}
     return {**known, **own}
 
 

@@ -23,9 +23,10 @@ from onpath.lessons.words import Words
 from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import specs, values_of
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 SAID = {
     "check.bound": ("robot", "stat", "during", "value", "unit", "wanted"),
@@ -119,7 +120,7 @@ def _(check: Only, parameters: Parameters, robots: dict[Any, str], words: Words)
 def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
     spec = specs(parameters).get(check.name)
     equals, wanted = setting_wanted(check, words)
-    present = getattr(parameters, check.name, None)
+    present = values_of(parameters).get(check.name)
     options = _named(check.name) if spec is None else spec.options
     return {
         "equals": equals,

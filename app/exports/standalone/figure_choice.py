@@ -24,13 +24,14 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import law_name, law_named
+from onpath.models.control.settable import changed, specs, with_values
 from onpath.models.errors import CodedError, said_by
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed, rise_of, specs
+from onpath.models.systems.parameters import Parameters, rise_of
 from onpath.models.systems.robots import Robot
 
 CONTROLS = ("hold", "pull", "drag", "run", "step", "reset", "path", "plot", "poles")
@@ -127,9 +128,7 @@ def chosen(
     if not 1 <= len(laws) <= len(BENCHES):
         raise ValueError(f"laws: expected one or two, got {len(laws)}")
     entry = ROBOTS[robot]
-    parameters = entry.parameters()
-    for name, value in (values or {}).items():
-        parameters = changed(parameters, name, value)
+    parameters = with_values(entry.parameters(), values or {})
     if parameters.speed_profile != "constant":
         raise ValueError("speed_profile: a figure has a constant speed")
     names, others = (tuple(map(law_name, each)) for each in (laws, choices))
@@ -165,7 +164,7 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
 def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
     """The wanted motion, and the gains that act in one of the laws."""
     task, unused = ("speed", "K4") if parameters.task == "speed" else ("target", "")
-    gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gains)
+    gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gain_names)
     return task, *(gain for gain in gains if gain != unused)
 
 
@@ -201,7 +200,7 @@ def check_slider(figure: FigureChoice, name: str) -> None:
     for law in figure.every_law:
         for curve in figure.paths.values():
             for value in (spec.low, spec.high) if not spec.options else ():
-                parameters = dataclasses.replace(figure.parameters, **{name: value})
+                parameters = changed(figure.parameters, name, value)
                 kernel = figure.kernel(law, curve)
                 wanted = figure.settings(law, curve)
                 if name in kernel.settings.slices:

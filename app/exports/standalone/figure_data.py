@@ -34,12 +34,13 @@ from onpath.models.closed_loop.page_functions import (
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.settable import specs, value_of
 from onpath.models.page.edit import CHECKS, OUTLINE, ROW
 from onpath.models.page.fit import FINE, PIECE
 from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_checks import SAMPLES
-from onpath.models.systems.parameters import specs, time_step
+from onpath.models.systems.parameters import time_step
 
 
 def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
@@ -215,7 +216,7 @@ def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]
         "low": zero_is_a_step if spec.low < 0 else spec.low,
         "high": spec.high,
         "step": spec.step,
-        "value": getattr(figure.parameters, name),
+        "value": value_of(figure.parameters, name),
         "place": place.start if place else -1,
     }
 

@@ -12,11 +12,12 @@ from onpath.app.lab.session import Session
 from onpath.lessons.benches import law_label
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import check_level_set, raised
+from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, changed
+from onpath.models.systems.parameters import Parameters
 
 PATH_MATTERS = ("across", "rise")  # parameters that not every path can have together
 

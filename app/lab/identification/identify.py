@@ -17,6 +17,7 @@ from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control.benches import RIGHT
+from onpath.models.control.settable import changed, specs
 from onpath.models.errors import CodedError
 from onpath.models.studies.identification import (
     BALANCE,
@@ -28,7 +29,7 @@ from onpath.models.studies.identification import (
     simplest,
     smooth_velocities,
 )
-from onpath.models.systems.parameters import Parameters, changed, specs
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use

@@ -14,10 +14,11 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.settable import specs, values_of
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import NOTHING, Spec
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 DIGITS = 6
 
@@ -58,9 +59,10 @@ def _start_of(start: Start) -> dict[str, float]:
 @lru_cache(maxsize=256)
 def _differences(name: str, own: Parameters) -> dict[str, int | float | str]:
     """What differs from the parameters of a new lab with this robot."""
-    lab, found = ROBOTS[name].parameters(), dict[str, int | float | str]()
-    for name, spec in specs(own).items():
-        value, default = getattr(own, name), getattr(lab, name)
+    usual, found = values_of(ROBOTS[name].parameters()), dict[str, int | float | str]()
+    known = specs(own)
+    for name, value in values_of(own).items():
+        spec, default = known[name], usual[name]
         if value != default and kept(spec, value) != default:
             found[name] = kept(spec, value)
     return found

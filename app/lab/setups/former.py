@@ -17,10 +17,10 @@ import msgspec
 from onpath.app.lab.setups.plan import planned
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.models.closed_loop.start import ON_PATH
+from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 
 UNTIL = date(2027, 9, 30)
 """Until the end of the academic year these readers stay. Then `CHANGES` up to that day and

@@ -23,6 +23,7 @@ from onpath.models.closed_loop.obstacles import Wall, check_direction
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.benches import checked_laws
+from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through
@@ -30,7 +31,7 @@ from onpath.models.paths.curves import Curve, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import NOTHING, out_of_range, unknown_name
-from onpath.models.systems.parameters import Parameters, changed
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`

@@ -6,7 +6,8 @@ keep their meaning.
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from collections.abc import Collection, Mapping
+from typing import Annotated, Any, TypeVar
 
 import msgspec
 
@@ -14,7 +15,13 @@ from onpath.app.lab.setups.former import DEFAULTS, brought_up
 from onpath.app.lab.setups.plan import planned
 from onpath.app.lab.setups.setup import Setup, plain
 from onpath.models.control.benches import checked_laws
+from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
+
+T = TypeVar("T")
 
 
 class StoredSetup(Setup, frozen=True, forbid_unknown_fields=True):
@@ -40,3 +47,28 @@ def from_data(data: Any) -> Setup:
     setup = Setup(**{**own, "robots": robots})
     entry = planned(setup, presets())[setup.robot].entry
     return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
+
+
+def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
+    """A kept set-up without the laws that are not here any more and their gains, and their names.
+
+    The data need not be valid otherwise.
+    """
+    try:
+        stored = msgspec.convert(data, StoredSetup)
+    except msgspec.ValidationError:
+        return data, ()
+    known = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
+    gains = {n for robot in stored.robots.values() for n in robot.parameters if n not in known}
+    absent = {b: law for b, law in stored.laws.items() if not is_text(law) and law not in LAWS}
+    robots = {
+        name: msgspec.structs.replace(robot, parameters=_without(robot.parameters, gains))
+        for name, robot in stored.robots.items()
+    }
+    laws = _without(stored.laws, absent)
+    found = msgspec.structs.replace(stored, robots=robots, laws=laws)
+    return msgspec.to_builtins(found), (*sorted({*absent.values()}), *sorted(gains))
+
+
+def _without(values: Mapping[str, T], names: Collection[str]) -> dict[str, T]:
+    return {name: value for name, value in values.items() if name not in names}

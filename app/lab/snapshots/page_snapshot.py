@@ -11,6 +11,7 @@ from onpath.lessons.checks import Verdict
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress, Truth
 from onpath.models.control.place import Place
+from onpath.models.control.settable import parameters_from
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -174,7 +175,7 @@ class PageSnapshot(Snapshot):
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:
     """The parameters as an object."""
-    return ROBOTS[snapshot.key.robot].parameters(**snapshot.parameters)  # pyright: ignore[reportArgumentType]
+    return parameters_from(ROBOTS[snapshot.key.robot].parameters, snapshot.parameters)
 
 
 def robot_of(snapshot: PageSnapshot) -> Robot:

@@ -34,9 +34,10 @@ from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.control.benches import RIGHT
+from onpath.models.control.settable import values_of
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 TRACE = 1.6  # [s]
@@ -258,7 +259,7 @@ def _sampled(design: PathDesign) -> Array:
 @lru_cache(maxsize=128)
 def _values(parameters: Parameters) -> ParameterValues:
     """The values; the same object for the same parameters."""
-    return {name: getattr(parameters, name) for name in specs(parameters)}
+    return values_of(parameters)
 
 
 def _lesson(lab: Lab) -> LessonSnapshot:

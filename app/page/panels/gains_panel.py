@@ -16,16 +16,23 @@ from onpath.app.lab.snapshots.page_snapshot import (
     parameters_of,
 )
 from onpath.app.page.panels.pole_picture import pole_picture
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, SwitchedParameter, on_press
+from onpath.app.page.panels.widgets import (
+    OwnGainWidgets,
+    ParameterWidgets,
+    Post,
+    SwitchedParameter,
+    on_press,
+)
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import Words
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel
+from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 BASIC = ["speed", "K1", "K2", "K5"]
 ADVANCED = ["speed_profile", "profile_period", "ramp", "task", "target"]
@@ -42,7 +49,10 @@ class GainsPanel:
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._words = words
         self._shown: tuple[ParameterValues, dict[str, str], LawPlaces] | None = None
-        self._widgets = [ParameterWidgets(gui, words, post, BASIC, first)]
+        self._widgets = [
+            ParameterWidgets(gui, words, post, BASIC, first),
+            OwnGainWidgets(gui, words, post, first),
+        ]
         self._settling = gui.add_markdown("")
         self._picture = gui.add_html("")
         pulse = gui.add_button(  # what a gain changes is seen when something disturbs the robots

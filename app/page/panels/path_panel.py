@@ -21,11 +21,11 @@ from onpath.app.page.panels.widgets import (
 )
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
+from onpath.models.control.settable import specs
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import Robot
 
 

@@ -14,9 +14,10 @@ from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
 from onpath.lessons.words import Words
+from onpath.models.control.laws.registry import OWN_GAINS, law_named
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
-from onpath.models.systems.parameters import specs
 
 Post = Callable[[Command], None]
 Option = TypeVar("Option")
@@ -203,6 +204,25 @@ class ParameterWidgets:
 def _digits(step: float) -> int:
     """Decimals that show multiples of a tenth of the step."""
     return max(0, 2 - math.floor(math.log10(step) + 1e-9)) - 1
+
+
+class OwnGainWidgets(ParameterWidgets):
+    """Sliders for the gains that only single laws have, shown while a bench has such a law."""
+
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        super().__init__(gui, words, post, list(OWN_GAINS), first)
+        self._show(first)
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's values, and those that its laws use."""
+        super().follow(snapshot)
+        self._show(snapshot)
+
+    def _show(self, snapshot: PageSnapshot) -> None:
+        used = {name for law in snapshot.run.laws.values() for name in law_named(law).gain_names}
+        for name, handle in self._handles.items():
+            if handle.visible != (name in used):
+                handle.visible = name in used
 
 
 class SwitchedParameter(ParameterWidgets):

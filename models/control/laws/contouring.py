@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.law import ControlAction, Law, View, own_gain
 from onpath.models.control.laws.references import (
     clock_acceleration,
     clock_ahead,
@@ -16,6 +16,15 @@ from onpath.models.control.poles import Channel, channel, turning_channel
 from onpath.models.control.space_output import normals
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.parameters import Parameters
+
+RATIO = own_gain(
+    "contour_ratio",
+    0.1,
+    "",
+    (0.01, 1, 0.01),
+    "contouring: how stiff it is along the path, as a share of across",
+    label="Along / across",
+)
 
 
 def contouring(view: View) -> ControlAction:
@@ -132,7 +141,7 @@ def contouring_channels(parameters: Parameters, place: Place) -> tuple[Channel, 
     Along: κ K1 and √κ K2. Across: K1 and K2, on every path; with the integral also K3, whose sum is
     kept in axes that do not turn, so that its poles depend on how the path turns at the place.
     """
-    ratio, k1, k2 = parameters.contour_ratio, parameters.K1, parameters.K2
+    ratio, k1, k2 = RATIO.of(parameters), parameters.K1, parameters.K2
     along = channel("along", parameters, (ratio * k1, ratio**0.5 * k2, 0.0), "xva")
     if parameters.K3 == 0 or parameters.tracker_integral == "off":
         return channel("across", parameters, (k1, k2, 0.0), "xva"), along
@@ -157,7 +166,7 @@ LAW = Law(
     reference=clock_ahead,
     by_clock=True,
     channels=contouring_channels,
-    gains=("K1", "K2", "K3", "contour_ratio"),
+    own_gains=(RATIO,),
     good="It is on time and yields along the curve while it is stiff across it, as long as its"
     " error is small.",
     limits="Held back for long it goes far off: its axes are those of a point that has run away.",

@@ -19,6 +19,7 @@ from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
 from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve
+from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.system import MechanicalSystem
 
@@ -26,6 +27,57 @@ ZERO, ONE = ca.SX(0), ca.SX(1)
 
 Memory = tuple[tuple[str, int], ...]
 """Names and sizes of the fields that a law keeps from tick to tick."""
+
+
+@dataclass(frozen=True, slots=True)
+class OwnGain:
+    """A gain that one law has besides K1 to K5. Make it with `own_gain`.
+
+    Attributes:
+        name: as in files, on the command line and in `View.own_gains`.
+        default: its value in a new lab.
+        spec: its unit, range and words.
+    """
+
+    name: str
+    default: float
+    spec: Spec
+
+    def of(self, parameters: Parameters) -> float:
+        """The value that it has."""
+        return dict(parameters.own_gains).get(self.name, self.default)
+
+
+def own_gain(
+    name: str,
+    default: float,
+    unit: str,
+    bounds: tuple[float, float, float],
+    text: str,
+    *,
+    label: str,
+) -> OwnGain:
+    """A gain that one law has.
+
+    Args:
+        name, default: see `OwnGain`.
+        unit: "" for none.
+        bounds: (low, high, step).
+        text: what it does, in one line.
+        label: name on a slider.
+    """
+    low, high, step = bounds
+    spec = Spec(
+        group="gains",
+        label=label,
+        unit=unit,
+        low=low,
+        high=high,
+        step=step,
+        options=(),
+        help=text,
+    )
+    return OwnGain(name, default, spec)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +154,7 @@ class View:
         task: the wanted motion along the path.
         clock: the reference point.
         gains: K1 to K5.
-        own_gains: the law's further gains, by the names of `Law.gains`.
+        own_gains: those of `Law.own_gains`, by name.
         integral: integral of `ControlAction.error`, (p, 1).
         lag: how old what the controller knows is at most when its torque ends, [s]: the control
             interval, and, where there are such, the time constant of the velocity filter, the
@@ -186,7 +238,8 @@ class Law:
         reference: clock -> parameter θ of a further point at which the law needs the path; None if
             it needs the closest point only.
         aim: log field of the point that it aims at: "theta" or "theta_ref".
-        gains: names of all parameters that it uses as gains.
+        gains: names of the gains that it uses among K1 to K5.
+        own_gains: its other gains.
         by_clock: whether its reference point runs by the clock, whatever the robot does.
         memory: what it keeps from tick to tick; all of it is 0 at the start.
         square: whether it needs as many motors and outputs as coordinates, n = m = p.
@@ -209,6 +262,7 @@ class Law:
     reference: Callable[[Clock], ca.SX] | None = None
     aim: str = "theta_ref"
     gains: tuple[str, ...] = ("K1", "K2", "K3")
+    own_gains: tuple[OwnGain, ...] = ()
     by_clock: bool = False
     memory: Memory = ()
     square: bool = False
@@ -221,6 +275,11 @@ class Law:
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
+
+    @property
+    def gain_names(self) -> tuple[str, ...]:
+        """Names of all its gains."""
+        return (*self.gains, *(gain.name for gain in self.own_gains))
 
     @property
     def travels(self) -> bool:

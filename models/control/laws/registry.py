@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 from pkgutil import iter_modules
 
 from onpath.models.control import laws
-from onpath.models.control.laws.law import Law
+from onpath.models.control.laws.law import Law, OwnGain
 from onpath.models.control.laws.own import is_text, own_law, tidy
 from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
 from onpath.models.control.laws.trajectory_tracking import LAW as TRAJECTORY_TRACKING
-from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import checked, unknown_name
+from onpath.models.systems.parameters import declared
 
 
 def found_laws() -> dict[str, Law]:
@@ -60,9 +63,29 @@ def law_name(text: str) -> str:
     return name
 
 
+def gains_of(laws: Iterable[Law]) -> dict[str, OwnGain]:
+    """The own gains of laws, by name.
+
+    Raises:
+        ValueError: a name that cannot be used, because it is none or means something else.
+    """
+    found = dict[str, OwnGain]()
+    for law in laws:
+        for gain in law.own_gains:
+            robots = [r.name for r in ROBOTS.values() if gain.name in declared(r.parameters)]
+            if robots or gain.name in found:
+                others = robots or ["another law"]
+                raise ValueError(f"{law.name}: its gain {gain.name!r} is one of {others[0]}, too")
+            if not gain.name.isidentifier():
+                raise ValueError(f"{law.name}: {gain.name!r} cannot be the name of a gain")
+            checked(gain.spec, gain.name, gain.default)
+            found[gain.name] = gain
+    return dict(sorted(found.items()))
+
+
 LAWS = found_laws()
 NAMES = (TRAJECTORY_TRACKING.name, PATH_FOLLOWING.name)
 """The two laws that a lab begins with, and that the paper's experiments compare."""
 SHARED_GAINS = ("K1", "K2", "K3", "K4", "K5")
-OWN_GAINS = tuple(sorted({gain for law in LAWS.values() for gain in law.gains} - {*SHARED_GAINS}))
-"""Names of the gains of single laws, besides K1 to K5."""
+OWN_GAINS = gains_of(LAWS.values())
+"""The gains of single laws, by name."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from onpath.models.control.laws.law import ControlAction, Law, View
+from onpath.models.control.laws.law import ControlAction, Law, View, own_gain
 from onpath.models.control.laws.references import rate_at
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.system import coriolis
@@ -197,7 +197,33 @@ LAW = Law(
     source="Li and Horowitz, Passive velocity field control, reference [2]",
     command=velocity_field,
     aim="theta",
-    gains=("field_gain", "field_circulation", "field_energy"),
+    gains=(),
+    own_gains=(
+        own_gain(
+            "field_gain",
+            10.0,
+            "1/s",
+            (0, 40, 0.5),
+            "velocity field: how quickly it leads back to the path",
+            label="Field to path",
+        ),
+        own_gain(
+            "field_circulation",
+            30.0,
+            "1/(J s)",
+            (0, 100, 1),
+            "velocity field: how quickly the velocity turns into the field",
+            label="Field turns",
+        ),
+        own_gain(
+            "field_energy",
+            0.2,
+            "J",
+            (0.02, 2, 0.01),
+            "velocity field: energy of the robot and the flywheel together",
+            label="Field energy",
+        ),
+    ),
     memory=((FLYWHEEL, 1), (BEFORE, 3)),
     square=True,
     commands_acceleration=False,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from onpath.models.control.laws.law import Clock, ControlAction, Law, View
+from onpath.models.control.laws.law import Clock, ControlAction, Law, View, own_gain
 from onpath.models.control.laws.references import clock_acceleration, clock_rate, tracking_error
 from onpath.models.control.laws.trajectory_tracking import pid
 
@@ -60,7 +60,16 @@ LAW = Law(
     source="Skjetne, Fossen and Kokotović, Robust output maneuvering, reference [6]",
     command=waiting_clock,
     reference=waiting_ahead,
-    gains=("K1", "K2", "K3", "clock_gain"),
+    own_gains=(
+        own_gain(
+            "clock_gain",
+            50.0,
+            "1/s",
+            (0, 200, 1),
+            "how strongly the waiting clock feels the error along the path; 0: an ordinary clock",
+            label="Clock waits",
+        ),
+    ),
     memory=((RATE, 1),),
     good="Held back and let go, it stays as close to the curve as path following.",
     limits="A hand that pulls it away disturbs its clock as well: afterwards it first rushes to"

@@ -18,8 +18,8 @@ from onpath.app.common import atomic_file
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
 from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.control.settable import specs
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import specs
 from tests.support.checkout import ROOT
 from tests.support.csv_columns import read_csv
 

@@ -9,7 +9,6 @@ a set-up.
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import sqlite3
 from collections.abc import Mapping
@@ -36,6 +35,7 @@ from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.storage.records import Records, file_url
 from onpath.models.control.benches import DEFAULT_LAWS, LEFT
+from onpath.models.control.settable import value_of, values_of
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from tests.support.built_in import built_in_course
@@ -104,7 +104,7 @@ def test_a_share_code_means_what_it_meant(name: str) -> None:
     assert lab.session.laws == case["laws"] and lab.session.editor.design.name == case["path"]
     assert from_data(case["data"]) == decode(case["code"]) == capture(lab.session)
     for robot in WRITTEN["defaults"]:
-        found = dataclasses.asdict(parameters(lab, robot))
+        found = values_of(parameters(lab, robot))
         expected = as_then(robot, case["parameters"].get(robot, {}))
         assert {name: found[name] for name in expected} == expected
 
@@ -139,7 +139,7 @@ def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
 
 @pytest.mark.parametrize("robot", WRITTEN["defaults"])
 def test_a_default_that_has_changed_has_a_line(robot: str) -> None:
-    present = dataclasses.asdict(ROBOTS[robot].parameters())
+    present = values_of(ROBOTS[robot].parameters())
     then = former_defaults(robot, WRITTEN["version"])
     for name, value in WRITTEN["defaults"][robot].items():
         assert then.get(name, present[name]) == value, f"add a line to CHANGES for {name}"
@@ -181,7 +181,7 @@ def test_a_share_code_of_version_1_keeps_its_physics(case: str) -> None:
     for robot in VERSION_1:
         found = parameters(lab, robot)
         expected = {"K3": 0.0, "tracker_integral": "on", **own.get(robot, {})}
-        assert {name: getattr(found, name) for name in expected} == expected
+        assert {name: value_of(found, name) for name in expected} == expected
 
 
 def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:

@@ -24,7 +24,7 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from tests.support.lab import FRAME, do, finish, run
 
-OPERATIONS = {"sliding": ca.OP_SIGN, "erring": ca.OP_ERF}
+OPERATIONS = {"inverse": ca.OP_ERFINV}
 
 
 @pytest.fixture(params=OPERATIONS)

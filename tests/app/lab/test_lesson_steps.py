@@ -20,8 +20,8 @@ from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.models.closed_loop.simulation import FREE
 from onpath.models.control.benches import BENCHES, RIGHT
+from onpath.models.control.settable import changed
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed
 from tests.support.built_in import built_in_course
 from tests.support.cases import some
 from tests.support.lab import do, run, store

@@ -31,12 +31,12 @@ from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models import systems
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
+from onpath.models.control.settable import specs
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems import catalogue
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
-from onpath.models.systems.parameters import specs
 from onpath.models.systems.robots import RobotEntry
 from tests.support.checkout import ROOT
 from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, store, y

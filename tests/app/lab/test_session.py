@@ -24,10 +24,10 @@ from onpath.models.closed_loop.start import BOUNDS
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.own import PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import changed, specs
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-from onpath.models.systems.parameters import changed, specs
 from tests.support.lab import (
     FOLLOWER,
     FRAME,

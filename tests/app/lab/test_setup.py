@@ -26,11 +26,11 @@ from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.models.closed_loop.simulation import has_level_set
+from onpath.models.control.settable import specs
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import NOTHING
-from onpath.models.systems.parameters import specs
 from tests.support.lab import FOLLOWER, do, new_lab, run
 from tests.support.some_setups import CALM, FOLLOWABLE, PRESETS, designs, setups, wave
 

@@ -20,8 +20,8 @@ from onpath.app.lab.setups import share_code
 from onpath.app.lab.setups.capture import capture, capture_path
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.share_code import decode, encode
+from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 from tests.support.lab import do, new_lab
 from tests.support.some_setups import CALM, PRESETS, setups, wave
 

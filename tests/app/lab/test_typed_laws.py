@@ -188,8 +188,9 @@ def test_hostile_data_is_refused_and_changes_nothing(law: Any) -> None:
     before = capture(lab.session)
     with pytest.raises(ValueError, match=r"."):
         from_data({"defaults": 2, "laws": {LEFT: law}})
-    with pytest.raises(ValueError, match=r"."):
-        put_back(lab, {"setup": {"defaults": 2, "laws": {LEFT: law}}, "lessons": {}})
+    if law != "own":  # a name like that of a law that is not here any more
+        with pytest.raises(ValueError, match=r"."):
+            put_back(lab, {"setup": {"defaults": 2, "laws": {LEFT: law}}, "lessons": {}})
     assert capture(lab.session) == before
 
 

@@ -24,8 +24,8 @@ from onpath.app.server.new_lab import new_lab as newcomers_lab
 from onpath.lessons.course import NO_LESSONS
 from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.control.laws.registry import LAWS, law_named
+from onpath.models.control.settable import changed, specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed, specs
 from tests.support.figure_runs import PythonFigure
 from tests.support.lab import do, new_lab, store
 from tests.support.some_setups import CALM

@@ -15,9 +15,9 @@ import pytest
 
 import onpath
 from onpath.app.cli.main import run_command
+from onpath.models.control.settable import specs
 from onpath.models.studies.experiments import experiments
 from onpath.models.systems.catalogue import FLEXIBLE
-from onpath.models.systems.parameters import specs
 from tests.support import stranger
 from tests.support.checkout import ROOT
 

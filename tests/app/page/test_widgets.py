@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page.panels.widgets import PRESS_ENDS, ParameterWidgets, on_hold
+from onpath.app.page.panels.widgets import PRESS_ENDS, OwnGainWidgets, ParameterWidgets, on_hold
 from onpath.lessons.words import ENGLISH
+from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.laws.registry import OWN_GAINS
 from tests.support.lab import store
 
 
@@ -90,7 +92,7 @@ class Slider:
     """A slider that is moved by its user, or by the lab."""
 
     def __init__(self, *_: object, initial_value: float, **__: object) -> None:
-        self.value = initial_value
+        self.value, self.visible = initial_value, True
 
     def on_update(self, act: Callable[[Any], Coroutine[Any, Any, None]]) -> None:
         self.act = act
@@ -124,3 +126,26 @@ def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
     widgets.follow(before)
     widgets.follow(take_page_snapshot(lab, 1.0))
     assert slider.value == 123.0
+
+
+def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
+    lab, shown = Lab(store()), dict[str, Slider]()
+
+    def add_slider(label: str, **given: Any) -> Slider:
+        shown[label.partition(" [")[0]] = Slider(initial_value=given["initial_value"])
+        return shown[label.partition(" [")[0]]
+
+    gui: Any = SimpleNamespace(add_slider=add_slider)
+    widgets = OwnGainWidgets(gui, ENGLISH, lambda _: None, take_page_snapshot(lab, 0.0))
+
+    def visible() -> set[str]:
+        widgets.follow(take_page_snapshot(lab, 0.0))
+        return {label for label, slider in shown.items() if slider.visible}
+
+    assert len(shown) == len(OWN_GAINS) and visible() == set()
+    lab.session.change_law(LEFT, "waiting_clock")
+    assert visible() == {"Clock waits"}
+    lab.session.change_law(RIGHT, "contouring")
+    assert visible() == {"Clock waits", "Along / across"}
+    lab.session.change_law(LEFT, "path_following")
+    assert visible() == {"Along / across"}

@@ -34,6 +34,7 @@ from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
+from onpath.models.control.settable import specs
 from onpath.models.errors import CodedError, Message, said_by
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
@@ -42,7 +43,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_ro
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
-from onpath.models.systems.parameters import specs
+from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import RobotEntry, first_fault
 from tests.support.catalogues import COMPLETE, arguments, counts, messages
 from tests.support.checkout import ROOT
@@ -252,7 +253,7 @@ def test_what_the_program_names_has_words(words: Words) -> None:
 def keys_of(entry: RobotEntry) -> Iterator[str]:
     """What a language that knows the robot has words for, besides units."""
     yield from (f"machine.{entry.name}.{part}" for part in ("label", "text"))
-    for name, spec in specs(entry.parameters).items():
+    for name, spec in declared(entry.parameters).items():
         yield from (f"parameter.{name}.{part}" for part in ("label", "help"))
         if spec.options and not isinstance(spec.options[0], int):
             yield from (f"parameter.{name}.option.{option}" for option in spec.options)
@@ -260,13 +261,18 @@ def keys_of(entry: RobotEntry) -> Iterator[str]:
 
 @pytest.mark.parametrize("words", [Words(language) for language in TRANSLATED])
 def test_what_stands_in_models_is_translated(words: Words) -> None:
-    """The paths, and all of every robot that the language knows; a new robot is told in English."""
+    """The paths, and all of the robots and laws that the language knows; others are in English."""
     known = catalogue(words.language)
     assert [name for name in presets() if f"path.{name}" not in known] == []
     laws = [f"law.{name}" for name in LAWS if f"law.{name}.label" in known]
     assert {f"law.{name}" for name in DEFAULT_LAWS.values()} <= {*laws}
     parts = ("text", "good", "limits")
     assert [law for law in laws for part in parts if f"{law}.{part}" not in known] == []
+    own = [
+        gain.name for law in LAWS.values() if f"law.{law.name}" in laws for gain in law.own_gains
+    ]
+    parts = ("label", "help")
+    assert [n for n in own for part in parts if f"parameter.{n}.{part}" not in known] == []
     own = [f"law.own.{value.names[0]}" for value in (*MEANINGS, *SPACE_MEANINGS)]
     assert [key for key in ("law.own.label", *own) if key not in known] == []
     told = [entry for entry in ROBOTS.values() if f"machine.{entry.name}.label" in known]
@@ -290,6 +296,7 @@ from dataclasses import dataclass
 from onpath.models.systems.five_bar_robot import rigid_five_bar
 from onpath.models.systems.parameter_specs import choice, number
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import RobotEntry
 
 @dataclass(frozen=True, slots=True)

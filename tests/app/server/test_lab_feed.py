@@ -12,8 +12,8 @@ from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.lab_feed import AT_EASE, LabFeed
 from onpath.app.simulation.display_rate import STRIDES, is_turn
+from onpath.models.control.settable import changed
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import changed
 from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
 
 FRAMES = 240

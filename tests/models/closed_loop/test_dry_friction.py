@@ -14,9 +14,9 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.registry import NAMES
+from onpath.models.control.settable import specs
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import specs
 
 CIRCLE = circle(0.05)
 

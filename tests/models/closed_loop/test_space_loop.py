@@ -26,6 +26,7 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
+from onpath.models.control.settable import with_values
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curves import Curve, circle, segment
 from onpath.models.paths.distance import path_distance
@@ -142,7 +143,7 @@ def test_contouring_decays_in_the_turning_frame_as_its_gains_say(axis: int) -> N
     own = np.eye(3)[axis] * size
     turning = (axes_at(theta + h) - axes_at(theta - h)) / (2 * h) * speed
     state = moving_at("contouring", theta, speed, axes_at(theta) @ own, turning @ own)
-    parameters = replace(DEFAULTS, speed=speed, contour_ratio=0.1)
+    parameters = with_values(DEFAULTS, {"speed": speed, "contour_ratio": 0.1})
     log = log_of("contouring", parameters, SADDLE, state, 0.4)
     angles = log["theta_ref"][:, 0]
     gaps = log["y"] - SADDLE.at(angles)

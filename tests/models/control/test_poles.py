@@ -19,10 +19,11 @@ from onpath.models.closed_loop.simulation import (
 from onpath.models.control import poles
 from onpath.models.control.laws.registry import NAMES
 from onpath.models.control.poles import Complex, channels
+from onpath.models.control.settable import specs
 from onpath.models.paths.curves import circle
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import rigid_five_bar
-from onpath.models.systems.parameters import specs, time_step
+from onpath.models.systems.parameters import time_step
 
 RADIUS = 0.05
 PD = FiveBarParameters(K3=0.0)

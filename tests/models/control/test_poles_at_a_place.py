@@ -28,6 +28,7 @@ from onpath.models.closed_loop.start import velocity_at
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.place import place_at
 from onpath.models.control.poles import Channel, Complex
+from onpath.models.control.settable import with_values
 from onpath.models.paths.curves import Curve, circle, ellipse
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.space_curves import saddle
@@ -180,7 +181,9 @@ GAINS: list[dict[str, Any]] = [
 @pytest.mark.parametrize("integral", ["off", "on"])
 @pytest.mark.parametrize(("curve", "theta"), [(CIRCLE, 0.3), (ELLIPSE, 0.3), (ELLIPSE, 1.2)])
 def test_contouring(curve: Curve, theta: float, integral: str, gains: dict[str, Any]) -> None:
-    values = replace(FIVE_BAR.parameters(), tracker_integral=integral, speed=5.0, **gains)
+    values = with_values(
+        FIVE_BAR.parameters(), {"tracker_integral": integral, "speed": 5.0, **gains}
+    )
     loop = Linearized("contouring", curve, theta, values, 5.0)
     sums = 2 if integral == "on" and gains["K3"] else 0
     across, along = channels_there(loop)

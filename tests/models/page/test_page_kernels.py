@@ -18,6 +18,7 @@ from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.control.poles import channels
+from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError, Message
 from onpath.models.evaluated import evaluated
 from onpath.models.page.edit import CHECKS, ROW, edit_scans
@@ -37,7 +38,6 @@ from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import changed
 
 RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.parameters()).geometry]
 

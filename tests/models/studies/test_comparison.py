@@ -10,6 +10,7 @@ from functools import lru_cache
 import pytest
 
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import value_of
 from onpath.models.paths.curves import circle
 from onpath.models.studies.comparison import (
     AFTER,
@@ -71,7 +72,7 @@ def test_laws_that_wait_are_late_and_laws_with_a_clock_are_not() -> None:
 
 
 def test_the_velocity_field_gives_no_more_than_it_stores() -> None:
-    stored = CONTEST.parameters.field_energy
+    stored = value_of(CONTEST.parameters, "field_energy")
     for name in ("brake", "push_across", "push_ahead", "push_back", "wall"):
         assert max(o.energy_given_J for o in outcomes("velocity_field", name)) < stored
 

@@ -12,9 +12,9 @@ import pytest
 
 from onpath.models.closed_loop.trajectory import Trajectory, header, write_csv
 from onpath.models.control.laws.registry import NAMES
+from onpath.models.control.settable import specs
 from onpath.models.studies.experiments import experiments, run, summary
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.parameters import specs
 from tests.support.csv_columns import read_csv
 
 KEYS = {

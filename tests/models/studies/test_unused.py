@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
 import numpy as np
@@ -11,11 +10,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.settable import changed, specs, value_of
 from onpath.models.paths.curves import circle
 from onpath.models.studies.experiments import Experiment, on_path, run
 from onpath.models.studies.unused import unused, unused_text
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters, specs
+from onpath.models.systems.parameters import Parameters
 
 START = {"duration": 0.3, "start_along": 0.1, "start_across": 0.05}
 HOLD = {"hold_from": 0.05, "hold_to": 0.15, "hold_direction": "both"}
@@ -63,12 +63,12 @@ def test_what_has_no_effect_is_named_and_nothing_else(
 ) -> None:
     robot, law, parameters, name = case
     said = unused(experiment(parameters, robot), law, [name]) == [name]
-    spec, own = specs(parameters)[name], getattr(parameters, name)
+    spec, own = specs(parameters)[name], value_of(parameters, name)
     values = list(spec.options) or [spec.low, spec.high, random.uniform(spec.low, spec.high)]
     usual = moved(parameters, robot, law)
     same = []
     for value in values:
-        other = dataclasses.replace(parameters, **{name: value})
+        other = changed(parameters, name, value)
         if value == own or law not in laws_for(robot, other):
             continue
         after = moved(other, robot, law)

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from onpath.models.control.settable import changed, specs, value_of
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameter_specs import NOTHING, Spec, checked
-from onpath.models.systems.parameters import changed, specs
 
 SPECS = specs(FiveBarParameters)
 NUMBERS = {name: spec for name, spec in SPECS.items() if not spec.options}
@@ -19,7 +19,7 @@ NUMBERS = {name: spec for name, spec in SPECS.items() if not spec.options}
 
 @pytest.mark.parametrize("name", SPECS)
 def test_default_is_allowed_and_explained(name: str) -> None:
-    spec, default = SPECS[name], getattr(FiveBarParameters(), name)
+    spec, default = SPECS[name], value_of(FiveBarParameters(), name)
     assert checked(spec, name, default) == default
     assert spec.help and spec.label and spec.group
     assert spec.options or 0 < spec.step <= spec.high - spec.low
@@ -31,7 +31,7 @@ def test_default_is_allowed_and_explained(name: str) -> None:
 def test_number_is_taken_exactly_in_its_range(name: str, value: float) -> None:
     spec = NUMBERS[name]
     if spec.low <= value <= spec.high:
-        taken = getattr(changed(FiveBarParameters(), name, value), name)
+        taken = value_of(changed(FiveBarParameters(), name, value), name)
         assert taken == (value if abs(value) > NOTHING else 0.0)
     else:
         with pytest.raises(ValueError, match=name):
@@ -42,7 +42,7 @@ def test_number_is_taken_exactly_in_its_range(name: str, value: float) -> None:
 def test_ends_of_a_range_belong_to_it(name: str) -> None:
     spec = NUMBERS[name]
     for value, beyond in ((spec.low, -math.inf), (spec.high, math.inf)):
-        assert getattr(changed(FiveBarParameters(), name, value), name) == value
+        assert value_of(changed(FiveBarParameters(), name, value), name) == value
         with pytest.raises(ValueError, match=f"{name}.*not between"):
             changed(FiveBarParameters(), name, math.nextafter(value, beyond))
 
@@ -59,7 +59,7 @@ def test_an_invalid_value_is_refused_by_name(value: object) -> None:
 @pytest.mark.parametrize("name", [name for name, spec in SPECS.items() if spec.options])
 def test_choices_are_taken_as_text_and_come_back_as_they_are(name: str) -> None:
     for option in SPECS[name].options:
-        taken = getattr(changed(FiveBarParameters(), name, str(option)), name)
+        taken = value_of(changed(FiveBarParameters(), name, str(option)), name)
         assert taken == option and type(taken) is type(option)
 
 

@@ -13,12 +13,12 @@ from scipy.linalg import expm
 
 from onpath.app.exports.zero_dynamics import SETTABLE, as_json, study
 from onpath.models.arrays import Array
+from onpath.models.control.settable import changed, specs, value_of
 from onpath.models.systems.beam import MOST_MODES, beam_modes
 from onpath.models.systems.five_bar import five_bar
 from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.flexible_parameters import FlexibleParameters
-from onpath.models.systems.parameters import changed, specs
 from onpath.models.systems.system import MechanicalSystem
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics, natural_rate, zero_dynamics
 
@@ -55,7 +55,7 @@ def test_the_command_takes_just_the_settings_that_change_its_table() -> None:
     usual, matters = FlexibleParameters(), set[str]()
     table = told(usual)
     for name, spec in specs(FlexibleParameters).items():
-        other = [option for option in spec.options if option != getattr(usual, name)]
+        other = [option for option in spec.options if option != value_of(usual, name)]
         value = other[-1] if other else spec.low + 0.37 * (spec.high - spec.low)
         if told(changed(usual, name, value)) != table:
             matters.add(name)

@@ -15,9 +15,9 @@ from onpath.lessons.action_schema import Action, Script
 from onpath.lessons.cheating import cheats
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.task_schema import Only
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
-from onpath.models.systems.parameters import specs
 from tests.support.built_in import built_in_course
 from tests.support.lesson_texts import LESSON, write_lesson
 

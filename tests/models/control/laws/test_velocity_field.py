@@ -26,6 +26,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.velocity_field import FLYWHEEL
+from onpath.models.control.settable import with_values
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
@@ -143,7 +144,7 @@ def some_sliders(
         values = {each: random.uniform(*ranges[each]) for each in ranges}
         return {"speed": random.uniform(*SPEED), "field_energy": energy, **values}
 
-    return [dataclasses.replace(own, **drawn()) for _ in range(count)]
+    return [with_values(own, drawn()) for _ in range(count)]
 
 
 def check(name: str, count: int, seconds: float, seed: int) -> None:
