@@ -13,7 +13,6 @@ TOPS = ("app", "models", "lessons", "assets")
 # Every folder may import those that stand below it here, and nothing else of the project.
 ORDER = [
     "app.cli",
-    "app.bench",
     "app.notebook",
     "app.server",
     "app.page",
@@ -37,7 +36,7 @@ ORDER = [
 ]
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-PRINTING = ("app/cli/", "app/bench/tables.py")
+PRINTING = ("app/cli/",)
 DRAWING = ("app.page", "app.scene")
 LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""

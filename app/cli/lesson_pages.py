@@ -25,7 +25,7 @@ class WriteGuide:
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
-    """Write a PDF; needs Chromium and the extra onpath[bench]."""
+    """Write a PDF; needs Chromium and the extra onpath[pdf]."""
     folder: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"
@@ -52,7 +52,7 @@ class WriteWorksheet:
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
-    """Write a PDF; needs Chromium and the extra onpath[bench]."""
+    """Write a PDF; needs Chromium and the extra onpath[pdf]."""
     key: Path | None = None
     """Write the key as a page."""
     folder: Path | None = None

@@ -16,7 +16,7 @@ def print_page(html: str, path: Path) -> None:
     browser = find_browser()
     if browser is None:
         raise ValueError(
-            'a PDF needs Chromium and Playwright: pip install "onpath[bench]"; '
+            'a PDF needs Chromium and Playwright: pip install "onpath[pdf]"; '
             "or write --html and print it in a browser"
         )
     from playwright.sync_api import sync_playwright

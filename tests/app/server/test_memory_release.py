@@ -10,12 +10,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from onpath.app.bench.raw_socket import knock
 from onpath.app.server import memory_release
 from onpath.app.server.memory_release import CALM, GROWTH, MANY, TABS, MemoryRelease
 from onpath.app.simulation.simulation_thread import SELDOM
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.secure_server import make_server
+from tests.bench.raw_socket import knock
 from tests.support.waiting import wait_for
 
 WAIT = 20.0  # [s]

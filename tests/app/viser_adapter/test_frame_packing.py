@@ -8,9 +8,9 @@ import pytest
 from viser import _messages
 from viser.infra import Message
 
-from onpath.app.bench.client_protocol import unpacked
 from onpath.app.viser_adapter.frame_packing import MOST_TEMPLATES, Templates, _wire
 from onpath.app.viser_adapter.frame_packing import packed as packed_frame
+from tests.bench.client_protocol import unpacked
 
 NODE, PANEL = _messages.SceneNodeUpdateMessage, _messages.GuiUpdateMessage
 TWO = (np.arange(3.0), np.zeros((0, 3), dtype=np.float32))
