@@ -3,7 +3,8 @@
 # make thorough  the other tests: most pages in Chromium, the numbers that lessons state, whole servers
 #            and crowds, processes that hang, a minute of attacks (.ci/run runs these, too)
 # make fuzz  the property tests with random inputs; make test has the same ones every time
-# make check lint, format, types      make bench  the speed table
+# make check lint, format, types      make bench  the speed tables
+#            (make bench ARGS="--clients 60": a class of sixty)
 # make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
 
 PYTHON ?= python3
@@ -48,7 +49,7 @@ test: $(TOOLS)
 
 thorough: $(TOOLS)
 	$(call BOTH_PARTS,thorough)
-	$(PYTEST) -n 0 -m soak tests/app/bench $(ARGS)
+	$(PYTEST) -n 0 -m soak tests/bench $(ARGS)
 
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)
@@ -71,10 +72,10 @@ format: $(TOOLS)
 	$(BIN)/ruff format .
 
 bench: $(TOOLS)
-	$(BIN)/onpath bench $(ARGS)
+	$(BIN)/python -m tests.bench $(ARGS)
 
 soak: $(TOOLS)
-	$(BIN)/onpath bench --soak 30 $(ARGS)
+	$(BIN)/python -m tests.bench --soak 30 $(ARGS)
 
 # The README's moving picture.
 picture: $(TOOLS)

@@ -17,7 +17,6 @@ TOPS = ("app", "models", "lessons", "assets")
 # Every folder may import those that stand below it here, and nothing else of the project.
 ORDER = [
     "app.cli",
-    "app.bench",
     "app.notebook",
     "app.server",
     "app.page",
@@ -41,7 +40,7 @@ ORDER = [
 ]
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-PRINTING = ("app/cli/", "app/bench/tables.py")
+PRINTING = ("app/cli/",)
 DRAWING = ("app.page", "app.scene")
 LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
@@ -193,7 +192,6 @@ def test_mathematics_knows_no_viewer_thread_or_clock() -> None:
 
 
 ADAPTER = "app.viser_adapter"
-MEASURES = "app.bench"  # a client of its own, and no part of the server
 INSIDE = ("viser", "websockets", "asyncio")
 
 
@@ -227,7 +225,7 @@ def private_parts(tree: ast.AST) -> list[str]:
 def test_only_the_adapter_uses_private_parts_of_viser() -> None:
     def touched(file: Path) -> list[str]:
         folder = folder_of(module_of(file))
-        is_elsewhere = folder.startswith("app.") and folder not in (ADAPTER, MEASURES)
+        is_elsewhere = folder.startswith("app.") and folder != ADAPTER
         return private_parts(parse(file)) if is_elsewhere else []
 
     assert offenders(touched) == []

@@ -22,57 +22,6 @@ from onpath.app.cli.lessons import LessonsCommand
 from onpath.app.cli.serve import Serve
 
 INTERRUPTED = 130
-SOAKED = 40  # honest clients
-
-
-@dataclass(frozen=True)
-class BenchCommand:
-    """Measure the speed of the closed loops and of the lab."""
-
-    quick: bool = False
-    """Run fewer repetitions, and no clients."""
-    clients: tuple[int, ...] = ()
-    """Only measure a server with this many simulated browsers; several numbers run in turn."""
-    seconds: float = 15.0
-    """Duration of the measurement, once all browsers are shown moving robots."""
-    minutes: int = 0
-    """Measure a row per minute for this long, to see whether memory use is constant."""
-    soak: int = 0
-    """Attack a server for so many minutes while 40 simulated browsers (--clients) use labs."""
-
-    def run(self) -> int:
-        """Print the table; return exit code 1 if a bound of the soak is broken."""
-        if self.soak:
-            return self._soak()
-        self._measure()
-        return 0
-
-    def _soak(self) -> int:
-        from onpath.app.bench.tables import bench_soak
-
-        if self.soak < 0 or len(self.clients) > 1 or self.quick or self.minutes:
-            raise ValueError("--soak: expected minutes, and only --clients with one number")
-        return bench_soak(self.clients[0] if self.clients else SOAKED, self.soak)
-
-    def _measure(self) -> None:
-        from onpath.app.bench.crowd import ClientLoad
-        from onpath.app.bench.mouse_latency import check_installed
-        from onpath.app.bench.tables import bench, bench_crowds
-
-        if self.minutes < 0:
-            raise ValueError(f"--minutes {self.minutes}: expected 1 or more")
-        if not self.clients and (self.seconds, self.minutes) != (15.0, 0):
-            raise ValueError("--seconds and --minutes go with --clients")
-        if self.clients and self.quick:
-            raise ValueError("--quick leaves out what --clients asks for")
-        seconds, rows = (60.0, self.minutes) if self.minutes else (self.seconds, 1)
-        crowds = [ClientLoad(clients, seconds, rows) for clients in self.clients]
-        if crowds:
-            bench_crowds(crowds)
-        else:
-            if not self.quick:
-                check_installed()
-            bench(quick=self.quick)
 
 
 @dataclass(frozen=True)
@@ -108,7 +57,6 @@ COMMANDS: dict[str, type[Subcommand]] = {
     "zero-dynamics": ZeroDynamicsCommand,
     "lessons": LessonsCommand,
     "export": ExportCommand,
-    "bench": BenchCommand,
     "forget": Forget,
 }
 

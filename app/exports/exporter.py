@@ -12,7 +12,6 @@ from typing import Any
 import viser
 
 from onpath.app.common.error_log import log_error
-from onpath.app.common.processors import run_anywhere
 from onpath.app.exports.comparison import Results, compared
 from onpath.app.exports.export_process import ExportProcess, ExportStopped
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
@@ -23,7 +22,7 @@ from onpath.models.systems.parameters import Parameters
 
 PATIENCE = 120.0  # [s], time-out of a file, including the files queued before it
 process = ExportProcess()
-_queue = ThreadPoolExecutor(1, "exports", run_anywhere)
+_queue = ThreadPoolExecutor(1, "exports")
 """Passes one file at a time to the process, for all tabs."""
 
 

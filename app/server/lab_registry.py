@@ -76,7 +76,6 @@ class LabRegistry:
     keeper: WriteBehind | None = None
     _entries: dict[str, RegisteredLab] = field(default_factory=dict)
     _opening: set[str] = field(default_factory=set)
-    _dropped: bool = False
     _lock: threading.Condition = field(default_factory=threading.Condition)
     _making: threading.Lock = field(default_factory=threading.Lock)
     _throttle: Throttle = field(default_factory=Throttle)
@@ -294,7 +293,6 @@ class LabRegistry:
         self.simulation.remove(entry.scheduled)
         self._entries.pop(entry.code, None)
         entry.scheduled.session.history.clear()  # the rest waits until garbage is collected
-        self._dropped = True
 
     def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
@@ -312,21 +310,17 @@ class LabRegistry:
     def __len__(self) -> int:
         return len(self._entries)
 
-    def free_memory(self) -> bool:
+    def free_memory(self) -> None:
         """Drop labs that were left a while ago and not used; delete the histories of the others.
 
         A lab that was reopened and not used since is in the database. A history stays where a past
         instant is shown. Not to be called by the simulation thread, for which this waits.
-
-        Returns:
-            Whether any lab has been dropped since the last call; it leaves garbage.
         """
         with self._lock:
             left = [e for e in self._waiting() if self.clock() - e.left > HISTORY_KEPT]
             for entry in left:
                 if not entry.scheduled.lab.asked:
                     self._remove(entry)
-            dropped, self._dropped = self._dropped, False
         sessions = [e.scheduled.session for e in left]
         outdated = [s for s in sessions if s.viewing is None and len(s.history)]
 
@@ -336,7 +330,6 @@ class LabRegistry:
 
         if outdated:
             self.simulation.call(forget)
-        return dropped
 
     def _drop_old(self) -> None:
         waiting = sorted(self._waiting(), key=lambda e: e.left, reverse=True)

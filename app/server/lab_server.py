@@ -34,9 +34,7 @@ from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
-from onpath.app.server.memory_release import INTERVAL, MemoryRelease, limit_heap
 from onpath.app.server.new_lab import new_lab
-from onpath.app.server.shared_processor import SharedProcessor
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.warm_up import warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
@@ -46,7 +44,7 @@ from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.connections import disconnect, network_thread
+from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import make_server
@@ -61,6 +59,7 @@ ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals
 MOST_CLIENTS = 64
 ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
+FREEING = 10.0  # [s] between looks for labs that were left
 
 
 class LabServer:
@@ -108,7 +107,7 @@ class LabServer:
         self.server = make_server(host, port, label="OnPath", **well, **listening)
         self._records, self._retention = records, retention or Retention()
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
-        self._memory = Periodic("memory", INTERVAL, MemoryRelease(self.sessions.free_memory).look)
+        self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
             self._store_labs(records)
@@ -131,10 +130,6 @@ class LabServer:
     def _start(self) -> None:
         self.simulation.start()
         self._memory.start()
-        threads = [self.simulation.thread, network_thread(self.server)]
-        threads += [] if self._keeper is None else [self._keeper.thread]
-        self._processor = SharedProcessor(list(filter(None, threads)))
-        self._processor.start()
         if self._expiry is not None:
             self._expiry.start()
         if self._records is not None:
@@ -158,7 +153,6 @@ class LabServer:
         """Stop the server and all its threads."""
         self._watchdog.stop()
         self._memory.stop()
-        self._processor.stop()
         self._newcomers.stop()
         self.simulation.stop()
         self.sessions.look()
@@ -331,7 +325,6 @@ def serve(
         LessonError: a lesson has errors.
         NotKept: the database cannot be used.
     """
-    limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)

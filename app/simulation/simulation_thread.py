@@ -33,7 +33,6 @@ BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
-SELDOM = (10_000, 5, 1_000)  # allocations before a collection, which stops all threads for 20 ms
 HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
 ALL_COMMANDS, FEWEST = 4e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
@@ -71,8 +70,7 @@ class SimulationThread:
     def start(self) -> None:
         """Start the thread."""
         gc.enable()
-        gc.freeze()  # excludes loaded modules from collections, which would take 0.2 s longer
-        gc.set_threshold(*SELDOM)
+        gc.freeze()  # excludes loaded modules from collections, which would take 0.1 s longer
         sys.setswitchinterval(HANDOVER)
         self.thread.start()
 

@@ -41,7 +41,6 @@ class WriteBehind:
         lost: called with the code of a lab that another process has claimed.
 
     Attributes:
-        thread: the thread that writes.
         warning: why the latest states are not saved yet, in words; empty when they are. Failed
             writes are repeated.
     """
@@ -60,8 +59,8 @@ class WriteBehind:
         self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
         self.warning = ""
-        self.thread = threading.Thread(target=self._run, name="keeper", daemon=True)
-        self.thread.start()
+        self._thread = threading.Thread(target=self._run, name="keeper", daemon=True)
+        self._thread.start()
 
     def submit(self, code: str, make_state: Callable[[], dict[str, Any]]) -> None:
         """Save the state that `make_state` returns. Thread-safe, and does not block.
@@ -124,7 +123,7 @@ class WriteBehind:
         """Write all pending states, and end the thread."""
         self._closing.set()
         self._wanted.set()
-        self.thread.join(FLUSH)
+        self._thread.join(FLUSH)
 
     def _run(self) -> None:
         while not self._closing.is_set():

@@ -11,7 +11,7 @@ import logging
 from collections import Counter
 from http import HTTPStatus
 from ipaddress import IPv4Address, IPv6Address, ip_address, ip_network
-from typing import Any, ClassVar, Generic, TypeVar
+from typing import Any, Generic, TypeVar
 
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
@@ -194,12 +194,7 @@ class CountedConnection(ServerConnection):
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
         place: see places.py.
-        ended: number of all connections of this process that have ended.
-        tabs_ended: those of them that were websockets.
     """
-
-    ended: ClassVar[int] = 0
-    tabs_ended: ClassVar[int] = 0
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
@@ -217,10 +212,6 @@ class CountedConnection(ServerConnection):
     def connection_lost(self, exc: Exception | None) -> None:
         """See `asyncio.Protocol`."""
         self._connections.closed(self)
-        CountedConnection.ended += 1
-        response = self.response
-        if response is not None and response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
-            CountedConnection.tabs_ended += 1
         super().connection_lost(exc)
         self._break_cycles()
 

@@ -1,10 +1,9 @@
-"""The connections of a server's clients, its threads, and the end of a connection."""
+"""The connections of a server's clients, and the end of a connection."""
 
 from __future__ import annotations
 
 import asyncio
 from collections.abc import Callable, Iterable
-from threading import Thread
 
 import viser
 from viser.infra import ClientId
@@ -18,11 +17,6 @@ def connection_of(server: viser.ViserServer, client: int) -> SecureConnection | 
     """The connection of a client; None if it has disconnected, or the server is not `secure`."""
     found = server._websock_server._live_connections.get(ClientId(client))
     return found if isinstance(found, SecureConnection) else None
-
-
-def network_thread(server: viser.ViserServer) -> Thread | None:
-    """The thread in which the event loop of a server runs."""
-    return server._websock_server._server_thread
 
 
 def run_in_thread(server: viser.ViserServer, act: Callable[[], None]) -> None:

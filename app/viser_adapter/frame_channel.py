@@ -4,7 +4,8 @@ viser takes 60 µs for every assignment to a property, wakes its event loop for 
 then waits for more of them; for twenty browsers that is more than one core. Here all messages of a
 frame are one write, issued for all browsers together (`FrameChannel`). Several properties of a node
 are one message (`update_node`). What moves in every frame (`NodeGroup`) makes no messages at all:
-its numbers follow a template (frame_packing.py). This uses private parts of viser, which tests pin.
+its numbers follow messages that are kept (frame_packing.py). This uses private parts of viser,
+which tests pin.
 """
 
 from __future__ import annotations
@@ -27,7 +28,6 @@ from websockets.protocol import State
 from onpath.app.viser_adapter.frame_packing import (
     GroupForm,
     GroupUpdate,
-    Templates,
     expanded,
     packed,
 )
@@ -94,8 +94,8 @@ def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> N
 class FrameChannel:
     """Collects the simulation thread's messages to one browser, and sends those of a frame as one.
 
-    The message bypasses viser's queue if that is empty, and goes through it otherwise, which keeps
-    the order.
+    The message bypasses viser's queue if it is short and the queue is empty, and goes through it
+    otherwise, which keeps the order.
 
     Attributes:
         frames: number of frames that were not empty.
@@ -111,7 +111,6 @@ class FrameChannel:
         self._collector: int | None = None
         self.frames = 0
         self._messages: list[Message | GroupUpdate] = []
-        self._templates = Templates()
         self._queue = partial(type(connection).queue_message, connection)
         connection.queue_message = self._take  # of an earlier channel too, if there was one
 
@@ -152,16 +151,16 @@ class FrameChannel:
         for message in expanded(messages):
             self._queue(message)
 
-    def _packed(self) -> tuple[list[Message | GroupUpdate], bytes]:
+    def _packed(self) -> tuple[list[Message | GroupUpdate], bytes | None]:
         messages, self._messages = self._messages, []
-        return messages, packed(messages, self._templates)
+        return messages, packed(messages)
 
-    def write(self, messages: list[Message | GroupUpdate], data: bytes) -> None:
-        """Send a frame. Runs on the event loop."""
+    def write(self, messages: list[Message | GroupUpdate], data: bytes | None) -> None:
+        """Send a frame, packed unless it is long. Runs on the event loop."""
         socket = self._sockets.get(self._client_id)
         if self.closed or socket is None or socket.protocol.state is not State.OPEN:
             return
-        if self._is_free(socket):
+        if data is not None and self._is_free(socket):
             socket.protocol.send_binary(data)
             socket.send_data()
         else:
@@ -172,6 +171,6 @@ class FrameChannel:
         return not self._buffer.message_from_id and not self._recorders and unsent < MOST_UNSENT
 
 
-def _write(frames: list[tuple[FrameChannel, list[Message | GroupUpdate], bytes]]) -> None:
+def _write(frames: list[tuple[FrameChannel, list[Message | GroupUpdate], bytes | None]]) -> None:
     for channel, messages, data in frames:
         channel.write(messages, data)

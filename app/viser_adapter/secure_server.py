@@ -27,7 +27,6 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from onpath.app.common.error_log import log_error
-from onpath.app.viser_adapter.compression import share_compressors
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.message_event import let_threads_send
@@ -91,7 +90,6 @@ def make_server(
     """
     limits = limits.within(open_files())
     connections = ConnectionLimits(limits, Proxies(trusted_proxies))
-    share_compressors()
     keep_what_is_constant()
     take_decoded_messages()
     logging.getLogger("websockets.server").addFilter(_is_news)

@@ -15,9 +15,9 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, Download, Page
 
-from onpath.app.bench.mouse_latency import NO_TRIANGLES
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import LEFT, RIGHT
+from tests.bench.mouse_latency import NO_TRIANGLES
 from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
 from tests.support.csv_columns import read_csv
 from tests.support.free_lab import fresh

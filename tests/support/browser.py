@@ -15,7 +15,6 @@ from playwright.sync_api import BrowserContext, Locator, Page
 from viser import ClientHandle
 from viser import _messages as wire
 
-from onpath.app.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
@@ -30,6 +29,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.frame_length import FRAME
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.models.systems.parameters import time_step
+from tests.bench.mouse_latency import ARGUMENTS, NO_TRIANGLES
 from tests.support import waiting
 from tests.support.fingers import fingers
 

@@ -14,9 +14,9 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from onpath.app.bench.simulated_browser import MOVING
 from onpath.app.viser_adapter.places import place_of, storage_key
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from tests.bench.simulated_browser import MOVING
 
 PATIENCE = 60.0  # [s]; only ends a test that would hang
 

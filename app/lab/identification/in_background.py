@@ -9,12 +9,11 @@ from __future__ import annotations
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 
-from onpath.app.common.processors import run_anywhere
 from onpath.app.lab.identification.identify import Learned, learn
 from onpath.app.lab.segments import HistoryCopy
 from onpath.models.systems.robots import Robot
 
-_thread = ThreadPoolExecutor(1, "identification", run_anywhere)
+_thread = ThreadPoolExecutor(1, "identification")
 
 
 class Identification:

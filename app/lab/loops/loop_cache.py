@@ -10,7 +10,6 @@ from collections.abc import Callable, Collection
 from concurrent.futures import Future, ThreadPoolExecutor
 from weakref import WeakValueDictionary
 
-from onpath.app.common.processors import run_anywhere
 from onpath.app.lab.loops.compile_queue import CompileQueue
 from onpath.app.lab.loops.typed_loops import Key, TypedLoops
 from onpath.models.closed_loop.loop_kind import Kind
@@ -47,7 +46,7 @@ class LoopCache:
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
         self._refused = dict[Key, None]()  # cannot be compiled; in the order in which that was seen
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
-        self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile", run_anywhere)
+        self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.RLock()
 
     def get(self, robot: Robot, kind: Kind, known: Loop | None = None) -> Loop:

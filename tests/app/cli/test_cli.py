@@ -179,7 +179,7 @@ BAD = [
     ["--privacy-url", "school.example/privacy"],
     ["--privacy-url", "https://school.example/a b"],
     ["serve", "--log-level", "loud"],
-    ["bench", "--slow"],
+    ["forget", "--slow"],
     ["experiment"],
     ["experiment", ""],
     ["experiment", "obstructoin"],
@@ -388,16 +388,6 @@ def test_help_is_given_on_standard_output(capsys: pytest.CaptureFixture[str]) ->
         with pytest.raises(SystemExit) as stop:
             run_command(arguments)
         assert stop.value.code == 0 and words in capsys.readouterr().out
-
-
-def test_bench_without_its_extra_says_what_to_install(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setitem(sys.modules, "playwright", None)  # as if it were not installed
-    assert run_command(["bench"]) == 2
-    said = capsys.readouterr()
-    assert 'pip install "onpath[bench]"' in said.err
-    assert said.out == "" and said.err.count("\n") == 1
 
 
 def test_the_database_may_be_given_in_the_environment(

@@ -13,12 +13,12 @@ import viser
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from onpath.app.bench.raw_socket import frames, is_closed, knock
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.arrivals import MOST_EACH, Arrival, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from tests.bench.raw_socket import frames, is_closed, knock
 from tests.support import waiting
 from tests.support.student import Student
 

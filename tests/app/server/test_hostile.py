@@ -33,16 +33,16 @@ import websockets.sync.client
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from onpath.app.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
-from onpath.app.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock
-from onpath.app.bench.simulated_browser import Browser
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import in_turn
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.frame_length import FRAME
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
+from tests.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
+from tests.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock
+from tests.bench.simulated_browser import Browser
 from tests.support import waiting
 from tests.support.checkout import ROOT
 from tests.support.lab import assert_sound

@@ -12,7 +12,6 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from onpath.app.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from onpath.app.common import error_log
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -21,6 +20,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_connection import FROM_BROWSER
 from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
+from tests.bench.hostile_messages import DRAG, HONEST, HOSTILE, INDEXES
 from tests.support.lab import assert_sound
 from tests.support.student import Student
 from tests.support.waiting import wait_for

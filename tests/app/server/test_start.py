@@ -58,7 +58,6 @@ def file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     file = tmp_path / "onpath.db"
     monkeypatch.setattr(records, "default_file", lambda: file)
     monkeypatch.setattr(lab_server, "LabServer", started)
-    monkeypatch.setattr(lab_server, "limit_heap", lambda: None)
     return file
 
 

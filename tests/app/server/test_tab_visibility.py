@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from onpath.app.bench.client_protocol import answer
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -18,6 +17,7 @@ from onpath.app.server import tab_visibility as onlooker
 from onpath.app.server.lab_server import LabServer
 from onpath.app.server.tab_visibility import PATIENCE, QUESTION_INTERVAL, TICK, TabVisibility
 from onpath.app.simulation.scheduled_lab import ScheduledLab
+from tests.bench.client_protocol import answer
 from tests.support.frame_clock import FrameClock
 from tests.support.lab import new_lab
 from tests.support.student import Student

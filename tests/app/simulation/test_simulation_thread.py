@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 import logging
 import sys
 import threading
+import weakref
 from collections.abc import Callable
 from math import ceil
 from typing import Any
@@ -418,6 +420,35 @@ def test_other_threads_soon_hand_the_interpreter_over() -> None:
     finally:
         thread.stop()
         sys.setswitchinterval(before)
+
+
+class Circle:
+    """Refers to itself, so that counting references does not free it."""
+
+    def __init__(self) -> None:
+        self.itself = self
+
+
+def test_old_garbage_is_collected_while_labs_run() -> None:
+    """By itself, as new objects are made; what was imported before is not examined each time."""
+    gc.collect()
+    before = len(gc.get_objects())
+    gc.disable()  # as while modules are imported
+    thread = SimulationThread()
+    thread.start()
+    try:
+        assert len(gc.get_objects()) < before / 2
+        thing, kept = Circle(), list[Circle]()
+        gc.collect(1)
+        left = weakref.ref(thing)
+        del thing
+        while left() is not None:
+            kept.append(Circle())
+            assert len(kept) < 3 * before
+    finally:
+        thread.stop()
+        gc.unfreeze()
+        gc.enable()
 
 
 def test_another_thread_reads_a_lab_between_two_frames_only() -> None:

@@ -10,9 +10,9 @@ import websockets.sync.client
 from viser import _messages
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from onpath.app.viser_adapter.camera import place_camera
 from onpath.app.viser_adapter.secure_server import make_server
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from tests.support.waiting import wait_for
 
 POSE = {"position": [0.3, -1.2, 0.8], "look_at": [0.1, 0.0, 0.2], "up_direction": [0.0, 0.0, 1.0]}

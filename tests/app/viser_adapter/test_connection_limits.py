@@ -15,10 +15,10 @@ from hypothesis import strategies as st
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from onpath.app.bench.client_protocol import SUBPROTOCOL
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, PerAddress, Proxies
 from onpath.app.viser_adapter.message_filter import FEWEST, OWN_FILES
 from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.bench.client_protocol import SUBPROTOCOL
 from tests.support import waiting
 
 WAIT = 20.0  # [s]; only ends a test that would hang

@@ -15,9 +15,9 @@ import websockets.sync.client
 from viser import uplot
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from onpath.app.viser_adapter.frame_channel import FrameChannel, update_gui, update_node
 from onpath.app.viser_adapter.secure_server import make_server
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed, unpacked
 from tests.support.waiting import wait_for
 
 

@@ -29,7 +29,6 @@ from websockets.typing import Origin, Subprotocol
 from onpath.app.common import error_log
 from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter import secure_connection
-from onpath.app.viser_adapter.compression import LEVEL, compress, stored_head
 from onpath.app.viser_adapter.message_filter import MessageFilter
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
@@ -828,20 +827,3 @@ def test_viser_calls_what_hardening_replaces() -> None:
     assert "self.frames: SimpleQueue[" in inspect.getsource(Assembler.__init__)
     consumer = inspect.getsource(_infra._message_consumer)
     assert "await websocket.recv()" in consumer and "message_class.deserialize(raw)" in consumer
-    producer = inspect.getsource(_infra._message_producer)
-    assert f"zstandard.ZstdCompressor(level={LEVEL})" in producer and "zstd.compress(" in producer
-
-
-@pytest.mark.usefixtures("lab")
-def test_the_connections_of_a_thread_share_a_compressor() -> None:
-    library: Any = _infra
-    make = library.zstandard.ZstdCompressor
-    one, others = make(level=LEVEL), []
-    asking = threading.Thread(target=lambda: others.append(make(level=LEVEL)))
-    asking.start()
-    asking.join()
-    assert make(level=LEVEL) is one and others[0] is not one
-    assert make(level=12, threads=-1) is not make(level=12, threads=-1)  # a recording's
-    assert zstandard.decompress(compress(b"as it was" * 9)) == b"as it was" * 9
-    for size in (0, 1, 255, 256, 5000):
-        assert zstandard.decompress(stored_head(size) + bytes(size)) == bytes(size)

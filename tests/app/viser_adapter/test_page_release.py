@@ -11,14 +11,14 @@ from typing import Any
 
 import pytest
 
-from onpath.app.bench.client_protocol import CAMERA, packed
-from onpath.app.bench.raw_socket import frames, knock
 from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.connection_limits import CountedConnection
 from onpath.app.viser_adapter.page_release import release_page
 from onpath.app.viser_adapter.secure_server import make_server
+from tests.bench.client_protocol import CAMERA, packed
+from tests.bench.raw_socket import frames, knock
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 

@@ -13,10 +13,10 @@ import pytest
 import viser
 from websockets.frames import Frame, Opcode
 
-from onpath.app.bench.client_protocol import CAMERA, packed
-from onpath.app.bench.raw_socket import frames, is_closed, knock
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 from onpath.app.viser_adapter.secure_server import Limits, make_server
+from tests.bench.client_protocol import CAMERA, packed
+from tests.bench.raw_socket import frames, is_closed, knock
 from tests.support import waiting
 
 WAIT = 20.0  # [s]; only ends a test that would hang

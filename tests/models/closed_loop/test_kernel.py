@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from onpath.app.bench.reference import LANES, reference_loop
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -18,6 +17,7 @@ from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import end_point, inverse_kinematics
+from tests.bench.reference import LANES, reference_loop
 from tests.support.rig import DEFAULTS, FOLLOWING, TRACKING, Rig
 
 BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from onpath.app.bench import soak as bench_soak
-from onpath.app.bench.attacks import ATTACKS
-from onpath.app.bench.crowd import folders
-from onpath.app.bench.soak import LATEST, ROW, SLOWEST, SoakRow, plan, soak, verdict
-from onpath.app.cli.main import run_command
+from tests.bench import soak as bench_soak
+from tests.bench.__main__ import run_command
+from tests.bench.attacks import ATTACKS
+from tests.bench.crowd import folders
+from tests.bench.soak import LATEST, ROW, SLOWEST, SoakRow, plan, soak, verdict
 
 HONEST = 6
 MOST_KEPT = 250.0  # [MB]; measured: some 140
@@ -68,5 +68,5 @@ def test_the_verdict_names_the_bounds_that_are_broken(
 
 
 def test_a_soak_takes_no_other_option() -> None:
-    assert run_command(["bench", "--soak", "1", "--quick"]) == 2
-    assert run_command(["bench", "--soak", "-1"]) == 2
+    assert run_command(["--soak", "1", "--quick"]) == 2
+    assert run_command(["--soak", "-1"]) == 2

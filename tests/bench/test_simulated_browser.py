@@ -13,7 +13,6 @@ import pytest
 import websockets.exceptions
 import websockets.sync.client
 
-from onpath.app.bench.simulated_browser import NotServed, Observations, crowd, first_poses
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.simulation import (
@@ -27,6 +26,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.simulated_browser import NotServed, Observations, crowd, first_poses
 
 
 @pytest.mark.parametrize("name", ROBOTS)

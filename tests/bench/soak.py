@@ -10,9 +10,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import cycle, islice
 
-from onpath.app.bench.attacks import ATTACKS
-from onpath.app.bench.crowd import simulated_crowd
-from onpath.app.bench.server_process import Server, serving
+from tests.bench.attacks import ATTACKS
+from tests.bench.crowd import simulated_crowd
+from tests.bench.server_process import Server, serving
+from tests.support.checkout import ROOT
 
 LAST_MINUTE = 61.0  # [s] of simulated time; a lab keeps that of the last minute
 LONGEST_START = 300.0  # [s] to wait for that
@@ -115,8 +116,10 @@ def _rows(server: Server, honest: int, seconds: float, attacks: list[str]) -> It
 
 @contextmanager
 def _attackers(server: Server) -> Iterator[subprocess.Popen[bytes]]:
-    command = [sys.executable, "-m", "onpath.app.bench.attacks", str(server.port)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True) as process:
+    command = [sys.executable, "-m", "tests.bench.attacks", str(server.port)]
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, cwd=ROOT, start_new_session=True
+    ) as process:
         try:
             yield process
         finally:

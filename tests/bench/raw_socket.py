@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from websockets.frames import Frame, Opcode
 from websockets.sync.client import ClientConnection
 
-from onpath.app.bench.client_protocol import SUBPROTOCOL, answer, unpacked
+from tests.bench.client_protocol import SUBPROTOCOL, answer, unpacked
 
 WAIT = 10.0  # [s]
 QUESTIONS = 2  # number of a lab's questions to a new client

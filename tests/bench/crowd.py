@@ -16,12 +16,13 @@ from pathlib import Path
 
 import msgspec
 
-from onpath.app.bench.processor import Processor, watched_processor
-from onpath.app.bench.server_process import Server, serving
-from onpath.app.bench.simulated_browser import Observations
 from onpath.app.server.admission_queue import RESERVED
 from onpath.app.simulation.metrics import LONGEST, Metrics
 from onpath.app.viser_adapter.message_filter import Limits
+from tests.bench.processor import Processor, watched_processor
+from tests.bench.server_process import Server, serving
+from tests.bench.simulated_browser import Observations
+from tests.support.checkout import ROOT
 
 MOST = Limits().max_connections_each  # clients; the server sees them at one address
 SHORTEST = 1.0  # [s]
@@ -136,11 +137,13 @@ def simulated_crowd(
     command = [
         sys.executable,
         "-m",
-        "onpath.app.bench.simulated_browser",
+        "tests.bench.simulated_browser",
         *map(str, (server.port, clients, seconds)),
     ]
     pipe = subprocess.PIPE
-    with subprocess.Popen(command, stdout=pipe, stderr=pipe, start_new_session=True) as process:
+    with subprocess.Popen(
+        command, stdout=pipe, stderr=pipe, cwd=ROOT, start_new_session=True
+    ) as process:
         try:
             yield _lines(process)
         finally:

@@ -1,6 +1,6 @@
 """Simulated browsers, which read everything that a lab sends, drag its robots and move its sliders.
 
-`python -m onpath.app.bench.simulated_browser PORT CLIENTS SECONDS` writes what they observe, one
+`python -m tests.bench.simulated_browser PORT CLIENTS SECONDS` writes what they observe, one
 line of JSON at a time; see `crowd`. They lower their own priority, because real browsers would not
 take processor time from the server.
 """
@@ -25,7 +25,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
-from onpath.app.bench.client_protocol import (
+from tests.bench.client_protocol import (
     CAMERA,
     SUBPROTOCOL,
     answer,

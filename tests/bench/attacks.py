@@ -1,6 +1,6 @@
 """Attacks on a running server, one kind after the other, from a separate address.
 
-`python -m onpath.app.bench.attacks PORT` reads names of `ATTACKS`, and makes each until the next.
+`python -m tests.bench.attacks PORT` reads names of `ATTACKS`, and makes each until the next.
 """
 
 from __future__ import annotations
@@ -18,8 +18,12 @@ from typing import Any
 from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import WebSocketException
 
-from onpath.app.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
-from onpath.app.bench.hostile_messages import (
+from onpath.app.page.panels.robot_panel import label_of
+from onpath.app.viser_adapter.message_filter import Limits
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
+from tests.bench.hostile_messages import (
     BROKEN,
     DRAG,
     GARBAGE,
@@ -28,12 +32,8 @@ from onpath.app.bench.hostile_messages import (
     INDEXES,
     VERSIONS,
 )
-from onpath.app.bench.raw_socket import frames, handshake
-from onpath.app.bench.simulated_browser import Browser, stand_back
-from onpath.app.page.panels.robot_panel import label_of
-from onpath.app.viser_adapter.message_filter import Limits
-from onpath.lessons.words import Words
-from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.raw_socket import frames, handshake
+from tests.bench.simulated_browser import Browser, stand_back
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
 RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
 import viser
 
-from onpath.app.bench.client_protocol import unpacked
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.models.control.benches import BENCHES, RIGHT
+from tests.bench.client_protocol import unpacked
 
 ARGUMENTS = (
     *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),
@@ -29,19 +28,6 @@ NO_TRIANGLES = """
 WINDOW = {"width": 1000, "height": 700}
 STEP = 30.0  # [px]
 MOVED = 1e-4  # [m]
-
-
-def check_installed() -> None:
-    """Check the installation before the other tables are measured.
-
-    Raises:
-        ValueError: Playwright is not installed.
-    """
-    if find_spec("playwright") is None:
-        raise ValueError(
-            'bench needs Playwright to move a mouse: pip install "onpath[bench]"'
-            " (--quick and --clients do without)"
-        )
 
 
 def seen_at(camera: viser.CameraHandle, box: dict[str, float], point: np.ndarray) -> np.ndarray:

@@ -17,13 +17,6 @@ from pathlib import Path
 
 import numpy as np
 
-from onpath.app.bench.crowd import HEAD, ClientLoad, folders, measured
-from onpath.app.bench.mouse_latency import mouse_latency
-from onpath.app.bench.reference import LANES, reference_loop
-from onpath.app.bench.server_process import serving
-from onpath.app.bench.simulated_browser import first_poses
-from onpath.app.bench.soak import HEAD as SOAK_HEAD
-from onpath.app.bench.soak import SoakRow, soak, verdict
 from onpath.app.common.chromium import find_browser
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
@@ -42,6 +35,13 @@ from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
+from tests.bench.crowd import HEAD, ClientLoad, folders, measured
+from tests.bench.mouse_latency import mouse_latency
+from tests.bench.reference import LANES, reference_loop
+from tests.bench.server_process import serving
+from tests.bench.simulated_browser import first_poses
+from tests.bench.soak import HEAD as SOAK_HEAD
+from tests.bench.soak import SoakRow, soak, verdict
 
 TICKS = 160  # per timed call
 KEEP_BYTECODE = {"PYTHONDONTWRITEBYTECODE": ""}  # as for a user, whatever this process was told

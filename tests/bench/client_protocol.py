@@ -8,8 +8,9 @@ from typing import Any
 import msgspec
 import numpy as np
 import viser
+import zstandard
 
-from onpath.app.viser_adapter.compression import decompress
+from onpath.app.common.per_thread import per_thread
 
 SUBPROTOCOL = f"viser-v{viser.__version__}"
 CAMERA = {
@@ -58,13 +59,18 @@ class _Window(msgspec.Struct):
     messages: list[MessageHeader]
 
 
+@per_thread
+def _decompressor() -> zstandard.ZstdDecompressor:
+    return zstandard.ZstdDecompressor()
+
+
 _window = msgspec.msgpack.Decoder(_Window)
 
 
 def message_headers(raw: bytes) -> list[MessageHeader]:
     """The headers of the messages in a frame; faster than `unpacked`."""
     end = 16 + int.from_bytes(raw[8:16], "little")
-    return _window.decode(decompress(raw[16:end])).messages
+    return _window.decode(_decompressor().decompress(raw[16:end])).messages
 
 
 def unpacked(raw: bytes) -> list[dict[str, Any]]:
@@ -73,7 +79,7 @@ def unpacked(raw: bytes) -> list[dict[str, Any]]:
     A frame is two lengths, compressed msgpack, then the arrays, each aligned to 8 bytes.
     """
     end = 16 + int.from_bytes(raw[8:16], "little")
-    window = msgspec.msgpack.decode(decompress(raw[16:end]))
+    window = msgspec.msgpack.decode(_decompressor().decompress(raw[16:end]))
     buffers: list[bytes] = []
     for length in window.get("binaryBufferLengths", ()):
         start = end + -end % 8

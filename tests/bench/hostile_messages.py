@@ -7,8 +7,8 @@ from typing import Any
 
 from websockets.frames import Opcode
 
-from onpath.app.bench.client_protocol import CAMERA
-from onpath.app.bench.raw_socket import frames
+from tests.bench.client_protocol import CAMERA
+from tests.bench.raw_socket import frames
 
 ROOM = "/"
 RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}

@@ -1,1 +1,0 @@
-"""Measures a running lab: time per tick, many clients, latency of the mouse."""
