@@ -289,22 +289,6 @@ def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> Mesh
     return Mesh(corners, np.array([(0, 1, 2), (0, 2, 3)]))
 
 
-def ring(
-    inner: float, outer: float, low: tuple[float, float], high: tuple[float, float], y: float
-) -> Mesh:
-    """The part of a flat ring about the origin that lies in a box in (x, z), at depth y, [m]."""
-    angle = np.linspace(0.0, 2.0 * np.pi, 361)
-    circle = np.column_stack([np.cos(angle), np.zeros_like(angle), np.sin(angle)])
-    vertices = np.concatenate([inner * circle, outer * circle]) + [0.0, y, 0.0]
-    n, i = len(angle), np.arange(len(angle) - 1)
-    faces = np.concatenate(
-        [np.column_stack([i, i + 1, i + n]), np.column_stack([i + 1, i + n + 1, i + n])]
-    )
-    middle = vertices[faces].mean(axis=1)[:, [0, 2]]
-    inside = ((middle >= low) & (middle <= high)).all(axis=1)
-    return Mesh(vertices, faces[inside])
-
-
 def joined(*parts: Mesh) -> Mesh:
     """The parts as one mesh."""
     begins = np.cumsum([0, *(len(part.vertices) for part in parts[:-1])])

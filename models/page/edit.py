@@ -17,7 +17,7 @@ from onpath.models.page.fit import mix_function, scan_of
 from onpath.models.paths.curve_faults import LEAST_MARGIN, SAMPLES, STRANDS_APART, TUBE
 from onpath.models.paths.path_design import REACH
 from onpath.models.paths.projection import LocalCurve, basis
-from onpath.models.systems.robots import ArmGeometry, Robot
+from onpath.models.systems.robots import Robot, margin_of
 
 CHECKS = ("outside", "singular", "bends", "cusp", "narrow")
 """The last numbers of a row of `check`; "crosses" is found apart."""
@@ -50,7 +50,7 @@ def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     }
 
 
-def edit_scans(robot: Robot, kind: Kind, arm: ArmGeometry) -> dict[str, Scan]:
+def edit_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:
     """The scans for planar paths of a kind; the constants are the table.
 
     grid: `GRID` steps from state 0 -> the argument `grid` of `distance`
@@ -65,7 +65,7 @@ def edit_scans(robot: Robot, kind: Kind, arm: ArmGeometry) -> dict[str, Scan]:
         "outline": _points(
             kind, OUTLINE, lambda z: placed(robot, lift(z, False), seen) + offset, to_the_end=True
         ),
-        "check": _check(kind, arm),
+        "check": _check(robot, kind),
         "strands": _strands(kind),
     }
 
@@ -79,7 +79,7 @@ def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bo
     return scan_of(0, [number, table, ca.SX.sym("rows", 0)], [number + 1, of(point)])
 
 
-def _check(kind: Kind, arm: ArmGeometry) -> Scan:
+def _check(robot: Robot, kind: Kind) -> Scan:
     """See `edit_scans` and `curve_faults`; the last row of a closed curve is its first point."""
     state, table = ca.SX.sym("state", 4), ca.SX.sym("table", *kind.table_shape)
     number, length, before = state[0], state[1], state[2:]
@@ -89,7 +89,7 @@ def _check(kind: Kind, arm: ArmGeometry) -> Scan:
     z, first, second = local.sigma, local.first, local.second
     step, speed = z - before, ca.sqrt(ca.dot(first, first))
     length = ca.if_else(number == 0, 0, length + ca.sqrt(ca.dot(step, step)))
-    margin = arm.margin(z)
+    margin = margin_of(robot, lift_of(robot, kind)(z, False))
     inside, near = margin > 0, margin < LEAST_MARGIN
     bends = ca.fabs(_cross(first, second)) > speed**3 / TUBE
     found = [ca.logic_not(inside), ca.logic_and(inside, near), bends, speed < LEAST_SPEED]

@@ -31,11 +31,11 @@ from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.paths.curves import TABLE_SHAPE, circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.drags import play
 from tests.support.drawing import drawn_length, evaluated
 
-FIVE_BAR = rigid_five_bar()
+FIVE_BAR = RIGID_FIVE_BAR
 RIGID = stage_of(FIVE_BAR)
 STAGES = {name: stage_of(entry.make(entry.parameters())) for name, entry in ROBOTS.items()}
 

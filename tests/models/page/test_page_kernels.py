@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-import casadi as ca
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -35,8 +34,6 @@ from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import changed
 
 pytestmark = pytest.mark.thorough
-
-RIGID = [name for name, entry in ROBOTS.items() if entry.make(entry.parameters()).geometry]
 
 
 def scanned(
@@ -93,9 +90,8 @@ def found_faults(name: str, curve: Curve) -> dict[str, Array]:
     """Check -> where it fails, as a page finds it."""
     entry = ROBOTS[name]
     robot = entry.make(entry.parameters())
-    assert robot.geometry
     kind = kind_of("path_following", entry.parameters(), curve)
-    scans, table = edit_scans(robot, kind, robot.geometry), curve.table()
+    scans, table = edit_scans(robot, kind), curve.table()
     table = table.reshape(kind.table_shape, order="F")
     _, rows = scanned(scans["check"], np.zeros(4), table, np.zeros((0, SAMPLES + 1)), SAMPLES + 1)
     i, j = np.triu_indices(SAMPLES, 1)
@@ -118,14 +114,15 @@ def found_faults(name: str, curve: Curve) -> dict[str, Array]:
     return found
 
 
-@pytest.mark.parametrize("name", RIGID)
+@pytest.mark.parametrize("name", ROBOTS)
 def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
     entry, rng, seen = ROBOTS[name], np.random.default_rng(3), set[str]()
     robot = entry.make(entry.parameters())
     designs = [presets()[preset] for preset in ("clover", "segment", "figure of eight")]
     for design in designs:
         for index in range(8):
-            moved = design.moved(index % len(design.points), rng.uniform(-0.2, 0.2, 2))
+            aside = robot.reach * rng.uniform(-0.5, 0.5, 2)
+            moved = design.moved(index % len(design.points), aside)
             seen |= _compared(name, moved, robot.margin)
     assert seen >= {"outside", "bends", "crosses"}
     bent = _compared(name, presets()["clover"].moved(0, np.array([0.03, 0.0])), robot.margin)
@@ -140,20 +137,6 @@ def _compared(name: str, design: PathDesign, reach: Any) -> set[str]:
         if not fault.reason.code.endswith("crosses"):  # there, one for each point of the curve
             np.testing.assert_allclose(fault.points, points, atol=1e-12)
     return set(found)
-
-
-@pytest.mark.parametrize("name", RIGID)
-def test_the_symbols_of_an_arm_are_its_functions(name: str) -> None:
-    entry, rng = ROBOTS[name], np.random.default_rng(0)
-    robot = entry.make(entry.parameters())
-    z, y = ca.SX.sym("z", 2), ca.SX.sym("y", robot.system.p)
-    assert robot.geometry
-    margin = ca.Function("margin", [z], [robot.geometry.margin(z)])
-    rest = ca.Function("rest", [y], [robot.geometry.rest(y)])
-    points = rng.uniform(-0.25, 0.25, (100, 2))
-    np.testing.assert_allclose(margin(points.T).full()[0], robot.margin(points), atol=1e-9)
-    for point in robot.frame.lift(points[robot.margin(points) > 0.05]):
-        np.testing.assert_allclose(rest(point).full().ravel(), robot.rest(point), atol=1e-12)
 
 
 GAINS = st.floats(0, 1000)
