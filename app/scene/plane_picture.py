@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from viser.transforms import SO3
 
 from onpath.app.common import palette
-from onpath.app.scene.stage import Stage
+from onpath.app.scene.stage import PlanePicture, Stage
 from onpath.app.viser_adapter.images import add_png, png_of
-from onpath.models.arrays import Array
 from onpath.models.control.rank_test import cell_centres
 from onpath.models.paths.curve_faults import LEAST_MARGIN
 from onpath.models.systems.robots import Robot
@@ -28,20 +26,6 @@ UPRIGHT = 0.5
 """Least vertical part of a unit vector that counts as upright."""
 ZONE_PIXELS, ZONE_WIDTH, ZONE_OPACITY = 160, 0.02, 0.2
 """Of the shading near singular configurations: pixels in either direction, width [m], opacity."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlanePicture:
-    """A picture that is ready to be shown.
-
-    Attributes:
-        low, high: opposite corners in the path's plane, shape (2,), [m].
-        png: the picture.
-    """
-
-    low: Array
-    high: Array
-    png: bytes
 
 
 class PlaneNodes:

@@ -10,11 +10,10 @@ from onpath.app.common import palette
 from onpath.app.scene.plane_picture import (
     BEHIND_LINKS,
     BEHIND_PATH,
-    PlanePicture,
     contains_base,
     map_corners,
 )
-from onpath.app.scene.stage import Stage
+from onpath.app.scene.stage import PlanePicture, Stage
 from onpath.app.viser_adapter.images import png_of
 from onpath.models.control.rank_test import IN_REACH, RankGrid, cell_centres, rank_grid
 from onpath.models.systems.parameters import Parameters

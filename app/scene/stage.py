@@ -22,8 +22,6 @@ from onpath.models.control.laws.registry import law_named
 if TYPE_CHECKING:
     import viser
 
-    from onpath.app.scene.plane_picture import PlanePicture
-
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.8
 """Width to height of windows whose panel covers the lower part; also in assets/page/portrait.js."""
@@ -32,6 +30,20 @@ GROUND = 1.6
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
 """Lines over a robot: offset below the title's position, and height, [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanePicture:
+    """A picture that is ready to be shown.
+
+    Attributes:
+        low, high: opposite corners in the path's plane, shape (2,), [m].
+        png: the picture.
+    """
+
+    low: Array
+    high: Array
+    png: bytes
 
 
 @dataclass(frozen=True, slots=True, eq=False)

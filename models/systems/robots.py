@@ -194,8 +194,9 @@ AXES = {2: ((1, 0, 0), (0, 0, 1)), 3: ((1, 0, 0), (0, 1, 0), (0, 0, 1))}
 
 def margin_of(robot: Robot, y: ca.SX) -> ca.SX:
     """`Robot.margin_at` as an expression in y, (p, 1) -> (1, 1)."""
-    margin = _relative(robot.core)(robot.inverse(y))
-    return ca.if_else(margin > 0, margin, 0)  # also where it is NaN
+    q = robot.inverse(y)
+    margin, within = _relative(robot.core)(q), ca.fabs(ca.sum1(q)) <= _FINITE
+    return ca.if_else(ca.logic_and(within, margin > 0), margin, 0)
 
 
 def stop_code(robot: Robot) -> ca.SX:
@@ -275,7 +276,7 @@ def _extras(robot: Robot) -> Rows:
     return Rows([system.q, system.v, system.parameters], ca.vertcat(*robot.extras.values()))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class BalancedLinkage:
     """Data of a balanced five-bar for the identification.
 
