@@ -96,22 +96,14 @@ def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
     return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
 
 
-def _affine(robot: Robot) -> tuple[ca.DM, ca.DM]:
-    """(3, p) and (3, 1): `Robot.place` is affine."""
-    p = robot.system.p
-    origin = robot.place(np.zeros(p))
-    return ca.DM((robot.place(np.eye(p)) - origin).T), ca.DM(origin)
-
-
 def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
     """A vector of the output space in the picture."""
-    return ca.densify((seen @ _affine(robot)[0]) @ vector)
+    return ca.densify((seen @ ca.DM(robot.axes.T)) @ vector)
 
 
 def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
-    """`Robot.unplace`: the columns of the affine map are orthonormal."""
-    linear, origin = _affine(robot)
-    return linear.T @ (point - origin)
+    """`Robot.unplace`."""
+    return ca.DM(robot.axes) @ (point - ca.DM(robot.home))
 
 
 def lift_of(robot: Robot, kind: Kind) -> Lift:

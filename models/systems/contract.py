@@ -252,8 +252,7 @@ def _continuity_faults(robot: Robot, y: Array) -> Iterator[str]:
             continue
         jump = np.abs(np.diff(robot.rest(way), axis=0)).max()
         if jump > 0.1:
-            where = np.round(target, 3)
-            yield f"inverse(y) jumps by {jump:.2g} on the way from home to y = {where}"
+            yield f"inverse(y) jumps by {jump:.2g} on the way from home to y = {target.round(3)}"
             return
 
 

@@ -61,14 +61,14 @@ class Robot:
         plant: numbers of `system.parameters` for a user's parameters, shape (k,).
         model: the same as the controller assumes them; `plant` for one that knows its robot.
         inverse: y -> a configuration at rest with h(q) = y, (p, 1) -> (n, 1), continuous where the
-            regularity is positive. A value of NaN says that y is out of reach; functions such as
-            `ca.acos` and `ca.sqrt` give it of themselves.
+            regularity is positive; of a redundant robot, one of many. NaN says that y is out of
+            reach; functions such as `ca.acos` and `ca.sqrt` give it of themselves.
         skeleton: (q, exaggeration) -> ends of the bars, (3, 2 k), begin and end as columns, and
             joints, (3, j), in the robot's frame, [m]. The last bar ends at the end-point.
             Deflections are multiplied by the exaggeration.
         home: where y = 0 is in the robot's frame, [m].
-        reach: no end-point is farther from the origin of the robot's frame, [m]. Pictures of the
-            workspace extend so far, and the hand's target stays as near to the start.
+        reach: no end-point is farther from the origin of the robot's frame, [m]. Maps of the
+            workspace extend so far, and a hand pulls no farther than this from home.
         regularity: an expression in q that is positive for a configuration of `inverse`, and 0
             where it is singular or at a limit, (1, 1). None: |det(J B)| with J = dh/dq, and
             sqrt(det(J B Bᵀ Jᵀ)) for m > p: how far the motors' joints move the end-point.
