@@ -133,7 +133,7 @@ def _laws(asked: tuple[str, ...], contest: Contest) -> list[str]:
     typed = {name: law_name(name) for name in asked if is_text(name)}
     for name in typed.values():
         if not contest.admits(name):
-            raise ValueError(f"{name}: it does not suit {contest.robot.label}")
+            raise ValueError(f"{name}: it does not suit {contest.robot.name}")
     known = [*contest.laws(), *typed.values()]
     return _known(tuple(typed.get(name, name) for name in asked), known, "law")
 

@@ -18,7 +18,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
-"""Label and scale of those of `Robot.extra_fields` that are drawn."""
+"""Label and scale of those of `Robot.extras` that are drawn."""
 STYLES = ("-", "--", ":")
 """Of the first, second and third component of a quantity."""
 Quantity = Callable[[Trajectory], tuple[np.ndarray]]
@@ -90,11 +90,10 @@ def _shown_xi(run: Trajectory, level_set: bool) -> np.ndarray:
 def _extra_panels(experiment: Experiment):
     """Panels, as in `panels_of`, for what the robot has to plot besides what every robot has."""
     robot, parameters = experiment.robot(), experiment.parameters
-    names = [name for name, _ in robot.extra_fields if name in EXTRA]
+    names = [name for name in robot.extras if name in EXTRA]
 
     def values(run: Trajectory, name: str) -> np.ndarray:
-        states = zip(run.fields["q"], run.fields["v"], strict=True)
-        return np.stack([robot.extras(q, v, parameters)[name] for q, v in states])
+        return robot.measured(run.fields["q"], run.fields["v"], parameters)[name]
 
     def panel(name: str):
         label, scale = EXTRA[name]

@@ -67,12 +67,12 @@ def rank_summary(entry: RobotEntry, parameters: Parameters) -> dict[str, Any]:
 def _extent(robot: Robot) -> tuple[Array, Array]:
     """Corners of the square of the path's plane that contains what the robot reaches."""
     base = robot.frame.planar(robot.unplace(np.zeros(3)))
-    return base - robot.reach[1], base + robot.reach[1]
+    return base - robot.reach, base + robot.reach
 
 
 def _section(robot: Robot, parameters: Parameters) -> tuple[Array, Array]:
     """Coordinates (y1, y3) in the plane y2 = 0 ahead of the base, and σ_min there."""
-    base, outer = robot.unplace(np.zeros(3)), robot.reach[1]
+    base, outer = robot.unplace(np.zeros(3)), robot.reach
     low = np.array([base[0], base[2] - outer])
     centres = cell_centres(low, low + [outer, 2 * outer], (CELLS // 2, CELLS))
     y = np.stack([centres[..., 0], 0 * centres[..., 0], centres[..., 1]], axis=-1)

@@ -155,8 +155,7 @@ def _faults(
     finite = np.isfinite(states)
     joined = (-1, q.shape[-1])
     if finite.all() and (
-        robot.is_calm(q, v)
-        or robot.fault(q.reshape(joined), v.reshape(joined), ticks.parameters) is None
+        robot.fault(q.reshape(joined), v.reshape(joined), ticks.parameters) is None
     ):
         return [None] * len(members)
     found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]

@@ -59,7 +59,7 @@ class ExternalForces:
         self.grabbed: str | None = None
         self.pushes: dict[str, Push] = dict.fromkeys(BENCHES, FREE)
         self._offsets: dict[str, Array] = {}
-        home, reach = robot.frame.lift(np.zeros(2)), robot.reach[1]
+        home, reach = robot.frame.lift(np.zeros(2)), robot.reach
         self._lowest, self._highest = home - reach, home + reach  # of targets
         if wall is not None:
             self.set_wall(wall)

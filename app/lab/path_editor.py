@@ -13,6 +13,7 @@ from onpath.models.paths.curve_faults import Fault, curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.paths.space_curves import saddle
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import Robot
 
 BLEND = 0.3  # [s]
@@ -82,7 +83,8 @@ class PathEditor:
         if faults := self._faults(design or self.design):
             self.rise = before
             reasons = tuple(fault.reason for fault in faults)
-            raise CodedError("error.cannot_follow", robot=self.robot.label, reasons=reasons)
+            label = ROBOTS[self.robot.name].label
+            raise CodedError("error.cannot_follow", robot=label, reasons=reasons)
         if design is not None:
             self.commit(design)
         self._blend_to(self.proposed or self.design)

@@ -32,7 +32,7 @@ def sample_layout(robot: Robot) -> Layout:
             ("y", p),
             ("far", 1),
             ("integral_used", 1),
-            *robot.extra_fields,
+            *((name, each.numel()) for name, each in robot.extras.items()),
         )
     )
 
@@ -54,10 +54,7 @@ def samples_of(
     layout = sample_layout(robot)
     samples = rows.take(places(robot), axis=1)
     samples[:, layout.slices["distance"].start] = distances
-    if robot.extra_fields:
-        log = log_layout(robot.system)
-        for sample, row in zip(samples, rows, strict=True):
-            there = log.unpack(row)
-            for name, value in robot.extras(there["q"], there["v"], parameters).items():
-                sample[layout.slices[name]] = value
+    there = log_layout(robot.system).unpack(rows)
+    for name, values in robot.measured(there["q"], there["v"], parameters).items():
+        samples[:, layout.slices[name]] = values
     return samples

@@ -102,7 +102,7 @@ class Session:
         If that has the same states, both go on from the present one; otherwise they start anew.
         """
         robot = self.entry.make(parameters)  # may take long, and another thread may read the lab
-        if self.robot.extra_fields:
+        if self.robot.extras:
             self.history.settle()  # the samples depend on the parameters
         rise = rise_of(parameters)
         if rise != self.editor.rise:

@@ -17,7 +17,8 @@ from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.mark_nodes import MarkNodes
 from onpath.app.scene.mass_nodes import MassNodes
-from onpath.app.scene.rank_nodes import RankNodes, RankPicture, rank_picture
+from onpath.app.scene.plane_picture import PlaneNodes
+from onpath.app.scene.rank_nodes import RankPicture, rank_picture
 from onpath.app.scene.robot_labels import LARGE, LETTERS, RobotLabels
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tube_nodes import TubeNodes, TubeShape, tube_shape
@@ -27,7 +28,7 @@ from onpath.models.systems.robots import Robot
 
 Submit = Callable[[Callable[[], None]], None]
 Result = TypeVar("Result")
-Node = TypeVar("Node", RobotLabels, TubeNodes, RankNodes, ErrorNodes, MassNodes, MarkNodes)
+Node = TypeVar("Node", RobotLabels, TubeNodes, PlaneNodes, ErrorNodes, MassNodes, MarkNodes)
 
 
 @dataclass(slots=True)
@@ -136,7 +137,7 @@ class Overlays:
         self.switches = switches
         self._labels = Drawn[RobotLabels]()
         self._tube = Drawn[TubeNodes]()
-        self._rank = Drawn[RankNodes]()
+        self._rank = Drawn[PlaneNodes]()
         self._errors = Drawn[ErrorNodes]()
         self._mass = Drawn[MassNodes]()
         self._marks = Drawn[MarkNodes]()
@@ -197,7 +198,7 @@ class Overlays:
             self._rank.remove()
         else:
             key = self._map.key
-            self._rank.show(key, lambda: RankNodes(self._scene, self.stage, self._robot, picture))
+            self._rank.show(key, lambda: PlaneNodes(self._scene, "/show/rank", self.stage, picture))
 
     def _follow_errors(self, snapshot: PageSnapshot) -> None:
         if self.switches.errors:

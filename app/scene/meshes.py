@@ -5,10 +5,8 @@ The parts are made beforehand, by `part_shapes.py`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 
@@ -73,33 +71,3 @@ def sheet(low: tuple[float, float], high: tuple[float, float], y: float) -> Mesh
     (x0, z0), (x1, z1) = low, high
     corners = np.array([(x0, y, z0), (x1, y, z0), (x1, y, z1), (x0, y, z1)])
     return Mesh(corners, np.array([(0, 1, 2), (0, 2, 3)]))
-
-
-def rings(
-    radii: Sequence[tuple[float, float]],
-    low: tuple[float, float],
-    high: tuple[float, float],
-    y: float,
-) -> Mesh:
-    """The parts of flat rings about the origin that lie in a box in (x, z), at depth y, [m].
-
-    Args:
-        radii: of each ring, the inner and the outer one.
-    """
-    import trimesh  # here, because it takes half a second; `warm_up` has done it
-
-    turn = trimesh.transformations.rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0])
-    whole: Any = trimesh.util.concatenate(
-        [
-            trimesh.creation.revolve([(outer, 0.0), (inner, 0.0)], sections=180, transform=turn)
-            for inner, outer in radii
-        ]
-    )
-    vertices, faces = whole.vertices, whole.faces
-    for axis in (0, 2):
-        inward = np.eye(3)[axis]
-        for corner, normal in ((low, inward), (high, -inward)):
-            vertices, faces, _ = trimesh.intersections.slice_faces_plane(
-                vertices, faces, plane_normal=normal, plane_origin=np.insert(corner, 1, 0.0)
-            )
-    return Mesh(vertices + [0.0, y, 0.0], faces)

@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.common import palette
 from onpath.app.lab.snapshots.snapshot import Motion, PathView, Snapshot
-from onpath.app.scene import meshes
 from onpath.app.scene.captions import Captions
 from onpath.app.scene.contact_nodes import ContactNodes
 from onpath.app.scene.hand_nodes import HandNodes
 from onpath.app.scene.mouse import Mouse, SceneCallbacks
 from onpath.app.scene.path_nodes import PathNodes
+from onpath.app.scene.plane_picture import PlaneNodes
 from onpath.app.scene.pointer import Pointer
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.robot_nodes import RobotNodes
@@ -28,7 +27,6 @@ from onpath.app.scene.stage import (
     Insets,
     Stage,
     Titles,
-    add_copies,
     build_stage,
     view_of,
 )
@@ -41,10 +39,6 @@ from onpath.lessons.words import ENGLISH, Words
 if TYPE_CHECKING:
     import viser
 
-ZONE_DEPTH = 0.052
-"""y of the shading of singular places [m]: behind the links."""
-ZONE_WIDTH = 0.02
-"""Width of the shading at a singular circle [m]."""
 UP = np.array([0.0, 0.0, 1.0])
 """Direction that is upwards in the picture."""
 
@@ -91,7 +85,7 @@ class Scene:
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None
         self.captions = Captions(words)
-        self._zone: viser.BatchedMeshHandle | None = None
+        self._zone: PlaneNodes | None = None
 
     @property
     def stage(self) -> Stage:
@@ -148,22 +142,13 @@ class Scene:
             note.show(self._words("scene.draw") if drawing else snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
-        """Shades the neighbourhood of the singular circles about the base pivot."""
+        """Shades where the robot is nearly singular, in the plane of the path."""
         if self._zone is not None:
             self._zone.remove()
             self._zone = None
-        if not visible:
-            return
-        half = float(np.ptp(self._origins[:, 0])) / 2 or 0.6
-        inner, outer = self._stage.reach
-        middle = float(self._stage.low[0] + self._stage.high[0]) / 2
-        box = ((middle - half, self._stage.floor), (middle + half, outer + 0.2))
-        inside = max(0.0, inner - ZONE_WIDTH)
-        radii = [(inside, inner + ZONE_WIDTH), (outer - ZONE_WIDTH, outer)]
-        zone = meshes.rings(radii, *box, ZONE_DEPTH)
-        self._zone = add_copies(
-            self._client.scene, "/zone", zone, self._origins, palette.WARNING, opacity=0.16
-        )
+        if visible:
+            picture = self._stage.zone()
+            self._zone = PlaneNodes(self._client.scene, "/zone", self._stage, picture)
 
     def show_start(self, visible: bool) -> None:
         """Shows the start of the next run, to be dragged, or hides it."""

@@ -16,6 +16,7 @@ from onpath.app.scene.tones import LIGHT, Tones
 from onpath.app.viser_adapter.frame_channel import update_node
 from onpath.lessons.benches import bench_titles
 from onpath.lessons.words import ENGLISH, Words
+from onpath.models.arrays import Array
 from onpath.models.control.laws.registry import law_named
 
 if TYPE_CHECKING:
@@ -32,6 +33,20 @@ TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class PlanePicture:
+    """A picture that is ready to be shown.
+
+    Attributes:
+        low, high: opposite corners in the path's plane, shape (2,), [m].
+        png: the picture.
+    """
+
+    low: Array
+    high: Array
+    png: bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Stage:
     """Placement of a kind of robot, and its view. Points are in the robot's own frame, [m].
 
@@ -44,7 +59,9 @@ class Stage:
             the end-point.
         pulls: planes through the end-point in which it is pulled, by name, the default first;
             their own points do not matter.
-        reach: radii of the circles about the base pivot at which the robot is singular.
+        reach: no end-point is farther from the origin of the robot's frame, [m].
+        axes: origin of the path's plane, and its two coordinate directions, shape (3,) each.
+        zone: shading of what is nearly singular in that plane.
         title: position of the title; the second line is lower by a third of its height.
         note: position of the note that the drawing is not to scale.
         force_scale: length of the force's arrow [m/N].
@@ -62,7 +79,9 @@ class Stage:
     azimuth: float
     path_plane: DragPlane
     pulls: dict[str, DragPlane]
-    reach: tuple[float, float]
+    reach: float
+    axes: tuple[Array, Array, Array]
+    zone: Callable[[], PlanePicture]
     title: np.ndarray
     note: np.ndarray
     force_scale: float
@@ -90,7 +109,7 @@ class Stage:
 
         A hand's target is limited in the same way in the lab.
         """
-        home, outer = self.path_plane.point, self.reach[1]
+        home, outer = self.path_plane.point, self.reach
         return Box(home - outer, home + outer)
 
     @property

@@ -9,6 +9,7 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
+from onpath.app.scene.plane_picture import zone_picture
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tones import LIGHT, Tones
@@ -51,6 +52,8 @@ def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
         path_plane=plane,
         pulls=pulls,
         reach=robot.reach,
+        axes=_axes(robot),
+        zone=lambda: zone_picture(stage_of(robot), robot),
         title=np.array(drawing.title or (middle, 0.0, high[2] - 0.033)),
         note=np.array(drawing.note or (middle, 0.0, floor + 0.06)),
         force_scale=drawing.force_scale,
@@ -70,9 +73,15 @@ def _side_by_side(apart: float, azimuth: float) -> dict[str, np.ndarray]:
 
 def _path_plane(robot: Robot) -> DragPlane:
     """The plane of the paths in the robot's frame, its normal away from the viewer."""
-    origin, right, up = robot.place(robot.frame.lift(np.array([(0.0, 0.0), (1, 0), (0, 1)])))
-    normal = np.cross(right - origin, up - origin)
+    origin, right, up = _axes(robot)
+    normal = np.cross(right, up)
     return DragPlane(origin, -normal if normal[1] < 0 else normal)
+
+
+def _axes(robot: Robot) -> tuple[Array, Array, Array]:
+    """Origin of the path's plane, and its two coordinate directions, in the robot's frame."""
+    origin, right, up = robot.place(robot.frame.lift(np.array([(0.0, 0.0), (1, 0), (0, 1)])))
+    return origin, right - origin, up - origin
 
 
 def _box(robot: Robot) -> tuple[Array, Array]:

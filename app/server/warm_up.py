@@ -27,7 +27,6 @@ LATER = (
     "scipy.interpolate",
     "scipy.linalg",
     "scipy.signal",
-    "trimesh",
 )
 REST = 3.0  # [s] in which the first browser can open its lab
 TRIES = 5

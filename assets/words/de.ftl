@@ -1207,6 +1207,7 @@ stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich
 stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist divergiert
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
+stop-limit = der Roboter ist nahe an einer singulären Stellung oder am Ende eines Gelenkwegs: Seine Motoren können die Spitze nicht in jede Richtung bewegen
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch

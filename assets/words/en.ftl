@@ -933,6 +933,7 @@ stop-typed_law = the typed law gives a number that is not finite, or is larger t
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
+stop-limit = the robot is close to a singular configuration or to the end of a joint's travel: its motors cannot move the end-point in every direction
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong

@@ -18,13 +18,11 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.errors import Message
 from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.robots import FASTEST_JOINT, NOT_FINITE, Robot
+from onpath.models.systems.robots import Robot, stop_code, stops_of
 
 GRID = 128
 """Points of the path from which the search for the closest one begins."""
 REFINEMENTS = 4
-MOST = 1e6
-"""Angles [rad] and deflections [m] beyond this are not finite."""
 Lift = Callable[[ca.SX, bool], ca.SX]
 
 
@@ -70,22 +68,14 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
 
 
 def measurements(robot: Robot, parameters: Parameters) -> dict[str, ca.Function]:
-    """Of a robot with a flexible link, measured: (q, v) -> the tip's deflection [m], energy [J].
-
-    The first is linear in q, the other a sum of squares of the entries of q and v.
-    """
-    if "deflection" not in dict(robot.extra_fields):
+    """Of a robot with a flexible link, measured: (q, v) -> the tip's deflection [m], energy [J]."""
+    if not robot.extras.keys() >= {"deflection", "internal_energy"}:
         return {}
-    n = robot.system.n
-    q, v, zero = ca.SX.sym("q", n), ca.SX.sym("v", n), np.zeros(n)
-    linear, stored, moving = np.zeros((3, n))
-    for i, unit in enumerate(np.eye(n)):
-        found = robot.extras(unit, zero, parameters)
-        linear[i], stored[i] = found["deflection"][0], found["internal_energy"][0]
-        moving[i] = robot.extras(zero, unit, parameters)["internal_energy"][0]
-    energy = ca.dot(ca.DM(stored), q**2) + ca.dot(ca.DM(moving), v**2)
-    both = ca.vertcat(ca.dot(ca.DM(linear), q), energy)
-    return {"measured": ca.Function("measured", [q, v], [_dense(both)])}
+    system = robot.system
+    both = ca.vertcat(robot.extras["deflection"], robot.extras["internal_energy"])
+    plant = ca.SX(ca.DM(robot.plant(parameters)))
+    values = ca.substitute(both, system.parameters, plant)
+    return {"measured": ca.Function("measured", [system.q, system.v], [_dense(values)])}
 
 
 def grid_of(robot: Robot, curve_points: Array) -> Array:
@@ -106,22 +96,14 @@ def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
     return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
 
 
-def _affine(robot: Robot) -> tuple[ca.DM, ca.DM]:
-    """(3, p) and (3, 1): `Robot.place` is affine."""
-    p = robot.system.p
-    origin = robot.place(np.zeros(p))
-    return ca.DM((robot.place(np.eye(p)) - origin).T), ca.DM(origin)
-
-
 def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
     """A vector of the output space in the picture."""
-    return ca.densify((seen @ _affine(robot)[0]) @ vector)
+    return ca.densify((seen @ ca.DM(robot.axes.T)) @ vector)
 
 
 def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
-    """`Robot.unplace`: the columns of the affine map are orthonormal."""
-    linear, origin = _affine(robot)
-    return linear.T @ (point - origin)
+    """`Robot.unplace`."""
+    return ca.DM(robot.axes) @ (point - ca.DM(robot.home))
 
 
 def lift_of(robot: Robot, kind: Kind) -> Lift:
@@ -173,16 +155,9 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
 
 def _fault(robot: Robot) -> ca.Function:
     """See `fault_in`: the first reason that holds."""
-    n = robot.system.n
-    q, v, theta_ref = ca.SX.sym("q", n), ca.SX.sym("v", n), ca.SX.sym("theta_ref")
-    fast, finite = ca.SX(0), ca.SX(1)
-    for i in range(n):
-        fast = ca.fmax(fast, ca.logic_and(ca.fabs(v[i]) > FASTEST_JOINT, ca.fabs(v[i]) <= MOST))
-        finite = ca.fmin(ca.fmin(finite, ca.fabs(q[i]) <= MOST), ca.fabs(v[i]) <= MOST)
-    checks = [fast, *ca.vertsplit(robot.broken(q, v)), ca.logic_not(finite), theta_ref != theta_ref]
-    code = ca.SX(0)
-    for number, bad in reversed([*enumerate(checks, 1)]):
-        code = ca.if_else(bad, number, code)
+    q, v, theta_ref = robot.system.q, robot.system.v, ca.SX.sym("theta_ref")
+    own, last = stop_code(robot), len(stops_of(robot)) + 3
+    code = ca.if_else(own, own, ca.if_else(theta_ref != theta_ref, last, 0))
     return ca.Function("fault", [q, v, theta_ref], [code])
 
 
@@ -192,8 +167,7 @@ def stop_reasons(robot: Robot, parameters: Parameters, q: Array | None, law: str
     Args:
         q: a configuration of the run, or None; see `Robot.reasons`.
     """
-    fast = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
-    reasons = [fast, *robot.reasons(q, parameters), NOT_FINITE]
+    reasons = [*robot.reasons(q, parameters)]
     if q is not None and (causes := foreseen(robot, law, q, parameters)):
         reasons = [Message("stop.because", {"reason": r, "causes": causes}) for r in reasons]
     return [*reasons, not_finite(law)]

@@ -118,7 +118,7 @@ def record(
 
 def measured_names(robot: Robot) -> list[str]:
     """Names of the columns of the joint angles as measured."""
-    units = (name.rpartition("_") for name in robot.coordinate_names[: robot.system.joints])
+    units = (name.rpartition("_") for name in robot.system.coordinate_names[: robot.system.joints])
     return [f"{name}_measured_{unit}" for name, _, unit in units]
 
 
@@ -137,13 +137,13 @@ def header(
         measured: whether there are columns of the joint angles as measured.
     """
     p, m = robot.system.p, robot.system.m
-    units = (name.rpartition("_") for name in robot.coordinate_names)
+    units = (name.rpartition("_") for name in robot.system.coordinate_names)
     xi = [(f"xi{i + 1}", "m2" if level_set and i == 0 else "m") for i in range(p - 1)]
     return [
         "t_s",
         *["bench"] * benches,
         "law",
-        *robot.coordinate_names,
+        *robot.system.coordinate_names,
         *(f"{name}_rate_{unit}_s" for name, _, unit in units),
         *(f"y{i + 1}_m" for i in range(p)),
         "theta_rad",

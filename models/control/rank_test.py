@@ -150,8 +150,7 @@ def section_map(robot: Robot, parameters: Parameters, y: Array) -> Array:
 
     Source: eq. (11).
     """
-    far, (inner, outer) = np.linalg.norm(robot.place(y), axis=-1), robot.reach
-    inside = (far > inner + IN_REACH) & (far < outer - IN_REACH)
+    inside = robot.margin_at(y) > IN_REACH
     values = np.full(inside.shape, np.nan)
     values[inside] = least_gain(decoupling_matrices(robot, parameters, robot.rest(y[inside])))
     return values

@@ -24,7 +24,7 @@ from onpath.models.paths.path_checks import (
 )
 from onpath.models.paths.path_design import REACH
 from onpath.models.paths.projection import basis
-from onpath.models.systems.robots import ArmGeometry, Robot
+from onpath.models.systems.robots import Robot, margin_of
 
 CHECKS = (*POINT_CHECKS, "narrow")
 """The last numbers of a row of `check`; "crosses" is found apart."""
@@ -55,7 +55,7 @@ def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     }
 
 
-def edit_scans(robot: Robot, kind: Kind, arm: ArmGeometry) -> dict[str, Scan]:
+def edit_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:
     """The scans for planar paths of a kind; the constants are the table.
 
     grid: `GRID` steps from state 0 -> the argument `grid` of `distance`
@@ -70,7 +70,7 @@ def edit_scans(robot: Robot, kind: Kind, arm: ArmGeometry) -> dict[str, Scan]:
         "outline": _points(
             kind, OUTLINE, lambda z: placed(robot, lift(z, False), seen) + offset, to_the_end=True
         ),
-        "check": _check(kind, arm),
+        "check": _check(robot, kind),
         "strands": _strands(kind),
     }
 
@@ -84,7 +84,7 @@ def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bo
     return scan_of(0, [number, table, ca.SX.sym("rows", 0)], [number + 1, of(point)])
 
 
-def _check(kind: Kind, arm: ArmGeometry) -> Scan:
+def _check(robot: Robot, kind: Kind) -> Scan:
     """See `edit_scans`; the last row of a closed curve is its first point."""
     state, table = ca.SX.sym("state", 4), ca.SX.sym("table", *kind.table_shape)
     number, length, before = state[0], state[1], state[2:]
@@ -92,7 +92,8 @@ def _check(kind: Kind, arm: ArmGeometry) -> Scan:
     z, first, second, _ = ca.vertsplit(table @ basis(theta, kind.closed), 2)
     step = z - before
     length = ca.if_else(number == 0, 0, length + ca.sqrt(ca.dot(step, step)))
-    at = PathPoint(first, second, arm.margin(z))
+    margin = margin_of(robot, lift_of(robot, kind)(z, False))
+    at = PathPoint(first, second, margin)
     row = ca.vertcat(z, length, *(check(at) for check in POINT_CHECKS.values()), 0)
     after = ca.vertcat(number + 1, length, z)
     return scan_of(0, [state, table, ca.SX.sym("rows", 0)], [after, row])

@@ -9,14 +9,14 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import lift_of
 from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.projection import basis
-from onpath.models.systems.robots import ArmGeometry, Robot
+from onpath.models.systems.robots import Robot
 
 
-def begin_function(robot: Robot, kind: Kind, kernel: Kernel, arm: ArmGeometry) -> ca.Function:
+def begin_function(robot: Robot, kind: Kind, kernel: Kernel) -> ca.Function:
     """(table, first state on another path) -> the first state at θ = 0 of this path, at rest."""
     table, (symbol, state) = ca.SX.sym("table", *kind.table_shape), kernel.state.symbols("state")
     start = table[:2, :] @ basis(ca.SX(0), kind.closed)
-    q = arm.rest(lift_of(robot, kind)(start, False))
+    q = robot.inverse(lift_of(robot, kind)(start, False))
     theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
     state = dict(state) | {"q": q, "encoder": q[: robot.system.joints]} | theta
     return ca.Function("begin", [table, symbol], [ca.densify(kernel.state.join(state))])

@@ -38,7 +38,7 @@ from onpath.models.studies.schedule import Schedule
 from onpath.models.studies.scheduled_run import ScheduledRun
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
-from onpath.models.systems.flexible_robot import flexible_five_bar_robot
+from onpath.models.systems.flexible_robot import flexible_five_bar_robot, start_of
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters, rise_of
@@ -263,7 +263,7 @@ def _off_the_ellipse(robot: Robot) -> Array:
     With another plane, it is as far off that, at the same planar coordinates.
     """
     usual = flexible_five_bar_robot()
-    y = usual.endpoint(usual.start)
+    y = usual.endpoint(start_of())
     if robot.frame == usual.frame:
         return y
     z = usual.frame.planar(y)

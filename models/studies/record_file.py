@@ -60,7 +60,7 @@ def _columns(robot: Robot, measured: bool) -> list[str]:
     system, known = robot.system, header(robot)
     rates = known[2 + system.n : 2 + 2 * system.n]
     efforts = [n for n in known if n.startswith(("tau", "force"))]
-    angles = list(robot.coordinate_names)
+    angles = list(robot.system.coordinate_names)
     if measured:
         angles[: system.joints] = measured_names(robot)
     return ["t_s", *angles, *rates, *efforts]

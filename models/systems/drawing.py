@@ -92,6 +92,8 @@ class Drawing:
         strip: number of the last bars that are pieces of one flexible strip; the others are links.
         motors: joints that are drawn as motors, besides those at the base pivot.
         base: support of the robot: two uprights with motors, or a column with a turntable.
+        axes: directions of the outputs in the robot's frame, orthonormal; None: two outputs are
+            its x and z, three its x, y and z.
         away: horizontal direction (x, y) across the links, away from the viewer, of unit length.
         depths: of the layers.
         elevation, azimuth: angles of the camera, downward and from the right, [rad].
@@ -107,6 +109,7 @@ class Drawing:
     strip: int = 0
     motors: tuple[int, ...] = ()
     base: Literal["uprights", "pedestal"] = "uprights"
+    axes: tuple[Point, ...] | None = None
     away: tuple[float, float] = (0.0, 1.0)
     depths: Depths = Depths()
     elevation: float = math.radians(9.0)

@@ -18,7 +18,6 @@ import casadi as ca
 import numpy as np
 
 from onpath.assets import asset_path
-from onpath.models.arrays import Array
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 
 HOME = np.array([np.pi / 2, np.pi])
@@ -156,53 +155,22 @@ def _solve_symmetric(mass: ca.SX, rhs: ca.SX) -> ca.SX:
     return ca.vertcat(inverse * (rhs[0, :] - b * second), second)
 
 
-def end_point(q: Array, l1: float, l4: float) -> Array:
-    """The end-point y = h(q), shape (..., 2) -> (..., 2), [m].
+def inverse_kinematics(y: ca.SX, l1: float, l4: float) -> ca.SX:
+    """Joint angles of the elbow-up pose with the end-point at y, (2, 1) -> (2, 1), [rad].
 
-        y = (l1 cos q1 - l4 cos q2 - l4, l1 sin q1 - l4 sin q2 - l1)
-
-    Source: eq. (13).
-    """
-    q1, q2 = q[..., 0], q[..., 1]
-    x, z = l1 * np.cos(q1) - l4 * np.cos(q2), l1 * np.sin(q1) - l4 * np.sin(q2)
-    return np.stack([x - l4, z - l1], axis=-1)
-
-
-def inverse_kinematics(y: Array, l1: float, l4: float) -> Array:
-    """Joint angles of the elbow-up pose with the end-point at y.
+    The home pose is q = (π/2, π); NaN out of reach.
 
     Args:
-        y: end-point, shape (..., 2), [m].
+        y: end-point, [m].
         l1, l4: link lengths, [m].
-
-    Returns:
-        q, shape (..., 2), [rad]; the home pose is q = (π/2, π).
-
-    Raises:
-        ValueError: a point is out of reach.
 
     Source: inverse of eq. (13).
     """
-    x, z = y[..., 0] + l4, y[..., 1] + l1
-    with np.errstate(over="ignore", invalid="ignore"):  # far beyond any reach
-        reach = np.hypot(x, z)
-        cosine = (l1**2 + reach**2 - l4**2) / (2 * l1 * np.where(reach > 0, reach, 1.0))
-    if not np.all((np.abs(cosine) <= 1) & (reach > 0)):
-        raise ValueError(
-            f"end-point out of reach: it must stay between {abs(l1 - l4):.3f} m and {l1 + l4:.3f} m"
-            " of the base"
-        )
-    q1 = np.arctan2(z, x) + np.arccos(cosine)
-    q2 = np.arctan2(l1 * np.sin(q1) - z, l1 * np.cos(q1) - x)
-    return np.stack([q1, np.mod(q2, 2 * np.pi)], axis=-1)
-
-
-def singularity_margin(q: Array) -> Array:
-    """|sin(q1 - q2)|, which is 0 where the parallelogram collapses, shape (..., 2) -> (...).
-
-    Source: eq. (14).
-    """
-    return np.abs(np.sin(q[..., 0] - q[..., 1]))
+    x, z = y[0] + l4, y[1] + l1
+    reach = ca.sqrt(x**2 + z**2)
+    q1 = ca.atan2(z, x) + ca.acos((l1**2 + reach**2 - l4**2) / (2 * l1 * reach))
+    q2 = ca.atan2(l1 * ca.sin(q1) - z, l1 * ca.cos(q1) - x)
+    return ca.vertcat(q1, q2 - 2 * np.pi * ca.floor(q2 / (2 * np.pi)))
 
 
 def skeleton(q: ca.SX, l1: float, l2: float, l4: float) -> tuple[ca.SX, ca.SX]:

@@ -22,7 +22,6 @@ from functools import partial
 import casadi as ca
 import numpy as np
 
-from onpath.models.arrays import Array
 from onpath.models.systems.beam import BeamModes, beam_modes
 from onpath.models.systems.flexible_links import NAMES, PAYLOAD
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
@@ -155,13 +154,15 @@ def flexible_five_bar(
     parts = _lagrangian(s) if plant == "lagrangian" else _unit_modes(s)
     w = 2 / ca.sqrt(s.p["l"]) * ca.dot((-1.0) ** np.arange(modes), s.f)
     tip = _end_point(s, w)
+    modal = (f"f{j + 1}_m1.5" for j in range(modes))  # because φ is in m^-0.5
     load = tip_load(s.p[PAYLOAD], s.q, s.v, tip, waist=2) if loaded else no_load(s.q.numel())
     return mechanical_system(
-        name="flexible_five_bar",
+        name="flexible",
         q=s.q,
         v=s.v,
         parameters=parameters,
         parameter_names=names,
+        coordinate_names=("q1_rad", "q2_rad", "q3_rad", *modal),
         mass=_mass(parts, rho) + load.inertia,
         bias=ca.vertcat(parts.bias, rho * parts.modal_bias) + load.bias,
         inputs=RIGID,
@@ -267,20 +268,3 @@ def _over(divisor: ca.SX, value: ca.SX) -> ca.SX:
     CasADi would turn a product with 1 / divisor back into a division; 2 / divisor can be shared.
     """
     return (2 / divisor) * (0.5 * value)
-
-
-def end_point(q: Array, l1: float, beam: BeamModes, alpha: float = 1.0) -> Array:
-    """y for q = (q1, q2, q3, f...), shape (..., n) -> (..., 3), [m].
-
-    Args:
-        l1: length of link 1, [m].
-        beam: the modes.
-        alpha: share of the deflection: 1 for the actual tip, 0 for that of a rigid link.
-
-    Source: eq. (22).
-    """
-    w = alpha * (q[..., RIGID:] @ beam.tip)
-    radius = l1 * np.cos(q[..., 0]) - beam.length * np.cos(q[..., 1])
-    height = l1 * np.sin(q[..., 0]) - beam.length * np.sin(q[..., 1]) - l1
-    c3, s3 = np.cos(q[..., 2]), np.sin(q[..., 2])
-    return np.stack([radius * c3 - w * s3, radius * s3 + w * c3, height], axis=-1)

@@ -1,34 +1,294 @@
-"""The interface of robots, as the lab and the experiments use them.
+"""Robots: what a robot is, and everything that follows from it.
 
-A module of this folder that defines a `ROBOT`, a `RobotEntry`, is found by the catalogue: one file
-with M, c, B, h, parameters and reach is a robot. Details of its drawing that do not follow from
-bars and joints are in `drawing.py`, with a default for each.
+A module of this folder that defines a `ROBOT`, a `RobotEntry`, is found by the catalogue.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from operator import itemgetter
-from typing import Protocol
+from dataclasses import dataclass, field, replace
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
-from onpath.models.paths.frames import Frame
+from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
 FASTEST_JOINT = 100.0  # [rad/s]; a run with faster joints counts as diverged
+TOO_FAST = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
 NOT_FINITE = Message("stop.range")
+SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
+LEAST_REGULARITY = 0.02
+"""Regularity, in parts of that at home, below which a run is stopped, unless a robot says when."""
+_FINITE = float(np.finfo(float).max)
+_PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
+class Stop:
+    """A state in which a run of a robot counts as diverged.
+
+    Attributes:
+        when: nonzero in such a state, an expression in the system's q and v, (1, 1).
+        reason: why. It may depend on the configuration, (n,), and the parameters; for None, it must
+            hold in every configuration.
+    """
+
+    when: ca.SX
+    reason: Message | Callable[[Array | None, Parameters], Message]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True, weakref_slot=True)
+class Robot:
+    """A robot: expressions in the symbols of its equations of motion, and a few numbers.
+
+    Everything else is computed from these expressions, here with arrays of numbers, and in
+    exported pages. `faults_of` in `contract.py` says what is wrong with a robot. The robot's frame
+    has x to the right, y away from the viewer, z up, and its origin where the robot is mounted.
+
+    Attributes:
+        system: the equations of motion, made by `mechanical_system`: M(q), B(q), h(q), potential
+            energy and friction; c(q, v) follows from them, so that nobody derives it by hand. With
+            n > m = p, some coordinates have no motor; with m > p, the robot is redundant. The
+            numbers in h(q) are not among those that a user can change.
+        plant: numbers of `system.parameters` for a user's parameters, shape (k,).
+        model: the same as the controller assumes them; `plant` for one that knows its robot.
+        inverse: y -> a configuration at rest with h(q) = y, (p, 1) -> (n, 1), continuous where the
+            regularity is positive; of a redundant robot, one of many. NaN says that y is out of
+            reach; functions such as `ca.acos` and `ca.sqrt` give it of themselves.
+        skeleton: (q, exaggeration) -> ends of the bars, (3, 2 k), begin and end as columns, and
+            joints, (3, j), in the robot's frame, [m]. The last bar ends at the end-point.
+            Deflections are multiplied by the exaggeration.
+        home: where y = 0 is in the robot's frame, [m].
+        reach: no end-point is farther from the origin of the robot's frame, [m]. Maps of the
+            workspace extend so far, and a hand pulls no farther than this from home.
+        regularity: an expression in q that is positive for a configuration of `inverse`, and 0
+            where it is singular or at a limit, (1, 1). None: |det(J B)| with J = dh/dq, and
+            sqrt(det(J B Bᵀ Jᵀ)) for m > p: how far the motors' joints move the end-point.
+        stops: when a run counts as diverged, besides too fast joints and numbers that are not
+            finite. None: where the regularity is less than `LEAST_REGULARITY` times that at home.
+        extras: quantities to plot besides those of every robot, in q, v and the system's
+            parameters, (size, 1) each.
+        frame: how the plane of the path lies in the output space.
+        drawing: details of its drawing that do not follow from bars and joints.
+        substeps: Runge-Kutta steps per tick.
+        grip: the springs by which a hand and a brake act on its end-point.
+        shared: the robot whose loops it shares, as it differs in `frame.numbers` only.
+    """
+
+    system: MechanicalSystem
+    plant: Callable[[Parameters], Array]
+    model: Callable[[Parameters], Array]
+    inverse: Callable[[ca.SX], ca.SX]
+    skeleton: Callable[[ca.SX, ca.SX], tuple[ca.SX, ca.SX]]
+    home: tuple[float, float, float]
+    reach: float
+    regularity: ca.SX | None = None
+    stops: tuple[Stop, ...] | None = None
+    extras: Mapping[str, ca.SX] = field(default_factory=dict[str, ca.SX])
+    frame: Frame = _PLANE
+    drawing: Drawing = _DRAWING
+    substeps: int = 1
+    grip: Grip = _GRIP
+    shared: Robot | None = None
+
+    @property
+    def name(self) -> str:
+        """As on the command line and in files."""
+        return self.system.name
+
+    @property
+    def core(self) -> Robot:
+        """The robot whose loops it shares, itself if there is no other."""
+        return self.shared or self
+
+    def endpoint(self, q: Array) -> Array:
+        """The actual end-point, shape (..., n) -> (..., p), [m]."""
+        return self.unplace(_tip(self.core)(q))
+
+    def rest(self, y: Array) -> Array:
+        """Configurations at rest with the end-point at y, shape (..., p) -> (..., n).
+
+        Raises:
+            ValueError: a point is out of reach.
+        """
+        q = _inverse(self.core)(y)
+        if not np.isfinite(q).all():
+            bad = y[~np.isfinite(q).all(-1)].reshape(-1, self.system.p)[0]
+            where = ", ".join(f"{value:.4g}" for value in bad)
+            raise ValueError(f"end-point out of reach of the robot: y = ({where}) m")
+        return q
+
+    def margin_at(self, y: Array) -> Array:
+        """Regularity at rest with the end-point at y, in parts of that at home, (..., p) -> (...).
+
+        0 where the robot is singular or y out of reach.
+        """
+        return _margin(self.core)(y)[..., 0]
+
+    def margin(self, z: Array) -> Array:
+        """`margin_at` points z of the path's plane, shape (..., 2) -> (...).
+
+        If `frame.space` is a frame, also of points (z, ζ) above the plane, (..., 3) -> (...).
+        """
+        return self.margin_at(self.frame.lift(z))
+
+    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
+        """The first row in which a run has diverged, and why; None if in none.
+
+        Whether a row has diverged depends on that row alone, so that the rows of several robots can
+        be searched together; the reason may depend on the parameters.
+
+        Args:
+            q, v: shape (rows, n).
+        """
+        quiet = np.abs(v).max(initial=0.0) <= FASTEST_JOINT and np.isfinite(q).all()  # no NaN in v
+        if quiet and not _stopped(self.core)(q, v).any():
+            return None  # in every frame of a sound run, and so by the cheaper function
+        codes = _stop_code(self.core)(q, v)[:, 0]
+        if not codes.any():
+            return None
+        first = int(np.flatnonzero(codes)[0])
+        where = q[first] if np.isfinite(q[first]).all() else None
+        return first, self.reasons(where, parameters)[int(codes[first]) - 1]
+
+    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
+        """Why a run may stop, in the order of the numbers of `stop_code`.
+
+        Args:
+            q: the configuration, shape (n,). None: the reasons hold in every configuration.
+        """
+        own = (stop.reason for stop in stops_of(self))
+        told = [why if isinstance(why, Message) else why(q, parameters) for why in own]
+        return TOO_FAST, *told, NOT_FINITE
+
+    def measured(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
+        """The values of `extras`, shape (..., size) each; q and v: (..., n)."""
+        if not self.extras:
+            return {}
+        values = _extras(self.core)(q, v, self.plant(parameters))
+        ends = np.cumsum([each.numel() for each in self.extras.values()])[:-1]
+        return dict(zip(self.extras, np.split(values, ends, axis=-1), strict=True))
+
+    def place(self, y: Array) -> Array:
+        """Points of the output space in the robot's frame, (..., p) -> (..., 3), [m]."""
+        return y @ self.axes + np.array(self.home)
+
+    def unplace(self, point: Array) -> Array:
+        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
+        return (point - np.array(self.home)) @ self.axes.T
+
+    @property
+    def axes(self) -> Array:
+        """Directions of the outputs in the robot's frame, shape (p, 3)."""
+        return np.array(self.drawing.axes or AXES[self.system.p], dtype=float)
+
+
+AXES = {2: ((1, 0, 0), (0, 0, 1)), 3: ((1, 0, 0), (0, 1, 0), (0, 0, 1))}
+"""By the number of outputs: in the vertical plane y = 0 of the robot's frame, or in space."""
+
+
+def margin_of(robot: Robot, y: ca.SX) -> ca.SX:
+    """`Robot.margin_at` as an expression in y, (p, 1) -> (1, 1)."""
+    q = robot.inverse(y)
+    margin, within = _relative(robot.core)(q), ca.fabs(ca.sum1(q)) <= _FINITE
+    return ca.if_else(ca.logic_and(within, margin > 0), margin, 0)
+
+
+def stop_code(robot: Robot) -> ca.SX:
+    """Why a state is not one of a sound run, an expression in the system's q and v, (1, 1).
+
+    0 for a sound one, or the place in `Robot.reasons`, counted from 1: too fast, the first of the
+    robot's stops, or not finite.
+    """
+    q, v = robot.system.q, robot.system.v
+    fast, total = ca.fabs(v[0]), ca.sum1(q) + ca.sum1(v)
+    for rate in ca.vertsplit(v)[1:]:
+        fast = ca.fmax(fast, ca.fabs(rate))
+    finite = ca.fabs(total) <= _FINITE
+    checks = [fast > FASTEST_JOINT, *(stop.when for stop in stops_of(robot)), ca.logic_not(finite)]
+    code = ca.SX(0)
+    for number, bad in reversed([*enumerate(checks, 1)]):
+        code = ca.if_else(bad, number, code)
+    return code
+
+
+def stops_of(robot: Robot) -> tuple[Stop, ...]:
+    """`Robot.stops`, or what None stands for."""
+    return _usual_stops(robot.core) if robot.stops is None else robot.stops
+
+
+@lru_cache(maxsize=64)
+def _usual_stops(robot: Robot) -> tuple[Stop, ...]:
+    return (Stop(_relative(robot)(robot.system.q) < LEAST_REGULARITY, AT_A_LIMIT),)
+
+
+@lru_cache(maxsize=64)
+def _relative(robot: Robot) -> ca.Function:
+    """The function q -> regularity in parts of that at home."""
+    system = robot.system
+    regularity = _reach_of_motors(robot) if robot.regularity is None else robot.regularity
+    home = robot.inverse(ca.SX(ca.DM(robot.frame.lift(np.zeros(2)))))
+    absolute = ca.Function("regularity", [system.q], [regularity])
+    return ca.Function("relative", [system.q], [regularity / float(ca.evalf(absolute(home)))])
+
+
+def _reach_of_motors(robot: Robot) -> ca.SX:
+    """See `Robot.regularity`; the end-point is that of the skeleton, free of parameters."""
+    system, tip = robot.system, robot.skeleton(robot.system.q, ca.SX(1))[0][:, -1]
+    jacobian = ca.jacobian(ca.DM(robot.axes) @ tip, system.q)
+    moved = ca.densify(jacobian @ system.actuation)
+    if system.m == system.p:
+        return ca.fabs(ca.det(moved))
+    return ca.sqrt(ca.fmax(ca.det(moved @ moved.T), 0))
+
+
+@lru_cache(maxsize=64)
+def _tip(robot: Robot) -> Rows:
+    q = robot.system.q
+    return Rows([q], robot.skeleton(q, ca.SX(1))[0][:, -1])
+
+
+@lru_cache(maxsize=64)
+def _inverse(robot: Robot) -> Rows:
+    y = ca.SX.sym("y", robot.system.p)
+    return Rows([y], robot.inverse(y))
+
+
+@lru_cache(maxsize=64)
+def _margin(robot: Robot) -> Rows:
+    y = ca.SX.sym("y", robot.system.p)
+    return Rows([y], margin_of(robot, y))
+
+
+@lru_cache(maxsize=64)
+def _stopped(robot: Robot) -> Rows:
+    """Whether one of the stops holds."""
+    bad = ca.SX(0)
+    for stop in stops_of(robot):
+        bad = ca.fmax(bad, stop.when)
+    return Rows([robot.system.q, robot.system.v], bad)
+
+
+@lru_cache(maxsize=64)
+def _stop_code(robot: Robot) -> Rows:
+    return Rows([robot.system.q, robot.system.v], stop_code(robot))
+
+
+@lru_cache(maxsize=64)
+def _extras(robot: Robot) -> Rows:
+    system = robot.system
+    return Rows([system.q, system.v, system.parameters], ca.vertcat(*robot.extras.values()))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class BalancedLinkage:
     """Data of a balanced five-bar for the identification.
 
@@ -40,19 +300,6 @@ class BalancedLinkage:
     l1: float
     l4: float
     built: Mapping[str, float]
-
-
-@dataclass(frozen=True, slots=True)
-class ArmGeometry:
-    """Kinematics of a robot in symbols, for pages that compute without Python.
-
-    Attributes:
-        margin: as `Robot.margin`, of a point of the path's plane, (2, 1) -> (1, 1).
-        rest: as `Robot.rest`, of an end-point within reach, (p, 1) -> (n, 1).
-    """
-
-    margin: Callable[[ca.SX], ca.SX]
-    rest: Callable[[ca.SX], ca.SX]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,184 +321,24 @@ class FlexibleLink:
     critical_alpha: Callable[[Parameters, Array], float]
 
 
-class Robot(Protocol):
-    """A robot: equations of motion, parameters, kinematics, limits and drawing.
-
-    Planar coordinates z are those of the path's plane.
-    """
-
-    @property
-    def name(self) -> str:
-        """As on the command line."""
-        ...
-
-    @property
-    def label(self) -> str:
-        """As shown."""
-        ...
-
-    @property
-    def system(self) -> MechanicalSystem:
-        """The equations of motion."""
-        ...
-
-    @property
-    def frame(self) -> Frame:
-        """How the plane of the path lies in the output space."""
-        ...
-
-    @property
-    def core(self) -> Robot:
-        """The robot that differs from it at most in where its path lies, and shares its loops."""
-        ...
-
-    @property
-    def substeps(self) -> int:
-        """Runge-Kutta steps per tick."""
-        ...
-
-    @property
-    def grip(self) -> Grip:
-        """The springs by which a hand and a brake act on its end-point."""
-        ...
-
-    @property
-    def coordinate_names(self) -> tuple[str, ...]:
-        """Names of q with units, for file headers."""
-        ...
-
-    def plant(self, parameters: Parameters) -> Array:
-        """The system's parameters as they are, shape (k,)."""
-        ...
-
-    def model(self, parameters: Parameters) -> Array:
-        """The system's parameters as the controller assumes them, shape (k,)."""
-        ...
-
-    def rest(self, y: Array) -> Array:
-        """A configuration at rest with the end-point at y, shape (p,) -> (n,).
-
-        Raises:
-            ValueError: y is out of reach.
-        """
-        ...
-
-    def endpoint(self, q: Array) -> Array:
-        """The actual end-point, shape (..., n) -> (..., p), [m]."""
-        ...
-
-    def margin(self, z: Array) -> Array:
-        """Distance of points of the path's plane from singular configurations, (n, 2) -> (n,).
-
-        If `frame.space` is a frame, also of points (z, ζ) above the plane, (n, 3) -> (n,).
-
-        Dimensionless: 1 at home, and 0 where the robot is singular or the point out of reach.
-        """
-        ...
-
-    def is_calm(self, q: Array, v: Array) -> bool:
-        """Whether runs are so far from any fault at their ends that none had one on the way.
-
-        A cheap answer for most frames; false may mean that it is not known.
-
-        Args:
-            q, v: shape (runs, ticks, n). NaN and infinity persist to the last tick.
-        """
-        ...
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """The first row in which the simulation has diverged, and why; None if in none.
-
-        Whether a row has diverged depends on that row alone, so that the rows of several robots can
-        be searched together; the reason may depend on the parameters.
-
-        Args:
-            q, v: shape (rows, n).
-        """
-        ...
-
-    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        """1 for each check of `fault` that fails, besides those of every robot, else 0, (k, 1)."""
-        ...
-
-    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
-        """What `fault` says if each of these checks fails: k reasons.
-
-        Args:
-            q: the configuration, shape (n,). None if the output may change during the run; the
-                reasons then hold for every output.
-        """
-        ...
-
-    @property
-    def geometry(self) -> ArmGeometry | None:
-        """Parts of its kinematics in symbols; None if there are none."""
-        ...
-
-    def place(self, y: Array) -> Array:
-        """Points of the output space in the frame for drawing, (..., p) -> (..., 3), [m]."""
-        ...
-
-    def unplace(self, point: Array) -> Array:
-        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
-        ...
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """Bars (3, 2 n), begin and end as columns, and joints (3, m) in the robot's frame, [m].
-
-        The last bar ends at the end-point. Deflections are multiplied by `exaggeration`.
-        """
-        ...
-
-    def marks(self, q: ca.SX) -> ca.SX:
-        """Further points to mark, in the robot's frame, (3, k), [m]."""
-        ...
-
-    @property
-    def extra_fields(self) -> tuple[tuple[str, int], ...]:
-        """Names and sizes of quantities to plot, besides those of every robot."""
-        ...
-
-    def extras(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
-        """The values of `extra_fields`, shape (size,) each; q and v: (n,)."""
-        ...
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Smallest and largest distance of the end-point from the base pivot, [m].
-
-        The robot is singular at both. The hand's target stays within the larger one of home.
-        """
-        ...
-
-    @property
-    def drawing(self) -> Drawing:
-        """Details of its drawing that do not follow from bars and joints."""
-        ...
-
-    @property
-    def linkage(self) -> BalancedLinkage | None:
-        """Data for identification from a record of its motion, or None."""
-        ...
-
-
 @dataclass(frozen=True, slots=True)
 class RobotEntry:
     """An entry of the catalogue.
 
     Attributes:
-        name: as on the command line and in files.
+        name: as on the command line and in files, the name of its equations of motion.
         label: as shown.
         text: one sentence about the robot.
         parameters: the type of its parameters; its defaults are those of the robot everywhere.
-        make: the instance for given parameters; only structural parameters select it.
+        make: the robot for given parameters, the same object for the same structural parameters.
         picture: name of an asset; if empty, the bars are sketched.
-        goes_on: parameters that may select another instance with the same states and kinematics, so
+        goes_on: parameters that may select another robot with the same states and kinematics, so
             that a run goes on from the present state.
         caution: why the robot would not even run untouched with these parameters; None if nothing
             is known against it.
-        flexible_link: of a robot with parameters `law` and `alpha` and an extra field "deflection";
-            None: all links are rigid.
+        flexible_link: of a robot with parameters `law` and `alpha` and an extra "deflection"; None:
+            all links are rigid.
+        linkage: data for identification from a record of its motion, or None.
     """
 
     name: str
@@ -263,33 +350,9 @@ class RobotEntry:
     flexible_link: FlexibleLink | None = None
     goes_on: tuple[str, ...] = ()
     caution: Callable[[Parameters], Message | None] = lambda _: None
+    linkage: BalancedLinkage | None = None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether the robots of two sets of parameters differ at most by those in `goes_on`."""
         same = {name: getattr(before, name) for name in self.goes_on}
         return self.make(replace(now, **same)) is self.make(before)
-
-
-def first_fault(
-    q: Array, v: Array, *checks: tuple[NDArray[np.bool_], Message]
-) -> tuple[int, Message] | None:
-    """The first row with a fault, and the reason: too fast, one of the checks, or not finite.
-
-    Of several in one row, the first in this order.
-
-    Args:
-        q, v: shape (rows, n).
-        checks: (bad rows as booleans, reason).
-    """
-    quiet = np.abs(v).max() <= FASTEST_JOINT and np.isfinite(q).all()  # false if v has a NaN
-    if quiet and not any(bad.any() for bad, _ in checks):
-        return None
-    finite = np.isfinite(q).all(-1) & np.isfinite(v).all(-1)
-    fast = np.abs(np.where(np.isfinite(v), v, 0)).max(-1) > FASTEST_JOINT
-    every = [
-        (fast, Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})),
-        *checks,
-        (~finite, NOT_FINITE),
-    ]
-    found = [(int(bad.argmax()), why) for bad, why in every if bad.any()]
-    return min(found, default=None, key=itemgetter(0))

@@ -26,29 +26,23 @@ Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, for the method.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
-from onpath.models.paths.frames import Frame, LevelPlane
+from onpath.models.paths.frames import LevelPlane
 from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
 from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.rigid_robots import RigidRobot
-from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
-from onpath.models.systems.system import GRAVITY, MechanicalSystem, lagrange_bias, mechanical_system
-from onpath.models.systems.two_links import elbow_sine, elbow_sine_of, elbow_up, elbow_up_of
+from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, Stop
+from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
+from onpath.models.systems.two_links import elbow_up
 
 NAMES = ("a1", "a2", "a3", "k", "g2", "g3", "b1", "b2", "b3", "l2", "l3")
 MIDDLE = (0.25, 0.0, 0.08)  # the end-point y = 0 in the robot's frame, (x0, 0, z0), [m]
 STRETCHED = 0.02  # -sin q3 below which the arm counts as stretched or folded
 ABOVE_BASE = 0.02  # ρ below which the end-point counts as above the base, [m]
-SINGULAR = Message("stop.singular")
-_FRAME = LevelPlane()
 DRAWING = Drawing(
     motors=(1,),
     base="pedestal",
@@ -106,6 +100,9 @@ class SpatialLinks:
         }
 
 
+LINKS = SpatialLinks()
+
+
 @dataclass(frozen=True, slots=True)
 class SpatialParameters(Parameters):
     """Additional parameters of the arm: the path's height, model errors and payload."""
@@ -150,147 +147,73 @@ def spatial_arm() -> MechanicalSystem:
         parameters=parameters,
         parameter_names=NAMES,
         mass=mass,
-        bias=lagrange_bias(q, v, ca.dot(v, mass @ v) / 2, potential, friction),
         inputs=3,
         output=output,
         potential_energy=potential,
+        friction=friction,
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class SpatialArm(RigidRobot):
-    """The arm for the lab and the experiments.
-
-    The frame for drawing has its origin at the shoulder, which lies on the base's axis; y is drawn
-    at y + MIDDLE.
-    """
-
-    links: SpatialLinks = field(default_factory=SpatialLinks)
-    system: MechanicalSystem = field(default_factory=spatial_arm, repr=False)
-    name: str = "spatial_arm"
-    label: str = "Spatial arm"
-    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad", "q3_rad")
-    frame: Frame = _FRAME
-    drawing: Drawing = DRAWING
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """See `Robot.reach`: folded and stretched."""
-        return abs(self.links.l2 - self.links.l3), self.links.l2 + self.links.l3
-
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
-        return self.system.parameter_vector(
-            self.links.lumped(own_parameters(SpatialParameters, parameters).payload)
-        )
-
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: without payload, with the chosen model errors."""
-        own, values = own_parameters(SpatialParameters, parameters), self.links.lumped()
-        for name in ("a1", "a2", "a3", "k"):
-            values[name] *= 1 + own.error_inertias / 100
-        for name in ("g2", "g3"):
-            values[name] *= 1 + own.error_weights / 100
-        return self.system.parameter_vector(values)
-
-    def rest(self, y: Array) -> Array:
-        """See `Robot.rest`: the pose with the elbow up, (..., 3) -> (..., 3)."""
-        radius, height = self._in_its_plane(y)
-        q2, q3 = elbow_up(radius, height, self.links.l2, self.links.l3, "shoulder")
-        x, y2, _ = np.moveaxis(self.place(y), -1, 0)
-        return np.stack([np.arctan2(y2, x), q2, q3], axis=-1)
-
-    def _in_its_plane(self, y: Array) -> tuple[Array, Array]:
-        """ρ and the height above the shoulder of end-points y, (..., 3) -> (...), [m]."""
-        x, y2, height = np.moveaxis(self.place(y), -1, 0)
-        return np.hypot(x, y2), height
-
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        l2, l3 = self.links.l2, self.links.l3
-        q1, q2, both = q[..., 0], q[..., 1], q[..., 1] + q[..., 2]
-        radius = l2 * np.cos(q2) + l3 * np.cos(both)
-        height = l2 * np.sin(q2) + l3 * np.sin(both)
-        return self.unplace(np.stack([radius * np.cos(q1), radius * np.sin(q1), height], axis=-1))
-
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: |det J| = l2 l3 ρ |sin q3| in parts of that at home."""
-        lifted = self.frame.lift(np.vstack([z, np.zeros((1, z.shape[1]))]))
-        radius, height = self._in_its_plane(lifted)
-        size = radius * elbow_sine(radius**2 + height**2, self.links.l2, self.links.l3)
-        return size[:-1] / size[-1]
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """See `Robot.fault`: too near a singular configuration, or beyond it."""
-        l2, l3 = self.links.l2, self.links.l3
-        with np.errstate(invalid="ignore"):  # non-finite numbers are caught elsewhere
-            radius = l2 * np.cos(q[:, 1]) + l3 * np.cos(q[:, 1] + q[:, 2])
-            singular = (np.sin(q[:, 2]) > -STRETCHED) | (radius < ABOVE_BASE)
-        return first_fault(q, v, (singular, SINGULAR))
-
-    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        """See `Robot.broken`."""
-        radius = self.links.l2 * ca.cos(q[1]) + self.links.l3 * ca.cos(q[1] + q[2])
-        return ca.fmax(ca.sin(q[2]) > -STRETCHED, radius < ABOVE_BASE)
-
-    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
-        """See `Robot.reasons`."""
-        return (SINGULAR,)
-
-    @property
-    def geometry(self) -> ArmGeometry:
-        """See `Robot.geometry`."""
-        return ArmGeometry(self._margin, self._rest)
-
-    def _margin(self, z: ca.SX) -> ca.SX:
-        """As `margin`, in the plane of the path."""
-
-        def size(z: ca.SX) -> ca.SX:
-            x, y2, height = ca.vertsplit(self.frame.join(z, ca.SX.zeros(1)) + ca.DM(list(MIDDLE)))
-            squared = x**2 + y2**2
-            sine = elbow_sine_of(squared + height**2, self.links.l2, self.links.l3)
-            return ca.sqrt(squared) * sine
-
-        return size(z) / size(ca.SX.zeros(2))
-
-    def _rest(self, y: ca.SX) -> ca.SX:
-        """As `rest`."""
-        x, y2, height = ca.vertsplit(y + ca.DM(list(MIDDLE)))
-        both = elbow_up_of(ca.sqrt(x**2 + y2**2), height, self.links.l2, self.links.l3)
-        return ca.vertcat(ca.atan2(y2, x), both)
-
-    def place(self, y: Array) -> Array:
-        """See `Robot.place`."""
-        return y + np.array(MIDDLE)
-
-    def unplace(self, point: Array) -> Array:
-        """See `Robot.unplace`."""
-        return point - np.array(MIDDLE)
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: bars of the upper arm and the forearm; joints at both ends of the
-        upper arm."""
-        ahead = ca.vertcat(ca.cos(q[0]), ca.sin(q[0]), 0)
-        up = ca.DM([0, 0, 1])
-        upper, fore = (
-            length * (ca.cos(angle) * ahead + ca.sin(angle) * up)
-            for length, angle in ((self.links.l2, q[1]), (self.links.l3, q[1] + q[2]))
-        )
-        base = 0 * upper
-        return ca.horzcat(base, upper, upper, upper + fore), ca.horzcat(base, upper)
+def plant(parameters: Parameters) -> Array:
+    """See `Robot.plant`."""
+    own = own_parameters(SpatialParameters, parameters)
+    return EQUATIONS.parameter_vector(LINKS.lumped(own.payload))
 
 
-@lru_cache(maxsize=1)
-def spatial_arm_robot() -> SpatialArm:
-    """The only instance, so that its kernels are built once."""
-    return SpatialArm()
+def model(parameters: Parameters) -> Array:
+    """See `Robot.model`: without payload, with the chosen model errors."""
+    own, values = own_parameters(SpatialParameters, parameters), LINKS.lumped()
+    for name in ("a1", "a2", "a3", "k"):
+        values[name] *= 1 + own.error_inertias / 100
+    for name in ("g2", "g3"):
+        values[name] *= 1 + own.error_weights / 100
+    return EQUATIONS.parameter_vector(values)
 
 
+def inverse(y: ca.SX) -> ca.SX:
+    """See `Robot.inverse`: the pose with the elbow up."""
+    ahead, aside, height = ca.vertsplit(y + ca.DM(MIDDLE))
+    both = elbow_up(ca.sqrt(ahead**2 + aside**2), height, LINKS.l2, LINKS.l3)
+    return ca.vertcat(ca.atan2(aside, ahead), both)
+
+
+def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """See `Robot.skeleton`: upper arm and forearm; joints at both ends of the upper arm."""
+    ahead = ca.vertcat(ca.cos(q[0]), ca.sin(q[0]), 0)
+    up = ca.DM([0, 0, 1])
+    upper, fore = (
+        length * (ca.cos(angle) * ahead + ca.sin(angle) * up)
+        for length, angle in ((LINKS.l2, q[1]), (LINKS.l3, q[1] + q[2]))
+    )
+    base = 0 * upper
+    return ca.horzcat(base, upper, upper, upper + fore), ca.horzcat(base, upper)
+
+
+def broken(q: ca.SX) -> ca.SX:
+    """Whether the arm is nearly stretched or folded, or beyond, or above its base."""
+    radius = LINKS.l2 * ca.cos(q[1]) + LINKS.l3 * ca.cos(q[1] + q[2])
+    return ca.fmax(ca.sin(q[2]) > -STRETCHED, radius < ABOVE_BASE)
+
+
+EQUATIONS = spatial_arm()
+SPATIAL_ARM = Robot(
+    system=EQUATIONS,
+    plant=plant,
+    model=model,
+    inverse=inverse,
+    skeleton=skeleton,
+    home=MIDDLE,
+    reach=LINKS.l2 + LINKS.l3,
+    stops=(Stop(broken(EQUATIONS.q), SINGULAR),),
+    frame=LevelPlane(),
+    drawing=DRAWING,
+)
+"""The origin of its frame is the shoulder, which lies on the base's axis."""
 ROBOT = RobotEntry(
     name="spatial_arm",
     label="Spatial arm",
     text="Three motors, a turning base: its path may leave the plane.",
     picture="spatial_arm.png",
     parameters=SpatialParameters,
-    make=lambda _: spatial_arm_robot(),
+    make=lambda _: SPATIAL_ARM,
 )

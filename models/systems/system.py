@@ -33,6 +33,7 @@ class MechanicalSystem:
         actuation: B(q), (n, m); by default it selects the first m coordinates.
         parameters: numbers that may change without rebuilding, (k, 1).
         parameter_names: k names.
+        coordinate_names: n names of q with units, such as "q1_rad", for file headers.
         mass: M(q), (n, n).
         bias: c(q, v), (n, 1).
         acceleration: v' = M⁻¹ (τ - c), (n, 1).
@@ -53,6 +54,7 @@ class MechanicalSystem:
     actuation: ca.SX
     parameters: ca.SX
     parameter_names: tuple[str, ...]
+    coordinate_names: tuple[str, ...]
     mass: ca.SX
     bias: ca.SX
     acceleration: ca.SX
@@ -114,23 +116,28 @@ def mechanical_system(
     parameters: ca.SX,
     parameter_names: tuple[str, ...],
     mass: ca.SX,
-    bias: ca.SX,
     inputs: int,
     output: ca.SX,
     potential_energy: ca.SX,
+    friction: ca.SX | None = None,
+    bias: ca.SX | None = None,
+    coordinate_names: tuple[str, ...] | None = None,
     actuation: ca.SX | None = None,
     controlled_output: ca.SX | None = None,
     solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
     modes: int = 0,
 ) -> MechanicalSystem:
-    """A system from M, c, B and h.
+    """A system from M, V, friction, B and h.
 
     Args:
         mass: M(q), (n, n).
-        bias: c(q, v): Coriolis, gravity, elastic and viscous terms, (n, 1).
         inputs: m, with p <= m <= n.
         output: h(q), (p, 1), [m].
-        potential_energy: V(q), [J]; used for the energy only.
+        potential_energy: V(q), [J].
+        friction: generalized forces that oppose the motion, in v, (n, 1); None: none.
+        bias: c(q, v): Coriolis, gravity, elastic and viscous terms, (n, 1). None: by Lagrange's
+            equations, see `lagrange_bias`. If it is given, V is used for the energy only.
+        coordinate_names: see `MechanicalSystem`; None: "q1_rad", "q2_rad", ...
         actuation: B(q), (n, m), of rank m; None: it selects the first m coordinates.
         controlled_output: (p, 1), [m]; None: h.
         solve: (M, R) -> M⁻¹ R; replace it where M has structure.
@@ -145,6 +152,9 @@ def mechanical_system(
     actuation = ca.SX.eye(n)[:, : min(inputs, n)] if actuation is None else actuation
     if not p <= inputs <= n or actuation.shape != (n, inputs):
         raise ValueError(f"{name}: B must have {n} rows and {p} to {n} columns, one an input")
+    if bias is None:
+        kinetic, viscous = ca.dot(v, mass @ v) / 2, ca.SX(n, 1) if friction is None else friction
+        bias = lagrange_bias(q, v, kinetic, potential_energy, viscous)
     tau = ca.SX.sym("tau", n)
     gains = solve(mass, ca.horzcat(-bias, actuation))
     return MechanicalSystem(
@@ -155,6 +165,7 @@ def mechanical_system(
         actuation=actuation,
         parameters=parameters,
         parameter_names=parameter_names,
+        coordinate_names=coordinate_names or tuple(f"q{i + 1}_rad" for i in range(n)),
         mass=mass,
         bias=bias,
         acceleration=solve(mass, tau - bias),
@@ -203,6 +214,26 @@ def decoupling_matrix(system: MechanicalSystem) -> ca.Function:
     jacobian = ca.jacobian(system.controlled_output, system.q)
     matrix = ca.densify(jacobian @ system.input_gain)
     return ca.Function("decoupling_matrix", [system.q, system.parameters], [matrix])
+
+
+def conditioning_of(matrix: ca.SX) -> ca.SX:
+    """`conditioning` of a matrix with three rows as an expression, (3, m) -> (1, 1).
+
+    With the eigenvalues λ1 >= λ2 >= λ3 of A Aᵀ it is sqrt(det(A Aᵀ) / (λ1² λ2)), which is accurate
+    also where λ3 is nearly 0.
+
+    Source: O. K. Smith, Eigenvalues of a symmetric 3 x 3 matrix, Comm. ACM 4 (1961).
+    """
+    square = matrix @ matrix.T
+    mean = ca.trace(square) / 3
+    rest = square - mean * ca.SX.eye(3)
+    size = ca.sqrt(ca.fmax(ca.dot(rest, rest) / 6, 1e-60))
+    cosine = ca.fmax(ca.fmin(ca.det(rest) / (2 * size**3), 1), -1)
+    angle = ca.acos(cosine) / 3
+    first, third = (mean + 2 * size * ca.cos(angle + turn) for turn in (0.0, 2 * np.pi / 3))
+    second = 3 * mean - first - third
+    own = ca.fabs(ca.det(matrix)) if matrix.size2() == 3 else ca.sqrt(ca.fmax(ca.det(square), 0))
+    return own / (first * ca.sqrt(second))
 
 
 def conditioning(matrices: Array) -> Array:

@@ -24,25 +24,20 @@ Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, the planar elbow 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from functools import lru_cache
+from dataclasses import dataclass
 
 import casadi as ca
-import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
 from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.parameter_specs import model_error, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
+from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, Stop
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
-from onpath.models.systems.two_links import elbow_sine, elbow_sine_of, elbow_up, elbow_up_of
+from onpath.models.systems.two_links import elbow_up
 
 NAMES = ("a1", "a2", "a3", "g1", "g2", "b1", "b2", "l1", "l2")
 STRETCHED = 0.02  # -sin q2 below which the arm counts as stretched or folded
-SINGULAR = Message("stop.singular")
 DRAWING = Drawing(
     motors=(1,),
     angles=(Angle("q₁", bar=0), Angle("q₂", bar=1, after=0, near=-math.pi / 2)),
@@ -91,6 +86,9 @@ class ArmLinks:
         }
 
 
+LINKS = ArmLinks()
+
+
 @dataclass(frozen=True, slots=True)
 class TwoLinkParameters(Parameters):
     """Additional parameters of the arm: model errors and payload."""
@@ -132,109 +130,49 @@ def two_link_arm() -> MechanicalSystem:
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class TwoLinkArm(PlanarRobot):
-    """The arm for the lab and the experiments."""
-
-    links: ArmLinks = field(default_factory=ArmLinks)
-    system: MechanicalSystem = field(default_factory=two_link_arm, repr=False)
-    name: str = "two_link_arm"
-    label: str = "Two-link arm"
-    coordinate_names: tuple[str, ...] = ("q1_rad", "q2_rad")
-
-    @property
-    def home(self) -> tuple[float, float]:
-        """See `PlanarRobot.home`: link 1 upright, link 2 horizontal."""
-        return self.links.l2, self.links.l1
-
-    @property
-    def reach(self) -> tuple[float, float]:
-        """See `Robot.reach`: folded and stretched."""
-        return abs(self.links.l1 - self.links.l2), self.links.l1 + self.links.l2
-
-    @property
-    def drawing(self) -> Drawing:
-        """See `Robot.drawing`: one more motor, at the elbow."""
-        return DRAWING
-
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
-        return self.system.parameter_vector(
-            self.links.lumped(own_parameters(TwoLinkParameters, parameters).payload)
-        )
-
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: without payload, with the chosen model errors."""
-        own, values = own_parameters(TwoLinkParameters, parameters), self.links.lumped()
-        for name in ("a1", "a2", "a3"):
-            values[name] *= 1 + own.error_inertia / 100
-        for name in ("g1", "g2"):
-            values[name] *= 1 + own.error_gravity / 100
-        return self.system.parameter_vector(values)
-
-    def rest(self, y: Array) -> Array:
-        """See `Robot.rest`: the pose with the elbow up, (..., 2) -> (..., 2)."""
-        l1, l2 = self.links.l1, self.links.l2
-        x, z = y[..., 0] + l2, y[..., 1] + l1
-        return np.stack(elbow_up(x, z, l1, l2, "base"), axis=-1)
-
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        l1, l2 = self.links.l1, self.links.l2
-        q1, both = q[..., 0], q[..., 0] + q[..., 1]
-        x, z = l1 * np.cos(q1) + l2 * np.cos(both), l1 * np.sin(q1) + l2 * np.sin(both)
-        return np.stack([x - l2, z - l1], axis=-1)
-
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: |sin q2| = |det J| / (l1 l2)."""
-        l1, l2 = self.links.l1, self.links.l2
-        squared = (z[..., 0] + l2) ** 2 + (z[..., 1] + l1) ** 2
-        return elbow_sine(squared, l1, l2)
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """See `Robot.fault`: too near a singular configuration, or beyond it, the elbow down."""
-        with np.errstate(invalid="ignore"):  # non-finite numbers are caught elsewhere
-            singular = np.sin(q[:, 1]) > -STRETCHED
-        return first_fault(q, v, (singular, SINGULAR))
-
-    def broken(self, q: ca.SX, v: ca.SX) -> ca.SX:
-        """See `Robot.broken`."""
-        return ca.sin(q[1]) > -STRETCHED
-
-    def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
-        """See `Robot.reasons`."""
-        return (SINGULAR,)
-
-    @property
-    def geometry(self) -> ArmGeometry:
-        """See `Robot.geometry`."""
-        l1, l2 = self.links.l1, self.links.l2
-        return ArmGeometry(
-            margin=lambda z: elbow_sine_of((z[0] + l2) ** 2 + (z[1] + l1) ** 2, l1, l2),
-            rest=lambda y: elbow_up_of(y[0] + l2, y[1] + l1, l1, l2),
-        )
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
-        one, two = (
-            length * ca.vertcat(ca.cos(angle), 0, ca.sin(angle))
-            for length, angle in ((self.links.l1, q[0]), (self.links.l2, q[0] + q[1]))
-        )
-        base = 0 * one
-        return ca.horzcat(base, one, one, one + two), ca.horzcat(base, one)
+def plant(parameters: Parameters) -> Array:
+    """See `Robot.plant`."""
+    own = own_parameters(TwoLinkParameters, parameters)
+    return EQUATIONS.parameter_vector(LINKS.lumped(own.payload))
 
 
-@lru_cache(maxsize=1)
-def two_link_arm_robot() -> TwoLinkArm:
-    """The only instance, so that its kernels are built once."""
-    return TwoLinkArm()
+def model(parameters: Parameters) -> Array:
+    """See `Robot.model`: without payload, with the chosen model errors."""
+    own, values = own_parameters(TwoLinkParameters, parameters), LINKS.lumped()
+    for name in ("a1", "a2", "a3"):
+        values[name] *= 1 + own.error_inertia / 100
+    for name in ("g1", "g2"):
+        values[name] *= 1 + own.error_gravity / 100
+    return EQUATIONS.parameter_vector(values)
 
 
+def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
+    one, two = (
+        length * ca.vertcat(ca.cos(angle), 0, ca.sin(angle))
+        for length, angle in ((LINKS.l1, q[0]), (LINKS.l2, q[0] + q[1]))
+    )
+    base = 0 * one
+    return ca.horzcat(base, one, one, one + two), ca.horzcat(base, one)
+
+
+EQUATIONS = two_link_arm()
+TWO_LINK_ARM = Robot(
+    system=EQUATIONS,
+    plant=plant,
+    model=model,
+    inverse=lambda y: elbow_up(y[0] + LINKS.l2, y[1] + LINKS.l1, LINKS.l1, LINKS.l2),
+    skeleton=skeleton,
+    home=(LINKS.l2, 0.0, LINKS.l1),
+    reach=LINKS.l1 + LINKS.l2,
+    stops=(Stop(ca.sin(EQUATIONS.q[1]) > -STRETCHED, SINGULAR),),  # or beyond, the elbow down
+    drawing=DRAWING,
+)
 ROBOT = RobotEntry(
     name="two_link_arm",
     label="Two-link arm",
     text="Two motors, one at the shoulder and one at the elbow, against gravity.",
     picture="two_link_arm.png",
     parameters=TwoLinkParameters,
-    make=lambda _: two_link_arm_robot(),
+    make=lambda _: TWO_LINK_ARM,
 )

@@ -24,6 +24,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.law_poles import channels_of
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
 from tests.support.figure_runs import Act, PythonFigure
@@ -272,14 +273,23 @@ def test_it_is_the_run_of_simulate(opened: Opened) -> None:
         np.testing.assert_allclose(row[: len(end)], end, rtol=0, atol=CLOSE)
 
 
-@pytest.mark.parametrize("robot", ["flexible", "spatial_arm", "two_link_arm"])
-def test_every_robot_follows(browser: Browser, tmp_path: Path, robot: str) -> None:
+@pytest.mark.parametrize("robot", [name for name in ROBOTS if name != "five_bar"])
+def test_every_robot_follows_also_a_path_whose_points_are_dragged(
+    browser: Browser, tmp_path: Path, robot: str
+) -> None:
     opened = Opened(browser, written(tmp_path, robot=robot))
     opened.press("Pause")
     opened.do(("reset", None), ("advance", 3000))
     python = PythonFigure(choice(robot))
     python.act(("advance", 3000))
     np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=CLOSE)
+    before = python.editor.table.copy()
+    for act in (*DRAGGED, ("advance", 300), ("reset", None), ("advance", 3000)):
+        opened.do(act)
+        python.act(act)
+    assert max(abs(python.editor.table - before)) > 1e-3
+    assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
+    np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=EDITED)
     assert max(opened.number(DISTANCES)) < 1e-3 and opened.complaints == []
     opened.page.close()
 

@@ -18,7 +18,7 @@ from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.benches import RIGHT
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
-from onpath.models.systems.flexible_robot import UNSTABLE, FlexibleFiveBar
+from onpath.models.systems.flexible_robot import UNSTABLE
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -46,10 +46,10 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 def deflection(tab: Tab) -> float:
     """Deflection of the follower's tip, or of a robot that has stopped, [m]."""
     robot, runs = tab.session.robot, tab.session.runs
-    assert isinstance(robot, FlexibleFiveBar)
     still = [run for run in runs.values() if run.diverged is not None]
-    bent = [robot.deflection(run.shown()["q"]) for run in still or [runs[FOLLOWER]]]
-    return float(np.abs(bent).max())
+    rows = [run.shown() for run in still or [runs[FOLLOWER]]]
+    bent = [robot.measured(row["q"], row["v"], tab.session.parameters) for row in rows]
+    return max(float(np.abs(each["deflection"]).max()) for each in bent)
 
 
 def tip(tab: Tab) -> np.ndarray:

@@ -15,7 +15,6 @@ from onpath.models.studies.experiments import experiments, run
 from onpath.models.studies.paper_figures import FIGURES
 from onpath.models.systems import flexible_robot, tip_load
 from onpath.models.systems.catalogue import FIVE_BAR
-from onpath.models.systems.flexible_robot import FlexibleFiveBar
 from tests.support.stated_numbers import assert_stated, stated_in_readme, value
 
 pytestmark = pytest.mark.thorough
@@ -75,7 +74,7 @@ def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
     for gravity in (tip_load.GRAVITY, 0.0):
         with monkeypatch.context() as patch:
             patch.setattr(tip_load, "GRAVITY", gravity)
-            patch.setattr(flexible_robot, "_robot", lru_cache(FlexibleFiveBar))
+            patch.setattr(flexible_robot, "_robot", lru_cache(flexible_robot._made))
             tip = did("flexible", FOLLOWER, law="composite", payload=load)
         found.append(1e3 * float(np.sqrt(np.mean(tip.distance[tip.t >= value(begin)] ** 2))))
     assert_stated([stopped, rms, without], found)

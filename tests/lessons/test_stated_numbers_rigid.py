@@ -14,8 +14,9 @@ from onpath.lessons.action_schema import Action
 from onpath.models.arrays import Array
 from onpath.models.control.poles import channels
 from onpath.models.control.settable import specs
-from onpath.models.systems.five_bar import inverse_kinematics, load_links
+from onpath.models.systems.five_bar import load_links
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.rig import jacobian
 from tests.support.stated_numbers import (
     WORST,
@@ -37,7 +38,7 @@ STAGES = (0, 4, 8, 12)  # [s], when the gains go up in lesson 4
 def along_to_across(place: Array) -> float:
     """N . J M^-1 J^T T at a place of the circle, (2,), [m]; in 1/kg."""
     links, outwards = load_links().lumped(), place / np.linalg.norm(place)
-    j = jacobian(inverse_kinematics(place, 0.2, 0.2))
+    j = jacobian(RIGID_FIVE_BAR.rest(place))
     mobility = j @ np.diag([1 / links["M11"], 1 / links["M22"]]) @ j.T
     return float(-outwards @ mobility @ [-outwards[1], outwards[0]])
 

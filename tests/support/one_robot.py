@@ -25,7 +25,6 @@ from onpath.models.control.settable import with_values
 from onpath.models.paths.curves import circle
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.flexible_robot import FlexibleFiveBar
 from onpath.models.systems.robots import Robot
 
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
@@ -145,14 +144,17 @@ class Driven:
     @property
     def deflection(self) -> Array:
         """Deflection of the flexible link's tip, (ticks,), [mm]."""
-        assert isinstance(self.robot, FlexibleFiveBar)
-        return 1e3 * self.robot.deflection(self.log("q"))
+        return self._measured("deflection")
 
     @property
     def energy(self) -> Array:
         """Vibration energy of the flexible link, (ticks,), [mJ]."""
-        assert isinstance(self.robot, FlexibleFiveBar)
-        return 1e3 * self.robot.internal_energy(self.log("q"), self.log("v"), self.parameters)
+        return self._measured("internal_energy")
+
+    def _measured(self, name: str) -> Array:
+        """One of `Robot.extras`, (ticks,), in thousandths."""
+        found = self.robot.measured(self.log("q"), self.log("v"), self.parameters)
+        return 1e3 * found[name][:, 0]
 
 
 def largest(values: Array, begin: float, end: float) -> float:

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import RobotEntry, first_fault
-from onpath.models.systems.system import MechanicalSystem, lagrange_bias, mechanical_system
+from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.system import MechanicalSystem, mechanical_system
 
 LINK, MASS, FRICTION = 0.1, 0.2, 0.02  # [m], [kg], [N m s]
+STEPS = 12  # of Newton's method
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,86 +35,63 @@ class Shape:
     start: tuple[float, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PassiveChain(PlanarRobot):
+def passive_chain(shape: Shape) -> Robot:
     """A chain whose end-point is y = 0 where it rests at home.
 
     Raises:
         ValueError: no equilibrium is found.
     """
+    q, end, undriven = _statics(shape)
+    given = ca.SX.sym("given", 0)
+    at_home = _root(ca.Function("undriven", [q, given], [undriven]), shape.start, np.zeros(0))
+    offset = ca.DM(ca.Function("end", [q], [end])(at_home))
 
-    shape: Shape
-    system: MechanicalSystem = field(init=False, repr=False)
-    at_home: Array = field(init=False, repr=False)
-    offset: Array = field(init=False, repr=False)
-    name: str = "passive_chain"
-    label: str = "Chain with passive joints"
-    reach: tuple[float, float] = (0.0, 1.0)
+    def inverse(y: ca.SX) -> ca.SX:
+        """By Newton's method with least norms from home, in a fixed number of steps."""
+        wanted = ca.vertcat(end - offset - y, undriven)
+        step = ca.Function("step", [q, y], [q + _least_norm(ca.jacobian(wanted, q), -wanted)])
+        found = ca.SX(ca.DM(at_home))
+        for _ in range(STEPS):
+            found = step(found, y)
+        return found
 
-    def __post_init__(self) -> None:
-        place, statics = _statics(self.shape)
-        offset = ca.SX.sym("offset", 2)
-        q, _, undriven = statics
-        q0 = _root(ca.Function("undriven", [q, offset], [undriven]), self.shape.start, np.zeros(2))
-        object.__setattr__(self, "at_home", q0)
-        object.__setattr__(self, "offset", np.array(place(q0))[:, 0])
-        object.__setattr__(self, "system", _equations(self.shape, self.offset))
+    def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        points = _points(shape, q)
+        points = [ca.vertcat(p[0] - offset[0], 0, p[1] - offset[1]) for p in points]
+        return ca.horzcat(*(each for pair in pairwise(points) for each in pair)), points[0]
 
-    @property
-    def home(self) -> tuple[float, float]:
-        return 0.0, 0.0
-
-    @property
-    def coordinate_names(self) -> tuple[str, ...]:
-        return tuple(f"q{joint + 1}_rad" for joint in self.shape.joints)
-
-    def plant(self, parameters: Parameters) -> Array:
-        return np.zeros(0)
-
-    def model(self, parameters: Parameters) -> Array:
-        return np.zeros(0)
-
-    def rest(self, y: Array) -> Array:
-        _, (q, end, undriven) = _statics(self.shape)
-        goal = ca.SX.sym("goal", 2)
-        wanted = ca.vertcat(end - ca.DM(self.offset) - goal, undriven)
-        return _root(ca.Function("wanted", [q, goal], [wanted]), self.at_home, y)
-
-    def endpoint(self, q: Array) -> Array:
-        place, _ = _statics(self.shape)
-        rows = np.atleast_2d(q)
-        found = np.array(place.map(len(rows))(rows.T)).T - self.offset
-        return found.reshape(*q.shape[:-1], 2)
-
-    def margin(self, z: Array) -> Array:
-        return np.ones(z.shape[:-1])
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        return first_fault(q, v)
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        raise NotImplementedError
+    return Robot(
+        system=_equations(shape, offset),
+        plant=lambda _: np.zeros(0),
+        model=lambda _: np.zeros(0),
+        inverse=inverse,
+        skeleton=skeleton,
+        home=(0.0, 0.0, 0.0),
+        reach=1.0,
+        regularity=ca.SX(1),
+        stops=(),
+    )
 
 
-def entry_of(chain: PassiveChain) -> RobotEntry:
+def entry_of(chain: Robot) -> RobotEntry:
     """A catalogue entry that makes this chain."""
     return RobotEntry(
         name=chain.name,
-        label=chain.label,
+        label="Chain with passive joints",
         text="A chain.",
         parameters=Parameters,
         make=lambda _: chain,
     )
 
 
-def _root(function: ca.Function, start: Array | tuple[float, ...], given: Array) -> Array:
+def _root(function: ca.Function, start: tuple[float, ...], given: Array) -> Array:
     """A root of a function (q, given), by Newton's method with least norms.
 
     Raises:
         ValueError: none is found near the start.
     """
     q, symbol = np.array(start, dtype=float), ca.SX.sym("q", len(start))
-    other = ca.SX.sym("given", 2)
+    other = ca.SX.sym("given", len(given))
     value = function(symbol, other)
     both = ca.Function("both", [symbol, other], [value, ca.jacobian(value, symbol)])
     for _ in range(50):
@@ -125,6 +101,10 @@ def _root(function: ca.Function, start: Array | tuple[float, ...], given: Array)
         step = np.linalg.lstsq(slope, -gap[:, 0], rcond=None)[0]
         q = q + np.clip(step, -0.3, 0.3)
     raise ValueError("the chain cannot rest there")
+
+
+def _least_norm(matrix: ca.SX, right: ca.SX) -> ca.SX:
+    return matrix.T @ ca.solve(matrix @ matrix.T, right)
 
 
 def _points(shape: Shape, q: ca.SX) -> list[ca.SX]:
@@ -143,15 +123,14 @@ def _potential(shape: Shape, q: ca.SX) -> ca.SX:
     return sum((MASS * shape.gravity * (a[1] + b[1]) / 2 for a, b in pairs), ca.SX(0))
 
 
-def _statics(shape: Shape) -> tuple[ca.Function, tuple[ca.SX, ca.SX, ca.SX]]:
-    """The end-point as a function of q; and q, the end-point, and the undriven rows of dV/dq."""
+def _statics(shape: Shape) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """q, the end-point, and the undriven rows of dV/dq."""
     q = ca.SX.sym("q", len(shape.joints))
-    end = _points(shape, q)[-1]
     undriven = ca.gradient(_potential(shape, q), q)[shape.motors :]
-    return ca.Function("end", [q], [end]), (q, end, ca.densify(undriven))
+    return q, _points(shape, q)[-1], ca.densify(undriven)
 
 
-def _equations(shape: Shape, offset: Array) -> MechanicalSystem:
+def _equations(shape: Shape, offset: ca.DM) -> MechanicalSystem:
     n = len(shape.joints)
     q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
     points, kinetic, angle = _points(shape, q), ca.SX(0), ca.SX(0)
@@ -167,8 +146,9 @@ def _equations(shape: Shape, offset: Array) -> MechanicalSystem:
         parameters=ca.SX(0, 1),
         parameter_names=(),
         mass=ca.jacobian(ca.gradient(kinetic, v), v),
-        bias=lagrange_bias(q, v, kinetic, potential, FRICTION * v),
+        friction=FRICTION * v,
         inputs=shape.motors,
-        output=points[-1] - ca.DM(offset),
+        output=points[-1] - offset,
         potential_energy=potential,
+        coordinate_names=tuple(f"q{joint + 1}_rad" for joint in shape.joints),
     )

@@ -149,7 +149,7 @@ def _trouble(rng: np.random.Generator, robot: Robot, curve: Curve) -> Trouble:
 
 
 def _hand(rng: np.random.Generator, robot: Robot, _: Curve, what: str, begin: float) -> Actor:
-    middle, reach = robot.frame.lift(np.zeros(2)), robot.reach[1]
+    middle, reach = robot.frame.lift(np.zeros(2)), robot.reach
     angle, radius = rng.uniform(0, 2 * np.pi), rng.uniform(0.03, FARTHEST)
     turn = rng.uniform(-15, 15) if what == "circles" else 0.0
     times = begin + np.cumsum(rng.uniform(0.05, 0.5, 60))

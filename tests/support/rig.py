@@ -16,7 +16,8 @@ from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Plane
-from onpath.models.systems.five_bar import FiveBarLinks, inverse_kinematics
+from onpath.models.systems.five_bar import FiveBarLinks
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.system import MechanicalSystem
 
 FOLLOWING, TRACKING = Kind("path_following"), Kind("trajectory_tracking")
@@ -99,7 +100,7 @@ class Rig:
 
     def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:
         """State with the end-point at y, moving with y_rate, and the controller's memory empty."""
-        q = inverse_kinematics(np.asarray(y, dtype=float), 0.2, 0.2)
+        q = RIGID_FIVE_BAR.rest(np.asarray(y, dtype=float))
         v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
         values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
         values |= {"speed_ref": 0, "integral": (0, 0), "u": (0, 0), "phase": 0}
@@ -119,6 +120,13 @@ class Rig:
         """Run the loop; return the log by name."""
         rows = self.loop(kind).run(state, self.settings(kind, **changes), curve.table(), ticks)[1]
         return self.kernel(kind).log.unpack(rows)
+
+
+def end_point(q: Array) -> Array:
+    """h(q) of the default linkage, by hand, (..., 2) -> (..., 2), [m]. Source: eq. (13)."""
+    q1, q2 = q[..., 0], q[..., 1]
+    x, z = np.cos(q1) - np.cos(q2), np.sin(q1) - np.sin(q2)
+    return 0.2 * np.stack([x - 1, z - 1], axis=-1)
 
 
 def jacobian(q: Array) -> Array:

@@ -87,9 +87,9 @@ class StepFigure:
     def quantities(self) -> list[str]:
         """Quantities that its page records."""
         robot, own = self.choice.machine, list(QUANTITIES)
-        if "deflection" not in dict(robot.extra_fields):
+        if "deflection" not in robot.extras:
             own = [name for name in own if name not in ("deflection", "energy")]
-        if robot.system.p > 2 and "deflection" not in dict(robot.extra_fields):
+        if robot.system.p > 2 and "deflection" not in robot.extras:
             own.remove("lag")  # the picture does not show distances in space
         if self.choice.parameters.across == "level_set":
             own = [name for name in own if not name.startswith("across")]

@@ -152,8 +152,6 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
         return "none of the laws has poles that a figure computes"
     if control != "drag":
         return None
-    if figure.machine.geometry is None:
-        return "a figure cannot check the path of this robot"
     if rise_of(parameters) or any(path.dimension == 3 for path in figure.paths.values()):
         return "a space curve cannot be changed in a figure"
     if parameters.across == LEVEL_SET or parameters.at_limit == "slow_down":

@@ -74,13 +74,13 @@ def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Fu
 
 def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Parts:
     """For paths of a kind, if readers may drag their points."""
-    robot, arm = figure.machine, figure.machine.geometry
-    if "drag" not in figure.controls or arm is None:
+    robot = figure.machine
+    if "drag" not in figure.controls:
         return {}, {}
     functions = edit_functions(robot, kind) | {"table": table_function(kind.closed)}
     for i, kernel in enumerate(kernels):
-        functions[f"begin{i}"] = begin_function(robot, kind, kernel, arm)
-    return functions, edit_scans(robot, kind, arm) | {"resample": resample_scan(kind.closed)}
+        functions[f"begin{i}"] = begin_function(robot, kind, kernel)
+    return functions, edit_scans(robot, kind) | {"resample": resample_scan(kind.closed)}
 
 
 def _shared(figure: FigureChoice) -> Parts:

@@ -74,7 +74,7 @@ def _check_plane(session: Session, wanted: Parameters) -> None:
     for curve in (editor.blend.target, editor.curve):
         if faults := curve_faults(robot.margin, curve):
             reasons = tuple(fault.reason for fault in faults)
-            raise CodedError("error.cannot_follow", robot=robot.label, reasons=reasons)
+            raise CodedError("error.cannot_follow", robot=session.entry.label, reasons=reasons)
 
 
 @dataclass(frozen=True, slots=True)

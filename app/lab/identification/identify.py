@@ -29,6 +29,7 @@ from onpath.models.studies.identification import (
     simplest,
     smooth_velocities,
 )
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
@@ -56,7 +57,7 @@ class Learned:
 
     def believed(self, parameters: Parameters) -> Parameters:
         """These parameters with the controllers' model as identified."""
-        linkage = self.robot.linkage
+        linkage = ROBOTS[self.robot.name].linkage
         return parameters if linkage is None else believing(linkage, parameters, self.model)
 
     def report(self, before: Parameters, words: Words) -> str:
@@ -74,7 +75,7 @@ def learn(robot: Robot, history: HistoryCopy) -> Learned:
     Raises:
         ValueError: unsuitable robot, no data, or insufficient excitation.
     """
-    if robot.linkage is None:
+    if ROBOTS[robot.name].linkage is None:
         raise CodedError("identified.other_robot")
     record = last_record(robot, history.latest(MOST_TICKS))
     return Learned(robot, simplest(record), len(record.q) * record.dt)
@@ -86,7 +87,7 @@ def last_record(robot: Robot, history: list[Segment]) -> JointRecord:
     Raises:
         ValueError: there is no data, or the robot is not a balanced linkage.
     """
-    linkage, segments = robot.linkage, _same_robot(robot, history)
+    linkage, segments = ROBOTS[robot.name].linkage, _same_robot(robot, history)
     if linkage is None or not segments:
         raise CodedError("error.nothing_recorded")
     drive, dt = segments[-1].drives[MEASURED], segments[-1].dt

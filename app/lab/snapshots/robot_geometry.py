@@ -177,7 +177,9 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
         bars, joints = robot.skeleton(q, exaggeration)
         sigma = LocalCurve.from_values(aim, closed, table @ basis(aim, closed)).sigma
         pull = placed(force) - placed(ca.SX(p, 1))
-        return [bars, joints, robot.marks(q), on_path(sigma), bars[:, -1], placed(y), pull]
+        straight = robot.skeleton(q, ca.SX(0))[0][:, -1]
+        marks = straight if ca.depends_on(bars, exaggeration) else ca.SX(3, 0)  # of a bent link
+        return [bars, joints, marks, on_path(sigma), bars[:, -1], placed(y), pull]
 
     each = [drawn(*columns) for columns in zip(ca.horzsplit(q), ca.horzsplit(seen), strict=True)]
     bars, joints, marks = (part.shape[1] for part in each[0][:3])

@@ -188,7 +188,7 @@ def _page_key(name: str, robot: Robot, *others: Any) -> PageKey:
 
 def scale_note(session: Session, words: Words) -> str:
     """A note if the drawing is not true to scale, else empty."""
-    if session.exaggeration == 1.0 or not session.robot.extra_fields:
+    if session.exaggeration == 1.0 or not session.robot.extras:
         return ""
     return words("scene.larger", factor=f"{session.exaggeration:g}")
 

@@ -149,7 +149,6 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--set", "speed_profile=sine"], "constant speed"),
         (["--language", "xx"], "en"),
         (["--control", "brake"], "control"),
-        (["--robot", "flexible", "--control", "drag"], "cannot check the path"),
         (["--path", "circle", *LEVEL_SET, "--control", "drag"], "adapted to the path"),
         (["--law", "contouring", "--control", "poles"], "poles"),
         (["--choice", "path_folowing"], "path_following"),

@@ -21,7 +21,7 @@ from onpath.models.control.benches import LEFT
 from onpath.models.control.laws.law import ControlAction, View
 from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.lab import FRAME, do, finish, run
 
 OPERATIONS = {"inverse": ca.OP_ERFINV}
@@ -52,7 +52,7 @@ def store() -> Iterator[LoopCache]:
 def test_others_are_still_compiled(
     store: LoopCache, law: str, caplog: pytest.LogCaptureFixture
 ) -> None:
-    robot = rigid_five_bar()
+    robot = RIGID_FIVE_BAR
     with caplog.at_level(logging.WARNING, loop_cache.__name__):
         for _ in range(3):
             store.prepare(robot, Kind(law))

@@ -28,7 +28,7 @@ from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control import speed_limit
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.lab import FRAME, do, finish, run, states
 from tests.support.lab import store as store_of_other_tests
 from tests.support.waiting import wait_for
@@ -129,7 +129,7 @@ def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
         for e in (True, False)
     ]
     for kind in kinds:
-        store.get(rigid_five_bar(), kind)
+        store.get(RIGID_FIVE_BAR, kind)
     assert gate.reached.wait(PATIENCE)
     pool = store._pool
     assert pool is not None
@@ -139,8 +139,8 @@ def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
     assert len(gate.passed) == 1
     waiting = len(store._waiting)
     for kind in kinds[1:]:
-        assert isinstance(store.get(rigid_five_bar(), kind), InterpretedLoop)
-    store.get(rigid_five_bar(), replace(kinds[0], free=True))  # that is new, and refused quietly
+        assert isinstance(store.get(RIGID_FIVE_BAR, kind), InterpretedLoop)
+    store.get(RIGID_FIVE_BAR, replace(kinds[0], free=True))  # that is new, and refused quietly
     assert len(store._waiting) == waiting
 
 
@@ -164,7 +164,7 @@ class Quick(InterpretedLoop):
 @pytest.fixture
 def cheap(monkeypatch: pytest.MonkeyPatch) -> None:
     """Nothing is compiled, and all loops have one kernel."""
-    kernel = kernel_of(rigid_five_bar(), Kind(DEFAULT_LAWS[LEFT]))
+    kernel = kernel_of(RIGID_FIVE_BAR, Kind(DEFAULT_LAWS[LEFT]))
     monkeypatch.setattr(loop_store, "kernel_of", lambda *_: kernel)
     monkeypatch.setattr(loop_store, "translate_loop", Quick)
     monkeypatch.setattr(loop_store, "CompiledLoop", Quick)
@@ -182,7 +182,7 @@ def some_kinds(most: int) -> list[Kind]:
 
 @pytest.mark.usefixtures("cheap")
 def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept(store: LoopCache) -> None:
-    robot, (mine, *others) = rigid_five_bar(), some_kinds(3 * MOST)
+    robot, (mine, *others) = RIGID_FIVE_BAR, some_kinds(3 * MOST)
     store.prepare(robot, mine)
     finish(store)
     used, seen = store.get(robot, mine), WeakSet[Loop]()
@@ -210,7 +210,7 @@ def test_labs_that_wait_for_more_loops_than_are_kept_get_them(
         return loop
 
     monkeypatch.setattr(loop_store, "translate_loop", translate)
-    robot = rigid_five_bar()
+    robot = RIGID_FIVE_BAR
     used: dict[Kind, Loop] = {kind: store.get(robot, kind) for kind in some_kinds(2 * MOST)}
     for frame in range(2 * MOST):
         turn.release()
@@ -227,7 +227,7 @@ def test_settings_changed_without_end_do_not_hold_up_another_lab(
     clock = count()  # [s]; time passes whenever somebody asks
     store._waiting._clock = lambda: float(next(clock))
     for kind in some_kinds(200):
-        store.prepare(rigid_five_bar(), kind)
+        store.prepare(RIGID_FIVE_BAR, kind)
     lab = Lab(store)
     do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
     run(lab, FRAME)

@@ -41,49 +41,8 @@ from onpath.models.systems.robots import RobotEntry
 from tests.support.checkout import ROOT
 from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, store, y
 from tests.support.lab import run as run_lab
+from tests.support.new_robot import GANTRY, new_robot
 
-GANTRY = '''
-"""A Cartesian gantry: two sliding axes, M = diag(m1 + m2, m2), c = (b v1, b v2 + m2 g), h = q."""
-from dataclasses import dataclass, field
-from functools import lru_cache
-import casadi as ca
-import numpy as np
-from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import RobotEntry, first_fault
-from onpath.models.systems.system import mechanical_system
-
-def equations():
-    q, v, p = (ca.SX.sym(name, 2) for name in ("q", "v", "p"))
-    return mechanical_system(
-        name="gantry", q=q, v=v, parameters=p, parameter_names=("m1", "m2"),
-        mass=ca.diag(ca.vertcat(p[0] + p[1], p[1])),
-        bias=ca.vertcat(0.5 * v[0], 0.5 * v[1] + 9.81 * p[1]),
-        inputs=2, output=q, potential_energy=9.81 * p[1] * q[1])
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Gantry(PlanarRobot):
-    system: object = field(default_factory=equations)
-    name: str = "gantry"
-    label: str = "Gantry"
-    coordinate_names: tuple[str, ...] = ("q1_m", "q2_m")
-    home = (0.2, 0.15)
-    reach = (0.0, 0.3)
-    def plant(self, parameters): return np.array([1.0, 0.5])
-    def model(self, parameters): return np.array([1.0, 0.5])
-    def rest(self, y): return np.array(y, dtype=float)
-    def endpoint(self, q): return np.array(q)
-    def margin(self, z): return (np.abs(z).max(axis=-1) < 0.15).astype(float)
-    def fault(self, q, v, parameters): return first_fault(q, v)
-    def skeleton(self, q, exaggeration):
-        x, z = q[0] + 0.2, q[1] + 0.15
-        base, foot, tip = ca.SX.zeros(3), ca.vertcat(x, 0, 0), ca.vertcat(x, 0, z)
-        return ca.horzcat(base, foot, foot, tip), ca.horzcat(base, foot)
-
-ROBOT = RobotEntry(
-    name="gantry", label="Gantry", text="Two sliding axes.",
-    parameters=Parameters, make=lru_cache(lambda _: Gantry()))
-'''
 UNDERACTUATED = ROOT / "tests" / "support" / "underactuated"
 NAMES_OF_ALL = [*ROBOTS, "gantry", "overhead_crane", "cart_pendulum"]
 
@@ -91,12 +50,9 @@ NAMES_OF_ALL = [*ROBOTS, "gantry", "overhead_crane", "cart_pendulum"]
 @pytest.fixture
 def gantry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Robots that are one more file each in the folder of the robots, and nothing else."""
-    (tmp_path / "gantry.py").write_text(GANTRY)
-    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(tmp_path), str(UNDERACTUATED)])
-    for name, entry in catalogue.found_robots().items():
-        monkeypatch.setitem(ROBOTS, name, entry)
-    yield
-    sys.modules.pop("onpath.models.systems.gantry", None)
+    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(UNDERACTUATED)])
+    with new_robot(tmp_path, monkeypatch):
+        yield
 
 
 @pytest.fixture(params=NAMES_OF_ALL)
@@ -122,7 +78,7 @@ def off_path(session: Session, bench: str) -> float:
 
 def test_the_catalogue_finds_it_by_its_name(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
-    assert ROBOTS[robot.name] is entry and robot.system.n == len(robot.coordinate_names)
+    assert ROBOTS[robot.name] is entry and robot.system.n == len(robot.system.coordinate_names)
     assert robot.system.m >= robot.system.p == robot.frame.p
     assert entry.make(entry.parameters()) is entry.make(entry.parameters())
 
@@ -235,7 +191,7 @@ def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
     session = lab.session
     history = session.history.all()
     head = csv_bytes(session.robot, history).decode().splitlines()[0]
-    assert all(name in head for name in session.robot.coordinate_names)
+    assert all(name in head for name in session.robot.system.coordinate_names)
     assert picture_file(entry.name, session.parameters, session.history.copy(), "en").startswith(
         b"\x89PNG"
     )
@@ -270,25 +226,20 @@ def test_a_drag_leads_as_far_as_the_hand_in_the_lab(entry: RobotEntry) -> None:
 
 
 BENDING = GANTRY.replace(
-    "    def plant(",
-    """    extra_fields = (("deflection", 1), ("temperature", 1))
-    def extras(self, q, v, parameters):
-        return {"deflection": 0.01 * q[:1], "temperature": v[:1]}
-    def plant(""",
+    "    return Robot(\n",
+    """    return Robot(
+        extras={"deflection": 0.01 * q[0], "temperature": v[0]},
+""",
 )
 
 
 @pytest.fixture
-def bending(
-    monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest
-) -> Iterator[RobotEntry]:
+def bending(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotEntry]:
     """A robot in one file that says that it bends."""
-    monkeypatch.setitem(globals(), "GANTRY", BENDING)
-    request.getfixturevalue("gantry")
-    monkeypatch.setitem(
-        ROBOTS, "gantry", replace(ROBOTS["gantry"], flexible_link=FLEXIBLE.flexible_link)
-    )
-    yield ROBOTS["gantry"]
+    with new_robot(tmp_path, monkeypatch, BENDING) as entry:
+        link = FLEXIBLE.flexible_link
+        monkeypatch.setitem(ROBOTS, "gantry", replace(entry, flexible_link=link))
+        yield ROBOTS["gantry"]
 
 
 def test_a_figure_shows_what_a_new_robot_has_to_plot(bending: RobotEntry) -> None:
@@ -346,7 +297,7 @@ def test_the_command_line_does_an_experiment_with_it(
     words = ["experiment", "position", "--robot", entry.name, "--set", "duration=0.2"]
     run_command([*words, "--csv", str(file), "--json"])
     assert json.loads(capsys.readouterr().out)["experiment"] == "position"
-    assert entry.make(entry.parameters()).coordinate_names[0] in file.read_text()
+    assert entry.make(entry.parameters()).system.coordinate_names[0] in file.read_text()
 
 
 def test_an_unknown_robot_is_told_its_nearest_names() -> None:

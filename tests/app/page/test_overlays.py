@@ -5,6 +5,7 @@ from __future__ import annotations
 import socket
 from collections import Counter
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,8 @@ from onpath.app.page.overlays import Background, Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.arrows import SHORTEST
 from onpath.app.scene.error_nodes import ErrorNodes
-from onpath.app.scene.rank_nodes import largest, map_corners, map_picture
+from onpath.app.scene.plane_picture import map_corners
+from onpath.app.scene.rank_nodes import largest, map_picture
 from onpath.app.scene.robot_labels import RobotLabels
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
@@ -36,7 +38,7 @@ from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import RobotEntry
-from onpath.models.systems.two_link_arm import TwoLinkArm
+from onpath.models.systems.two_link_arm import TWO_LINK_ARM
 from tests.support.built_in import built_in_course
 from tests.support.drawing import drawn_length
 from tests.support.lab import do, run, store
@@ -284,20 +286,11 @@ def test_a_picture_that_is_encoded_beforehand_is_sent_as_viser_sends_one(
     assert (own.position == theirs.position).all() and (own.wxyz == theirs.wxyz).all()
 
 
-class Nameless(TwoLinkArm):
-    """An arm that says nothing of its angles and lengths."""
-
-    __slots__ = ()
-
-    @property
-    def drawing(self) -> Drawing:
-        return Drawing()
-
-
 def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None:
     entry = ROBOTS["two_link_arm"]
     motion = take_motion(Lab(store(), entry))
-    labels = RobotLabels(server.scene, stage_of(entry.make(entry.parameters())), Nameless(), motion)
+    stage, nameless = stage_of(TWO_LINK_ARM), replace(TWO_LINK_ARM, drawing=Drawing())
+    labels = RobotLabels(server.scene, stage, nameless, motion)
     labels.update(motion)
     assert server.scene.get_handle_by_name("/show/arcs") is None
     assert server.scene.get_handle_by_name("/show/axes_0") is not None

@@ -41,10 +41,10 @@ from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
 from onpath.models.systems.parameters import declared
-from onpath.models.systems.robots import RobotEntry, first_fault
+from onpath.models.systems.robots import AT_A_LIMIT, RobotEntry
 from tests.support.catalogues import COMPLETE, arguments, counts, messages
 from tests.support.checkout import ROOT
 from tests.support.lab import do, run, store
@@ -293,11 +293,11 @@ def test_every_robot_has_labels_in_every_language(words: Words) -> None:
 
 NEW_ROBOT = """
 from dataclasses import dataclass
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.parameter_specs import choice, number
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.parameters import declared
-from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.robots import AT_A_LIMIT, RobotEntry
 
 @dataclass(frozen=True, slots=True)
 class CraneParameters(Parameters):
@@ -305,7 +305,7 @@ class CraneParameters(Parameters):
     hook: str = choice("light", ("light", "heavy"), "which hook", group="robot", label="Hook")
 
 ROBOT = RobotEntry(name="crane", label="Crane", text="A load on a rope.",
-    parameters=CraneParameters, make=lambda _: rigid_five_bar())
+    parameters=CraneParameters, make=lambda _: RIGID_FIVE_BAR)
 """
 
 
@@ -435,17 +435,17 @@ def test_an_error_survives_a_process_and_one_without_a_code_stays_as_it_is() -> 
 
 def reasons() -> Iterator[Message]:
     """Why runs stop and paths are refused."""
-    robot = rigid_five_bar()
+    robot = RIGID_FIVE_BAR
     for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
         yield from (fault.reason for fault in curve_faults(robot.margin, curve))
     v = np.zeros((1, 2))
     for q, rates in ((v * np.nan, v), (v, v + 1e4)):
-        found = first_fault(q, rates)
+        found = robot.fault(q, rates, FiveBarParameters())
         assert found is not None
         yield found[1]
     collapsed = robot.fault(v, v, FiveBarParameters())
     assert collapsed is not None
-    yield from (collapsed[1], UNSTABLE, BENT, BENT_OR_UNSTABLE)
+    yield from (collapsed[1], AT_A_LIMIT, UNSTABLE, BENT, BENT_OR_UNSTABLE)
 
 
 def behaviours() -> Iterator[Message]:

@@ -13,8 +13,9 @@ import viser
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
+from onpath.app.scene import meshes
 from onpath.app.scene.contact_nodes import CLEAR
-from onpath.app.scene.scene import Scene, meshes
+from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.benches import BENCHES, LEFT
 from onpath.models.systems.catalogue import ROBOTS

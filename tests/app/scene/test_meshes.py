@@ -128,20 +128,6 @@ def test_a_base_stands_on_its_floor_and_carries_the_pivot(height: float) -> None
     assert added == pytest.approx((height - meshes.FLOOR_DEPTH) * 0.024 * 0.072, rel=0.2, abs=1e-9)
 
 
-def test_rings_are_cut_at_the_box() -> None:
-    radii, low, high = [(0.05, 0.07), (0.3, 0.33)], (-0.2, -0.06), (0.25, 0.5)
-    rings = meshes.rings(radii, low, high, 0.02)
-    x, y, z = rings.vertices.T
-    distance = np.hypot(x, z)
-    np.testing.assert_allclose(y, 0.02)
-    assert (x.min(), x.max()) == pytest.approx((low[0], high[0]))
-    assert (z.min(), z.max()) == pytest.approx((low[1], 0.33))
-    assert ((distance < 0.07 + 1e-9) | (distance > 0.3 - 1e-3)).all()
-    assert distance.min() == pytest.approx(0.05, rel=1e-3) and distance.max() < 0.33 + 1e-9
-    everything = judged(meshes.rings(radii, (-1.0, -1.0), (1.0, 1.0), 0.0)).area
-    assert everything == pytest.approx(np.pi * (0.07**2 - 0.05**2 + 0.33**2 - 0.3**2), rel=1e-3)
-
-
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_scene_has_few_triangles_and_bytes(name: str) -> None:
     lab, studio = new_lab(), FilmServer()

@@ -95,7 +95,7 @@ def test_far_pointer_stays_within_the_robot_s_reach(name, place):
     camera = home + [0.0, -1.0, 0.0]
     far = pointer_on_plane(camera, home + place, np.zeros(3), plane, stage.reachable)
     assert far is not None
-    np.testing.assert_allclose(far - home, robot.reach[1] * np.sign(place), atol=1e-12)
+    np.testing.assert_allclose(far - home, robot.reach * np.sign(place), atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ROBOTS)

@@ -21,21 +21,22 @@ from onpath.app.lab.snapshots.snapshot import (
     RobotView,
     Snapshot,
 )
+from onpath.app.scene import meshes
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
-from onpath.app.scene.scene import Scene, meshes
+from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.paths.curves import TABLE_SHAPE, circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.drags import play
 from tests.support.drawing import drawn_length, evaluated
 
-FIVE_BAR = rigid_five_bar()
+FIVE_BAR = RIGID_FIVE_BAR
 RIGID = stage_of(FIVE_BAR)
 STAGES = {name: stage_of(entry.make(entry.parameters())) for name, entry in ROBOTS.items()}
 
@@ -248,7 +249,7 @@ def test_a_freehand_stroke_is_told_once_in_the_robots_frame(lab):
 def test_the_singular_zone_can_be_shown_and_hidden(lab):
     for visible in (True, True, False):
         lab.scene.show_singular_zone(visible)
-        assert (lab.api.get_handle_by_name("/zone") is not None) == visible
+        assert (lab.api.get_handle_by_name(f"/zone/{RIGHT}") is not None) == visible
 
 
 def test_nothing_of_the_robots_can_show_through_a_board(lab):

@@ -20,7 +20,7 @@ from onpath.app.scene.strokes.sketch_line import MOST, SketchLine
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.slow_updates import INTERVALS
 from onpath.lessons.schema import Sketch
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support import waiting
 from tests.support.drags import play
 from tests.support.student import Student
@@ -108,7 +108,7 @@ def around(k: int) -> np.ndarray:
 def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(page: Page) -> None:
     strokes: list[np.ndarray] = []
     page.view.page._scene.begin_freehand(strokes.append)
-    base = next(iter(stage_of(rigid_five_bar()).bases.values()))
+    base = next(iter(stage_of(RIGID_FIVE_BAR).bases.values()))
     page.scribble("/freehand/sheet", lambda k: base + around(k))
     page.assert_bounded()
     page.end()

@@ -16,9 +16,9 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
-from onpath.models.systems.five_bar import end_point, inverse_kinematics
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.bench.reference import LANES, reference_loop
-from tests.support.rig import DEFAULTS, FOLLOWING, TRACKING, Rig
+from tests.support.rig import DEFAULTS, FOLLOWING, TRACKING, Rig, end_point
 
 BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
 CIRCLE = circle(0.05)
@@ -367,9 +367,9 @@ def test_row_tells_the_instant_a_tick_begins(rig: Rig) -> None:
     y = np.array([0.06, 0.02])
     start = rig.state(FOLLOWING, y, np.array([0.1, -0.1]), theta=0.3217)
     log = rig.run(FOLLOWING, CIRCLE, start, 1, plant=rig.spoiled)
-    q = inverse_kinematics(y, 0.2, 0.2)
+    q = RIGID_FIVE_BAR.rest(y)
     assert log["q"][0] == pytest.approx(q, abs=0) and log["y"][0] == pytest.approx(y)
-    assert log["y"][0] == pytest.approx(end_point(q, 0.2, 0.2), abs=1e-16)
+    assert log["y"][0] == pytest.approx(end_point(q), abs=1e-16)
     assert log["theta"][0] == pytest.approx(np.arctan2(0.02, 0.06), abs=5e-6)
     assert log["xi"][0] == pytest.approx(
         0.05 - np.hypot(*y), abs=5e-6

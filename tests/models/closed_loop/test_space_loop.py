@@ -33,9 +33,9 @@ from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.spatial_arm import SpatialParameters, spatial_arm_robot
+from onpath.models.systems.spatial_arm import SPATIAL_ARM, SpatialParameters
 
-ARM, DEFAULTS = spatial_arm_robot(), SpatialParameters(K3=0.0)
+ARM, DEFAULTS = SPATIAL_ARM, SpatialParameters(K3=0.0)
 SADDLE = saddle(circle(0.05), 0.03)
 NEAR = 2e-5  # [m], what sampling leaves of a law that is exact
 AT_REST = [name for name, law in LAWS.items() if law.pace in ("none", "free")]

@@ -28,7 +28,7 @@ from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
 from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
 from onpath.models.systems.robots import Robot, RobotEntry
 from tests.support.scalar_operations import logging_kernel
@@ -74,7 +74,7 @@ def test_every_loop_of_every_robot_can_be_translated(
     paths = [(True, False), (True, True), (False, False)]
     for closed, level_set in paths:
         kind = Kind(controller, closed, level_set, encoder, free)
-        assert "onpath_run" in translate(kernel_of(rigid_five_bar(), kind))
+        assert "onpath_run" in translate(kernel_of(RIGID_FIVE_BAR, kind))
         for plant, law in product(PLANTS, ("redefined", "composite")):
             assert translate(kernel_of(flexible(plant), replace(kind, law=law)))
 
@@ -112,7 +112,7 @@ assert not any("llvm" in name for name in sys.modules)
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the resident memory from /proc")
 def test_a_compiled_loop_keeps_its_machine_code_and_not_its_compiler() -> None:
-    kernel = kernel_of(rigid_five_bar(), Kind("path_following"))
+    kernel = kernel_of(RIGID_FIVE_BAR, Kind("path_following"))
     loops = [translate_loop(kernel) for _ in range(4)]
     before = resident()
     loops += [translate_loop(kernel) for _ in range(24)]

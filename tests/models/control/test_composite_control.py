@@ -19,8 +19,9 @@ from onpath.models.paths.curves import circle, nearest
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.beam import beam_modes
-from onpath.models.systems.flexible_five_bar import HOME, RIGID, end_point, flexible_five_bar
+from onpath.models.systems.flexible_five_bar import HOME, RIGID, flexible_five_bar
 from onpath.models.systems.flexible_links import load_links
+from onpath.models.systems.flexible_robot import flexible_five_bar_robot
 
 LINKS, BEAM, FRAME, RADIUS = load_links(), beam_modes(3, 0.5), SlantedPlane(), 0.05
 SYSTEM = flexible_five_bar(3)
@@ -147,7 +148,7 @@ def run(
 def distance(states: Array) -> Array:
     """Of the actual tip to the ellipse, (ticks,), [m]."""
     curve = circle(RADIUS)
-    tips = end_point(states[:, : SYSTEM.n], LINKS.link1, BEAM)
+    tips = flexible_five_bar_robot().endpoint(states[:, : SYSTEM.n])
     return nearest(lambda theta: FRAME.lift(curve.at(theta)), curve.sample(256), tips)[1]
 
 

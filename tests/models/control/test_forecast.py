@@ -26,7 +26,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.zero_dynamics import zero_dynamics
-from tests.support.passive_chain import PassiveChain, Shape, entry_of
+from tests.support.passive_chain import Shape, entry_of, passive_chain
 from tests.support.underactuated.cart_pendulum import ROBOT as CART
 from tests.support.underactuated.cart_pendulum import CartParameters
 from tests.support.underactuated.overhead_crane import ROBOT as CRANE
@@ -181,7 +181,7 @@ def shapes(draw: st.DrawFn) -> Shape:
 @given(shapes(), st.sampled_from(CHAIN_LAWS))
 def test_a_chain_with_passive_joints_runs_or_is_refused_in_words(shape: Shape, law: str) -> None:
     try:
-        chain = PassiveChain(shape)
+        chain = passive_chain(shape)
         q = at_rest(chain)
     except ValueError:
         assume(False)

@@ -22,7 +22,7 @@ from onpath.models.control.poles import Complex, channels
 from onpath.models.control.settable import specs
 from onpath.models.paths.curves import circle
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.parameters import time_step
 
 RADIUS = 0.05
@@ -31,7 +31,7 @@ PD = FiveBarParameters(K3=0.0)
 
 def simulated(seconds: float, offset: float, name: str = "path_following", **values: Any):
     """(time of a tick, log of a run that begins `offset` [m] outside the circle, at rest)."""
-    robot, curve = rigid_five_bar(), circle(RADIUS)
+    robot, curve = RIGID_FIVE_BAR, circle(RADIUS)
     parameters = dataclasses.replace(PD, tracker_integral="on", **values)
     kernel = kernel_of(robot, kind_of(name, parameters, curve))
     state = first_state(robot, kernel, curve, robot.rest(np.array([RADIUS + offset, 0.0])))

@@ -18,9 +18,9 @@ from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, fourier, segment
 from onpath.models.paths.path_checks import LEAST_MARGIN, STRANDS_APART, TUBE
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign, drawn, presets
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 
-ROBOT = rigid_five_bar()
+ROBOT = RIGID_FIVE_BAR
 GOOD = [name for name in presets() if name != "figure of eight"]
 CLOSED = [name for name in GOOD if presets()[name].curve.closed]
 

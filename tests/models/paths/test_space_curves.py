@@ -14,7 +14,7 @@ from onpath.models.paths.frames import LevelPlane, Plane, SlantedPlane, Space
 from onpath.models.paths.path_checks import TUBE
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import in_space, saddle
-from onpath.models.systems.spatial_arm import spatial_arm_robot
+from onpath.models.systems.spatial_arm import SPATIAL_ARM
 
 FRAME = LevelPlane()
 RAISED = [
@@ -82,7 +82,7 @@ def test_a_planar_curve_blends_with_a_raised_one() -> None:
 
 
 def margin(z: Array) -> Array:
-    return spatial_arm_robot().margin(z)
+    return SPATIAL_ARM.margin(z)
 
 
 def test_strands_may_cross_in_the_plan_view_where_they_are_far_enough_apart() -> None:

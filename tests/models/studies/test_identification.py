@@ -25,7 +25,6 @@ from onpath.models.studies.identification import (
     simplest,
     smooth_velocities,
 )
-from onpath.models.systems.five_bar_robot import RigidFiveBar
 from tests.support.lab import FOLLOWER, do, new_lab, replayed, run
 from tests.support.rig import FOLLOWING, Rig, jacobian
 
@@ -184,11 +183,6 @@ def errors(lab: Lab) -> Array:
     return np.array([getattr(lab.session.parameters, f"error_{name}") for name in INERTIA])
 
 
-def five_bar(lab: Lab) -> RigidFiveBar:
-    assert isinstance(lab.session.robot, RigidFiveBar)
-    return lab.session.robot
-
-
 def worst(lab: Lab) -> float:
     """Largest distance of the follower from the same start, held back and sent back, [m]."""
     do(lab, c.Reset(), c.SetParameter("speed", 6.0))
@@ -258,7 +252,7 @@ def test_lab_learns_from_the_robot_as_it_is_now() -> None:
 def test_lab_looks_at_a_bounded_past_and_that_of_the_right_robot() -> None:
     lab = made_lab(8.0)
     history = lab.session.history.all()
-    record = last_record(five_bar(lab), history)
+    record = last_record(lab.session.robot, history)
     n = len(record.q)
     assert MOST_TICKS - 20 < n <= MOST_TICKS
     fields = replayed(lab.session)[FOLLOWER].fields

@@ -33,7 +33,7 @@ from onpath.models.studies.table_file import LONGEST_LINE
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do
 from tests.support.lab import run as run_lab
-from tests.support.passive_chain import PassiveChain, Shape
+from tests.support.passive_chain import Shape, passive_chain
 
 RIGID = [name for name, entry in ROBOTS.items() if entry.flexible_link is None]
 
@@ -296,6 +296,6 @@ def test_every_rigid_robot_says_whether_it_is_linear() -> None:
 
 
 def test_a_robot_without_parameters_has_nothing_to_identify() -> None:
-    chain = PassiveChain(Shape(joints=(0, 2, 1), motors=2, gravity=9.81, start=(0.3, 0.5, -0.2)))
+    chain = passive_chain(Shape(joints=(0, 2, 1), motors=2, gravity=9.81, start=(0.3, 0.5, -0.2)))
     with pytest.raises(ValueError, match="depend on no parameter"):
         linear_model(chain.system)

@@ -18,9 +18,9 @@ from onpath.models.closed_loop.trajectory import header
 from onpath.models.errors import CodedError
 from onpath.models.studies.record_file import read_records
 from onpath.models.studies.table_file import LARGEST, LONGEST_LINE, Table, read_table
-from onpath.models.systems.five_bar_robot import rigid_five_bar
+from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 
-ROBOT = rigid_five_bar()
+ROBOT = RIGID_FIVE_BAR
 NAMES = header(ROBOT)
 LAWS = ("trajectory_tracking", "across = -min(K1, 9)*xi; along = 0", "path_following")
 ENCODINGS = ("utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be")

@@ -16,10 +16,10 @@ from onpath.models.systems.flexible_five_bar import (
     HOME,
     PLANTS,
     RIGID,
-    end_point,
     flexible_five_bar,
 )
 from onpath.models.systems.flexible_links import load_links
+from onpath.models.systems.flexible_robot import flexible_five_bar_robot
 from onpath.models.systems.system import (
     MechanicalSystem,
     conditioning,
@@ -227,7 +227,7 @@ def test_output_is_the_last_point_of_the_beam() -> None:
         tip, ahead, behind = (points(q + k * v, np.array([LINKS.beam]))[0][0] for k in (0.0, h, -h))
         y, rate = (np.array(part).ravel() for part in with_rate(q, v, numbers()))
         assert y == pytest.approx(tip - [0, 0, LINKS.link1], abs=1e-12)
-        assert end_point(q, LINKS.link1, BEAM) == pytest.approx(y, abs=1e-12)
+        assert flexible_five_bar_robot().endpoint(q) == pytest.approx(y, abs=1e-12)
         assert rate == pytest.approx((ahead - behind) / (2 * h), abs=1e-6)
 
 
@@ -235,7 +235,7 @@ def test_controlled_output_lies_between_the_tip_and_the_straight_link() -> None:
     q, v = poses(1)
     both = robot().function("output", "controlled_output")
     straight = np.concatenate([q[:RIGID], np.zeros(3)])
-    tip, rigid = (end_point(x, LINKS.link1, BEAM) for x in (q, straight))
+    tip, rigid = (flexible_five_bar_robot().endpoint(x) for x in (q, straight))
     assert np.linalg.norm(tip - rigid) > 1e-3
     for alpha in (1.0, 0.5, 0.0, -1.0):
         output, controlled = (np.array(part).ravel() for part in both(q, v, numbers(alpha)))
@@ -362,7 +362,7 @@ def test_tip_answers_a_torque_step_as_a_beam_of_finite_elements_does() -> None:
     forces = np.array([0, 0, torque, 0, 0, 0])
     start = np.concatenate([HOME, np.zeros(9)])
     states = simulate(robot(), start, forces, dt, ticks, numbers(**LOSSLESS))
-    y = end_point(states[:, :6], LINKS.link1, BEAM)
+    y = flexible_five_bar_robot().endpoint(states[:, :6])
     swing = LINKS.beam * torque / (LINKS.J0 + LINKS.rho * LINKS.beam**3 / 3) * t[:, 0] ** 2 / 2
     assert np.abs(tip - swing).max() > 5e-5  # the beam does bend
     assert np.abs(y[:, 1] - tip).max() < 0.02 * np.abs(tip - swing).max()

@@ -14,9 +14,9 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems import flexible_robot, tip_load
 from onpath.models.systems.beam import beam_modes
-from onpath.models.systems.flexible_five_bar import PLANTS, RIGID, end_point, flexible_five_bar
+from onpath.models.systems.flexible_five_bar import PLANTS, RIGID, flexible_five_bar
 from onpath.models.systems.flexible_parameters import FlexibleParameters
-from onpath.models.systems.flexible_robot import FlexibleFiveBar, flexible_five_bar_robot, robot_for
+from onpath.models.systems.flexible_robot import flexible_five_bar_robot, robot_for
 from onpath.models.systems.system import lagrange_bias
 from tests.models.systems.test_flexible_five_bar import (
     LINKS,
@@ -40,10 +40,8 @@ def numbers(load: float = LOAD, **changes: float) -> Array:
 
 def energy_with_load(q: Array, v: Array) -> float:
     """Kinetic energy of the moving points, one of which, the last, is heavy."""
-    h, beam = 1e-6, beam_modes(q.size - RIGID, LINKS.beam)
-    rate = (end_point(q + h * v, LINKS.link1, beam) - end_point(q - h * v, LINKS.link1, beam)) / (
-        2 * h
-    )
+    h, tip = 1e-6, flexible_five_bar_robot(q.size - RIGID).endpoint
+    rate = (tip(q + h * v) - tip(q - h * v)) / (2 * h)
     return kinetic_energy(q, v) + LOAD / 2 * float(rate @ rate)
 
 
@@ -98,7 +96,7 @@ def test_free_motion_without_damping_keeps_its_energy() -> None:
     robot, parameters = flexible_five_bar(loaded=True), numbers(**LOSSLESS)
     states = simulate(robot, thrown(), np.zeros(6), 1e-4, 15_000, parameters)
     energy = energies(robot, states, parameters)
-    heights = end_point(states[:, :6], LINKS.link1, beam_modes(3, LINKS.beam))[:, 2]
+    heights = flexible_five_bar_robot().endpoint(states[:, :6])[:, 2]
     assert np.ptp(heights) > 0.02  # its weight does work
     assert np.ptp(energy) < 1e-6 * np.abs(energy).max()
 
@@ -152,7 +150,7 @@ def test_twenty_grams_destabilise_half_of_the_deflection_and_not_composite_contr
 @pytest.fixture
 def weightless(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tip_load, "GRAVITY", 0.0)
-    monkeypatch.setattr(flexible_robot, "_robot", lru_cache(FlexibleFiveBar))
+    monkeypatch.setattr(flexible_robot, "_robot", lru_cache(flexible_robot._made))
 
 
 @pytest.mark.usefixtures("weightless")

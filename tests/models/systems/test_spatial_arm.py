@@ -16,12 +16,18 @@ from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
 from onpath.models.studies.experiments import experiments, run
-from onpath.models.systems.spatial_arm import MIDDLE, SINGULAR, SpatialParameters, spatial_arm_robot
+from onpath.models.systems.spatial_arm import (
+    LINKS,
+    MIDDLE,
+    SINGULAR,
+    SPATIAL_ARM,
+    SpatialParameters,
+)
 from onpath.models.systems.system import GRAVITY
 from tests.support.drawing import drawn
 
-ARM = spatial_arm_robot()
-LINKS, SYSTEM, DEFAULTS = ARM.links, ARM.system, SpatialParameters()
+ARM = SPATIAL_ARM
+SYSTEM, DEFAULTS = ARM.system, SpatialParameters()
 PLANT = ARM.plant(DEFAULTS)
 STEP = 1e-4
 angles, rates = st.floats(-3.1, 3.1), st.floats(-4, 4)
@@ -111,7 +117,7 @@ def test_rest_is_the_inverse_of_the_end_point_with_the_elbow_up(y: Array) -> Non
 
 
 def test_beyond_its_reach_there_is_no_pose() -> None:
-    least, most = ARM.reach
+    least, most = abs(LINKS.l2 - LINKS.l3), ARM.reach
     base, rng = -np.array(MIDDLE), np.random.default_rng(0)
     for way in rng.normal(size=(20, 3)):
         way /= np.linalg.norm(way)

@@ -25,11 +25,11 @@ from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.system import GRAVITY
-from onpath.models.systems.two_link_arm import SINGULAR, TwoLinkParameters, two_link_arm_robot
+from onpath.models.systems.two_link_arm import LINKS, SINGULAR, TWO_LINK_ARM, TwoLinkParameters
 from tests.support.drawing import drawn
 
-ARM = two_link_arm_robot()
-LINKS, SYSTEM, DEFAULTS = ARM.links, ARM.system, TwoLinkParameters()
+ARM = TWO_LINK_ARM
+SYSTEM, DEFAULTS = ARM.system, TwoLinkParameters()
 PLANT = ARM.plant(DEFAULTS)
 STEP = 1e-4
 angles, rates = st.floats(-3.1, 3.1), st.floats(-5, 5)
@@ -167,8 +167,8 @@ def test_every_pose_with_the_elbow_up_is_found_again(q: Array) -> None:
 
 
 def test_beyond_its_reach_there_is_no_pose() -> None:
-    least, most = ARM.reach
-    base = -np.array(ARM.home)
+    least, most = abs(LINKS.l1 - LINKS.l2), ARM.reach
+    base = -np.array([LINKS.l2, LINKS.l1])
     for angle in np.linspace(-3, 3, 13):
         way = np.array([np.cos(angle), np.sin(angle)])
         for inside, outside in ((most - 1e-6, most + 1e-6), (least + 1e-6, least - 1e-6)):

@@ -14,30 +14,25 @@ sqrt(3 g / (2 l)), wherever the pen is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import lru_cache
 
 import casadi as ca
-import numpy as np
-from numpy.typing import ArrayLike
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
 from onpath.models.systems.parameter_specs import choice, number
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
+from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import (
     GRAVITY,
     MechanicalSystem,
-    lagrange_bias,
     mechanical_system,
 )
 
 NAMES = ("cart", "pen", "pendulum", "length", "side", "friction", "pivot")
 CART, PEN, FRICTION = 1.0, 0.3, 0.5  # m1 and m2, [kg]; friction of the slides, [N s/m]
 LENGTH = 0.2  # l, [m]
-HOME = (0.2, 0.15)  # the pen at y = 0, in the robot's frame, [m]
+HOME = (0.2, 0.0, 0.15)  # the pen at y = 0, in the robot's frame, [m]
 HALF = 0.15  # half of the width and height of the workspace, [m]
 SIDES = {"hanging": 1.0, "upright": -1.0}
 
@@ -85,82 +80,48 @@ def equations() -> MechanicalSystem:
         parameters=numbers,
         parameter_names=NAMES,
         mass=ca.jacobian(ca.gradient(moving / 2, v), v),
-        bias=lagrange_bias(q, v, moving / 2, potential, friction),
+        friction=friction,
         inputs=2,
         output=q[:2],
         potential_energy=potential,
+        coordinate_names=("x_m", "z_m", "phi_rad"),
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CartPendulum(PlanarRobot):
-    """The cart of this module; `side` is s."""
+@lru_cache(maxsize=len(SIDES))
+def cart(pendulum: str) -> Robot:
+    """The only instance for its pendulum."""
+    side, system = SIDES[pendulum], equations()
 
-    side: float = 1.0
-    system: MechanicalSystem = field(default_factory=equations)
-    name: str = "cart_pendulum"
-    label: str = "Cart with a pendulum"
-    coordinate_names: tuple[str, ...] = ("x_m", "z_m", "phi_rad")
-    reach: tuple[float, float] = (0.0, 0.35)
-
-    @property
-    def home(self) -> tuple[float, float]:
-        """See `PlanarRobot.home`."""
-        return HOME
-
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
+    def plant(parameters: Parameters) -> Array:
         own = own_parameters(CartParameters, parameters)
         values = {"cart": CART, "pen": PEN, "friction": FRICTION, "length": LENGTH}
-        values |= {"pendulum": own.mass, "side": self.side, "pivot": own.pivot}
-        return self.system.parameter_vector(values)
+        values |= {"pendulum": own.mass, "side": side, "pivot": own.pivot}
+        return system.parameter_vector(values)
 
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the plant."""
-        return self.plant(parameters)
-
-    def rest(self, y: ArrayLike) -> Array:
-        """See `Robot.rest`; shape (..., 2) -> (..., 3)."""
-        place = np.asarray(y, dtype=float)
-        return np.concatenate([place, np.zeros((*place.shape[:-1], 1))], axis=-1)
-
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        return np.array(q[..., :2])
-
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: the way to the end of the slides, as a share."""
-        return np.maximum(1 - np.abs(z).max(axis=-1) / HALF, 0.0)
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """See `Robot.fault`."""
-        return first_fault(q, v)
-
-    @property
-    def geometry(self) -> ArmGeometry:
-        """See `Robot.geometry`."""
-        return ArmGeometry(
-            margin=lambda z: ca.fmax(1 - ca.mmax(ca.fabs(z)) / HALF, 0),
-            rest=lambda y: ca.vertcat(y, 0),
-        )
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: pendulum, rail and pen; joints: base and pivot."""
-        x, z = q[0] + HOME[0], q[1] + HOME[1]
+    def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Pendulum, rail and pen; joints: base and pivot."""
+        x, z = q[0] + HOME[0], q[1] + HOME[2]
         base, pivot = ca.SX.zeros(3, 1), ca.vertcat(x, 0, 0)
-        swing = self.side * ca.vertcat(ca.sin(q[2]), 0, -ca.cos(q[2]))
+        swing = side * ca.vertcat(ca.sin(q[2]), 0, -ca.cos(q[2]))
         end, pen = pivot + LENGTH * swing, ca.vertcat(x, 0, z)
         bars = ca.horzcat(pivot, end, base, pivot, pivot, pen)
         return bars, ca.horzcat(base, pivot)
 
+    return Robot(
+        system=system,
+        plant=plant,
+        model=plant,
+        inverse=lambda y: ca.vertcat(y, 0),
+        skeleton=skeleton,
+        home=HOME,
+        reach=0.6,
+        regularity=1 - ca.mmax(ca.fabs(system.q[:2])) / HALF,
+        stops=(),
+    )
 
-@lru_cache(maxsize=len(SIDES))
-def cart(pendulum: str) -> CartPendulum:
-    """The only instance for its pendulum."""
-    return CartPendulum(SIDES[pendulum])
 
-
-def cart_for(parameters: Parameters) -> CartPendulum:
+def cart_for(parameters: Parameters) -> Robot:
     """The instance for these parameters."""
     return cart(own_parameters(CartParameters, parameters).pendulum)
 

@@ -20,30 +20,25 @@ matrix has rank 1, and beyond it the rod falls over with the rate sqrt(g / (α l
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
-import numpy as np
-from numpy.typing import ArrayLike
 
 from onpath.models.arrays import Array
-from onpath.models.errors import Message
 from onpath.models.systems.parameter_specs import model_error, number
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.rigid_robots import PlanarRobot
-from onpath.models.systems.robots import ArmGeometry, RobotEntry, first_fault
+from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import (
     GRAVITY,
     MechanicalSystem,
-    lagrange_bias,
     mechanical_system,
 )
 
 NAMES = ("bridge", "carriage", "rod", "load", "length", "alpha", "friction", "pivot")
 BRIDGE, CARRIAGE = 1.0, 0.2  # m1 and m2, [kg]
 FRICTION = 0.5  # of the slides, [N s/m]
-HOME = (0.2, 0.1)  # the load at y = 0, in the robot's frame, [m]
+HOME = (0.2, 0.0, 0.1)  # the load at y = 0, in the robot's frame, [m]
 HALF = 0.15  # half of the width and height of the workspace, [m]
 
 
@@ -119,88 +114,55 @@ def equations() -> MechanicalSystem:
         parameters=numbers,
         parameter_names=NAMES,
         mass=ca.jacobian(ca.gradient(moving, v), v),
-        bias=lagrange_bias(q, v, moving, potential, friction),
+        friction=friction,
         inputs=2,
         output=end,
         controlled_output=point(p["alpha"]),
         potential_energy=potential,
+        coordinate_names=("x_m", "z_m", "phi_rad"),
     )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class OverheadCrane(PlanarRobot):
-    """The crane of this module."""
+def plant(own: CraneParameters) -> Array:
+    """The numbers of `NAMES`."""
+    values: dict[str, float] = {"bridge": BRIDGE, "carriage": CARRIAGE, "friction": FRICTION}
+    values |= {"rod": own.rod, "load": own.load, "length": own.length}
+    values |= {"alpha": own.alpha, "pivot": own.pivot}
+    return equations().parameter_vector(values)
 
-    length: float = 0.2
-    system: MechanicalSystem = field(default_factory=equations)
-    name: str = "overhead_crane"
-    label: str = "Overhead crane"
-    coordinate_names: tuple[str, ...] = ("x_m", "z_m", "phi_rad")
-    reach: tuple[float, float] = (0.0, 0.35)
 
-    @property
-    def home(self) -> tuple[float, float]:
-        """See `PlanarRobot.home`."""
-        return HOME
-
-    def plant(self, parameters: Parameters) -> Array:
-        """See `Robot.plant`."""
-        own = own_parameters(CraneParameters, parameters)
-        values: dict[str, float] = {"bridge": BRIDGE, "carriage": CARRIAGE, "friction": FRICTION}
-        values |= {"rod": own.rod, "load": own.load, "length": own.length}
-        values |= {"alpha": own.alpha, "pivot": own.pivot}
-        return self.system.parameter_vector(values)
-
-    def model(self, parameters: Parameters) -> Array:
-        """See `Robot.model`: the plant with the chosen error of the load."""
-        own = own_parameters(CraneParameters, parameters)
-        pairs = zip(self.system.parameter_names, self.plant(own).tolist(), strict=True)
-        values = dict(pairs)
-        values["load"] *= 1 + own.error_load / 100
-        return self.system.parameter_vector(values)
-
-    def rest(self, y: ArrayLike) -> Array:
-        """See `Robot.rest`: the rod hangs; shape (..., 2) -> (..., 3)."""
-        place = np.asarray(y, dtype=float)
-        return np.concatenate([place, np.zeros((*place.shape[:-1], 1))], axis=-1)
-
-    def endpoint(self, q: Array) -> Array:
-        """See `Robot.endpoint`."""
-        swing = [self.length * np.sin(q[..., 2]), self.length * (1 - np.cos(q[..., 2]))]
-        return q[..., :2] + np.stack(swing, axis=-1)
-
-    def margin(self, z: Array) -> Array:
-        """See `Robot.margin`: the way to the end of the slides, as a share."""
-        return np.maximum(1 - np.abs(z).max(axis=-1) / HALF, 0.0)
-
-    def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """See `Robot.fault`."""
-        return first_fault(q, v)
-
-    @property
-    def geometry(self) -> ArmGeometry:
-        """See `Robot.geometry`."""
-        return ArmGeometry(
-            margin=lambda z: ca.fmax(1 - ca.mmax(ca.fabs(z)) / HALF, 0),
-            rest=lambda y: ca.vertcat(y, 0),
-        )
-
-    def skeleton(self, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-        """See `Robot.skeleton`: bridge, carriage and rod; joints: base, bridge, pivot."""
-        x, z = q[0] + HOME[0], q[1] + HOME[1] + self.length
-        base, bridge, pivot = ca.SX.zeros(3, 1), ca.vertcat(x, 0, 0), ca.vertcat(x, 0, z)
-        tip = pivot + self.length * ca.vertcat(ca.sin(q[2]), 0, -ca.cos(q[2]))
-        bars = ca.horzcat(base, bridge, bridge, pivot, pivot, tip)
-        return bars, ca.horzcat(base, bridge, pivot)
+def model(own: CraneParameters) -> Array:
+    """The plant with the chosen error of the load."""
+    return plant(replace(own, load=own.load * (1 + own.error_load / 100)))
 
 
 @lru_cache(maxsize=16)
-def crane(length: float = 0.2) -> OverheadCrane:
+def crane(length: float = 0.2) -> Robot:
     """The only instance for its length."""
-    return OverheadCrane(length)
+    system = equations()
+
+    def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Bridge, carriage and rod; joints: base, bridge, pivot."""
+        x, z = q[0] + HOME[0], q[1] + HOME[2] + length
+        base, bridge, pivot = ca.SX.zeros(3, 1), ca.vertcat(x, 0, 0), ca.vertcat(x, 0, z)
+        tip = pivot + length * ca.vertcat(ca.sin(q[2]), 0, -ca.cos(q[2]))
+        bars = ca.horzcat(base, bridge, bridge, pivot, pivot, tip)
+        return bars, ca.horzcat(base, bridge, pivot)
+
+    return Robot(
+        system=system,
+        plant=lambda parameters: plant(own_parameters(CraneParameters, parameters)),
+        model=lambda parameters: model(own_parameters(CraneParameters, parameters)),
+        inverse=lambda y: ca.vertcat(y, 0),
+        skeleton=skeleton,
+        home=HOME,
+        reach=0.6,
+        regularity=1 - ca.mmax(ca.fabs(system.q[:2])) / HALF,
+        stops=(),
+    )
 
 
-def crane_for(parameters: Parameters) -> OverheadCrane:
+def crane_for(parameters: Parameters) -> Robot:
     """The instance for these parameters."""
     return crane(own_parameters(CraneParameters, parameters).length)
 
