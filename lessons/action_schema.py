@@ -15,15 +15,15 @@ class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Laws(Data, frozen=True):
-    """Control laws of the benches; empty: that of a new lab, or no change."""
+    """Control laws of the sides; empty: that of a new lab, or no change."""
 
     left: str = ""
     right: str = ""
 
     @property
     def named(self) -> dict[str, str]:
-        """Those that are named, by bench."""
-        return {bench: law for bench, law in msgspec.structs.asdict(self).items() if law}
+        """Those that are named, by side."""
+        return {side: law for side, law in msgspec.structs.asdict(self).items() if law}
 
 
 class RunStart(Data, frozen=True):
@@ -76,7 +76,7 @@ class StepSetup(Data, frozen=True):
     Attributes:
         robot: name of the robot; empty: that of the lesson.
         path: name of a preset; empty: the circle.
-        laws: control laws of the benches.
+        laws: control laws of the sides.
         set: parameters that differ from the lab's defaults; all others are reset to them.
         controls: controls that are shown: names of parameters, or of CONTROLS.
         plot: what is plotted besides the distance, of PLOTS: one, or a list of two; empty for none.
@@ -127,7 +127,7 @@ class Action(Data, frozen=True):
         path: name of a preset.
         move: move a control point (index, right, up), by [mm].
         robot: change the robot.
-        laws: change the control laws of the benches.
+        laws: change the control laws of the sides.
         reset: put both robots back to the start.
         run: run or pause.
         identify: fit the controller's model to the measured motion.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from onpath.lessons.action_schema import Action, Script
-from onpath.lessons.benches import law_label
 from onpath.lessons.labels import setting_label, value_label
+from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters
 
@@ -33,7 +33,7 @@ def action_words(action: Action, parameters: Parameters, words: Words) -> str:
         )
     if what == "laws" and action.laws is not None:
         laws = action.laws.named.items()
-        return ", ".join(f"{words(f'bench.{side}')}: {law_label(law, words)}" for side, law in laws)
+        return ", ".join(f"{words(f'side.{side}')}: {law_label(law, words)}" for side, law in laws)
     said = make(action, words) if make else words(f"event.{what}")
     return f"{said} ({words(f'robot.{action.only}')})" if action.only else said
 

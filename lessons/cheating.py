@@ -15,9 +15,9 @@ from onpath.lessons.action_schema import Action, Laws, RunStart, Script, Value
 from onpath.lessons.schema import Lesson
 from onpath.lessons.task_schema import Only, Reference, Task
 from onpath.lessons.vocabulary.names import one_of
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec
@@ -68,7 +68,7 @@ def _may_pass(cheat: Cheat, task: Task) -> bool:
     """Whether no check forbids the control of a cheat."""
     if cheat.control == "settings":
         return True
-    names = BENCHES if cheat.control == "laws" else (cheat.control,)
+    names = SIDES if cheat.control == "laws" else (cheat.control,)
     only = [check.names for check in task.check if isinstance(check, Only)]
     return all(set(names) & set(allowed) for allowed in only)
 
@@ -104,8 +104,8 @@ def _controls(entry: RobotEntry) -> Iterator[tuple[str, str, Action]]:
     for name in presets():
         yield "path", f"path = {name}", Action(path=name)
     for name in LAWS:
-        for bench in BENCHES:
-            yield "laws", f"{bench} = {name}", Action(laws=Laws(**{bench: name}))
+        for side in SIDES:
+            yield "laws", f"{side} = {name}", Action(laws=Laws(**{side: name}))
     for words, start in STARTS.items():
         yield "start", words, Action(start=start)
 

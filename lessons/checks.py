@@ -11,7 +11,6 @@ import msgspec
 import numpy as np
 
 from onpath.lessons.action_schema import RobotName, Value
-from onpath.lessons.benches import robot_names
 from onpath.lessons.labels import event_label, setting_label, value_label
 from onpath.lessons.measures.responses import (
     UNITS,
@@ -21,6 +20,7 @@ from onpath.lessons.measures.responses import (
     unit_of,
 )
 from onpath.lessons.record import Happening, Mask, Record
+from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import (
     Better,
     Bound,
@@ -36,9 +36,9 @@ from onpath.lessons.task_schema import (
     Window,
 )
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN, short_name
 from onpath.models.control.settable import values_of
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.parameters import Parameters
 
@@ -218,7 +218,7 @@ def _(check: Setting, record: Record, words: Words) -> Verdict:
     own: dict[str, object] = {"path": record.path, "robot": record.robot}
     own |= {"length": record.length()}
     own["path"] = record.path if record.path in presets() else OWN
-    own |= {**DEFAULT_LAWS, **{bench: short_name(law) for bench, law in record.laws.items()}}
+    own |= {**DEFAULT_LAWS, **{side: short_name(law) for side, law in record.laws.items()}}
     own = values_of(record.parameters) | own
     value = own.get(check.name)
     equals, wanted = setting_wanted(check, words)

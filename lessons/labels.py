@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from onpath.lessons.benches import law_label
+from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 
@@ -21,11 +21,11 @@ OTHERS = {
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
-    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a bench."""
+    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a side."""
     spec = specs(parameters).get(name)
     if spec is not None:
         return words.get(f"parameter.{name}.label", spec.label)
-    return words(f"bench.{name}") if name in DEFAULT_LAWS else words(OTHERS[name])
+    return words(f"side.{name}") if name in DEFAULT_LAWS else words(OTHERS[name])
 
 
 def value_label(name: str, value: object, words: Words) -> str:

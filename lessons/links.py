@@ -5,7 +5,7 @@ from __future__ import annotations
 from urllib.parse import unquote
 
 from onpath.lessons.action_schema import Action, Laws, Value
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 
 SCHEME = "lab:"
 SIMPLE = {
@@ -38,7 +38,7 @@ def read_link(address: str) -> tuple[Action, ...]:
             actions.append(Action(path=value))
         elif name == "robot":
             actions.append(Action(robot=value))
-        elif name in BENCHES:
+        elif name in SIDES:
             actions.append(Action(laws=Laws(**{name: value})))
         else:
             values[name] = _value(value)

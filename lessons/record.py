@@ -68,7 +68,7 @@ class Record:
         parameters: their current values.
         end: end of the last instant, [s].
         path, robot: names of the path and of the robot model.
-        laws: current control law of each bench; a bench without one has that of a new lab.
+        laws: current control law of each side; a side without one has that of a new lab.
         length: measures the path, [mm].
         changed: names the settings that differ from the step's set-up, as in `Only`.
         before: what was measured earlier; see `lessons.measures.earlier_run`.

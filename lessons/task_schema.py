@@ -96,7 +96,7 @@ class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
 
     Attributes:
         name: of a parameter; or "path" or "robot"; or "length" of the path, [mm]; or "left" or
-            "right" for the law of a bench.
+            "right" for the law of a side.
     """
 
     name: str

@@ -30,7 +30,7 @@ ORDER = [
     "app.common",
     "lessons",
     "models.studies",
-    "models.page",
+    "models.web_export",
     "models.closed_loop",
     "models.control",
     "models.systems",

@@ -10,14 +10,14 @@ from onpath.app.classroom.results import Distribution, tasks_passed
 from onpath.app.classroom.sketches_html import ALL, Picks, SketchRound, sketches_view
 from onpath.app.common.palette import AMBER, GREEN, GREY
 from onpath.app.common.templates import render
-from onpath.lessons.benches import robot_names
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Progress, Truth
 from onpath.lessons.schema import Choice, Prediction, Quiz
+from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS
 
 IDLE = 60.0  # [s] without a command after which a student counts as idle
 

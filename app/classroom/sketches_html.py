@@ -9,15 +9,15 @@ from functools import lru_cache
 import numpy as np
 
 from onpath.app.classroom.results import Distribution
-from onpath.app.common.palette import OF_BENCH, SLATE
+from onpath.app.common.palette import OF_SIDE, SLATE
 from onpath.app.common.templates import render
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import ROLES
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS as MOST_OF_TRUTH
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
+from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
 WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # size of a plot, [px]
@@ -110,7 +110,7 @@ def sketches_view(
     shown = [picks.of(i, each.found.sketches) for i, each in enumerate(rounds)]
     names = [(SLATE.hex, words("class.predicted"))]
     if truth is not None:
-        names += [(OF_BENCH[bench].hex, robots[role]) for bench, role in ROLES.items()]
+        names += [(OF_SIDE[side].hex, robots[role]) for side, role in ROLES.items()]
     plots = [
         (each.title, _lines(block, own, truth, bool(picks.picked)), each.said)
         for each, own in zip(rounds, shown, strict=True)
@@ -148,9 +148,9 @@ def _lines(
         for number, sketch in sketches
     ]
     if truth is not None:
-        for bench, role in ROLES.items():
+        for side, role in ROLES.items():
             line = _points(block, truth.times, getattr(truth, role), MOST_OF_TRUTH)
-            lines.append(PlottedLine(line, OF_BENCH[bench].hex, 4, 1.0))
+            lines.append(PlottedLine(line, OF_SIDE[side].hex, 4, 1.0))
     return lines
 
 

@@ -44,7 +44,7 @@ class ExportFigure:
     def run(self) -> None:
         """Write the page, and print its size."""
         from onpath.app.notebook.figure import PATHS, figure
-        from onpath.models.control.benches import DEFAULT_LAWS
+        from onpath.models.control.sides import DEFAULT_LAWS
 
         written = figure(
             self.file,

@@ -97,7 +97,7 @@ def _runs(lesson: Lesson, step: Step, folder: Path) -> Iterator[PlayedScript]:
 
 def _setup(lesson: Lesson, index: int) -> dict[str, Any]:
     """The lab as the step begins."""
-    from onpath.models.control.benches import DEFAULT_LAWS
+    from onpath.models.control.sides import DEFAULT_LAWS
 
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, scene.path or "circle"
@@ -153,7 +153,7 @@ def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) ->
 
     step, setup = lesson.steps[index], _setup(lesson, index)
     yield f"{lesson.name}, step {index + 1}, {step.kind}: {step.title}"
-    laws = ", ".join(f"{bench} {law}" for bench, law in setup["laws"].items())
+    laws = ", ".join(f"{side} {law}" for side, law in setup["laws"].items())
     yield f"  robot {setup['robot']}, path {setup['path']}, laws: {laws}"
     values = ", ".join(f"{name} = {value}" for name, value in setup["set"].items())
     yield f"  set: {values or 'nothing'}; all others as in a new lab"

@@ -132,7 +132,7 @@ def _is_web_address(text: str) -> bool:
 def _print_class(room: Classroom, site: str) -> None:
     """Print the class code with its address if it has one; else the teacher's key, too."""
     from onpath.app.common.access_codes import shown
-    from onpath.app.viser_adapter.places import class_address
+    from onpath.app.viser_adapter.addresses import class_address
 
     if room.has_address:
         print(f"class code:    {room.code.upper()}     at {site}{class_address(room.code)}")

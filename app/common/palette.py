@@ -1,6 +1,6 @@
 """The colours of the lab, with the same meanings in the scene, the plots and the figures.
 
-The benches' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for every
+The sides' colours are Okabe and Ito's vermillion and blue, which remain distinguishable for every
 common form of colour blindness and on a pale projector. Figures of several laws use further ones of
 theirs.
 """
@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +84,7 @@ GRID = Colour(222, 226, 232)
 SEEN = AZURE.toward(WHITE, 0.6)
 """Colour of the steps of a lesson that have been opened."""
 
-OF_BENCH: dict[str, Colour] = {LEFT: VERMILLION, RIGHT: AZURE}
+OF_SIDE: dict[str, Colour] = {LEFT: VERMILLION, RIGHT: AZURE}
 OTHERS = (
     *(Colour(0, 158, 115), Colour(204, 121, 167), Colour(230, 159, 0), Colour(86, 180, 233)),
     *(INK, GREY),
@@ -112,11 +112,11 @@ def on_scale(shares: np.ndarray) -> np.ndarray:
 
 
 def of_law(law: str) -> Colour:
-    """Colour of a control law in figures of several laws; those of a new lab have their bench's."""
-    benches = {own: bench for bench, own in DEFAULT_LAWS.items()}
-    if law in benches:
-        return OF_BENCH[benches[law]]
+    """Colour of a control law in figures of several laws; those of a new lab have their side's."""
+    sides = {own: side for side, own in DEFAULT_LAWS.items()}
+    if law in sides:
+        return OF_SIDE[sides[law]]
     if law not in LAWS:
         return TYPED
-    others = [name for name in LAWS if name not in benches]
+    others = [name for name in LAWS if name not in sides]
     return OTHERS[others.index(law) % len(OTHERS)]

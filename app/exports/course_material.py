@@ -8,11 +8,11 @@ from pathlib import Path
 from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.action_words import script_words
-from onpath.lessons.benches import robot_names
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import KINDS, Block, Lesson, Sketch, Step, Text
+from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS

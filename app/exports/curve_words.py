@@ -7,10 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
+from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onpath.app.exports.figures import ShownFigure, save
-from onpath.lessons.benches import law_titles
+from onpath.lessons.sides import law_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.studies.comparison import Outcome
 

@@ -58,10 +58,10 @@ def report_file(course: Course, progress: Progress, code: str, made: datetime) -
 
 
 def csv_bytes(robot: Robot, history: list[Segment]) -> bytes:
-    """Every millisecond of the history as CSV, one bench after the other."""
+    """Every millisecond of the history as CSV, one side after the other."""
     file = io.StringIO()
-    runs = [(bench, run) for bench, parts in replay(robot, history).items() for run in parts]
-    write_csv(file, robot, [run for _, run in runs], [bench for bench, _ in runs])
+    runs = [(side, run) for side, parts in replay(robot, history).items() for run in parts]
+    write_csv(file, robot, [run for _, run in runs], [side for side, _ in runs])
     return file.getvalue().encode()
 
 

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.settable import specs, values_of
@@ -38,7 +38,7 @@ MEANS = {
 """Message that explains a quantity's symbols, by panel."""
 GREY = "0.35"
 Runs = Mapping[str, Sequence[Trajectory]]
-"""What each bench did under its control laws, one after the other, by bench."""
+"""What each side did under its control laws, one after the other, by side."""
 
 
 def draw_history(
@@ -123,15 +123,15 @@ def _span(runs: Sequence[Trajectory]) -> float:
 def _draw(axis: Axes, runs: Runs, column: Quantity) -> int:
     """Draw one quantity of all runs, holds and changes of law; returns how many lines each has."""
     count = 1
-    for bench, parts in runs.items():
+    for side, parts in runs.items():
         for run in parts:
             drawn = column(run)
             count = max(count, drawn[0].shape[1])
-            draw_column(axis, run, OF_BENCH[bench], *drawn)
+            draw_column(axis, run, OF_SIDE[side], *drawn)
             for begin, end in held_times(run):
-                axis.axvspan(begin, end, color=OF_BENCH[bench].hex, alpha=0.08, linewidth=0)
+                axis.axvspan(begin, end, color=OF_SIDE[side].hex, alpha=0.08, linewidth=0)
         for run in parts[1:]:
-            axis.axvline(run.t[0], color=OF_BENCH[bench].hex, linestyle="-.", linewidth=1)
+            axis.axvline(run.t[0], color=OF_SIDE[side].hex, linestyle="-.", linewidth=1)
     return count
 
 
@@ -161,10 +161,10 @@ def _add_styles(axis: Axes, names: list[str]) -> None:
 
 def _legend(runs: Runs, words: Words) -> list[Line2D | Patch]:
     """The robots' colours, and what marks a hold and a change of law if there is any."""
-    laws = {bench: tuple(run.controller for run in parts) for bench, parts in runs.items()}
-    titles = bench_titles(laws, words)
+    laws = {side: tuple(run.controller for run in parts) for side, parts in runs.items()}
+    titles = side_titles(laws, words)
     found: list[Line2D | Patch] = [
-        Line2D([], [], color=OF_BENCH[bench].hex, label=title) for bench, title in titles.items()
+        Line2D([], [], color=OF_SIDE[side].hex, label=title) for side, title in titles.items()
     ]
     if any(len(parts) > 1 for parts in runs.values()):
         found.append(Line2D([], [], color=GREY, linestyle="-.", label=words("figure.law")))

@@ -27,15 +27,15 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
     A robot that is stopped after a divergence has no data for that time.
 
     Returns:
-        What each bench did, by bench: one trajectory for each time under one control law.
+        What each side did, by side: one trajectory for each time under one control law.
 
     Raises:
         ValueError: all robots were stopped all the time.
     """
-    found = {bench: _replayed(robot, bench, history) for bench in history[0].drives}
+    found = {side: _replayed(robot, side, history) for side in history[0].drives}
     runs = {
-        bench: [join(law, list(same)) for law, same in groupby(parts, lambda p: p.controller)]
-        for bench, parts in found.items()
+        side: [join(law, list(same)) for law, same in groupby(parts, lambda p: p.controller)]
+        for side, parts in found.items()
         if parts
     }
     if not runs:
@@ -43,20 +43,20 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
     return runs
 
 
-def _replayed(robot: Robot, bench: str, history: list[Segment]) -> list[Trajectory]:
+def _replayed(robot: Robot, side: str, history: list[Segment]) -> list[Trajectory]:
     parts: list[Trajectory] = []
-    robots = {id(own): _made(robot, own) for own in (s.drives[bench].parameters for s in history)}
+    robots = {id(own): _made(robot, own) for own in (s.drives[side].parameters for s in history)}
 
     def key(s: Segment) -> tuple[int, float, Kind, int]:
-        drive = s.drives[bench]
+        drive = s.drives[side]
         return id(s.curve), s.dt, drive.kind, id(robots[id(drive.parameters)])
 
     for (_, dt, kind, _), group in groupby(history, key=key):
-        segments = [s for s in group if not s.drives[bench].frozen]
+        segments = [s for s in group if not s.drives[side].frozen]
         if not segments:
             continue
-        loop = _fast_loop(robots[id(segments[0].drives[bench].parameters)], kind)
-        logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, bench, segments)]
+        loop = _fast_loop(robots[id(segments[0].drives[side].parameters)], kind)
+        logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, side, segments)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
         log, law = loop.layouts.log, kind.controller
         part = record(robot, log, law, merged(logged), dt, times).thinned()
@@ -87,9 +87,9 @@ def _fast_loop(robot: Robot, kind: Kind) -> Loop:
     return fastest_loop(kernel_of(robot, kind))
 
 
-def _rows(loop: Loop, bench: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
+def _rows(loop: Loop, side: str, segments: list[Segment]) -> Iterable[tuple[Segment, Array, bool]]:
     for segment in segments:
-        drive = segment.drives[bench]
+        drive = segment.drives[side]
         table = segment.curve.table()
         rows = loop.run(drive.state, drive.settings, table, segment.ticks)[1]
         held = loop.layouts.settings.unpack(drive.settings)["hold_active"][0] > 0

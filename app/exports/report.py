@@ -23,10 +23,10 @@ from onpath.app.exports.report_facts import (
 from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.lesson_state import LessonState
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import NumberQuestion, OpenQuestion, Prediction, Quiz, Sketch
+from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import DEFAULT, Words
 

@@ -13,13 +13,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.app.common.palette import OF_SIDE, SELECTED
 from onpath.app.exports.curve_words import number
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import ROLES
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
+from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
 SIZE = (6.6, 2.9)  # [in]
@@ -44,8 +44,8 @@ def draw_prediction(
         style = {"color": SELECTED.hex, "linewidth": 4.5, "solid_capstyle": "round"}
         _draw(axes, sketch, answer.times, answer.values, label=words("lesson.yours"), **style)
     if truth is not None:
-        for (bench, role), dashes in zip(ROLES.items(), ("-", "--"), strict=True):
-            style = {"color": OF_BENCH[bench].hex, "linestyle": dashes, "linewidth": 1.8}
+        for (side, role), dashes in zip(ROLES.items(), ("-", "--"), strict=True):
+            style = {"color": OF_SIDE[side].hex, "linestyle": dashes, "linewidth": 1.8}
             values = getattr(truth, role)
             _draw(axes, sketch, truth.times, values, label=names[role], **style)
     _dress(axes, sketch, words)

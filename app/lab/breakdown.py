@@ -148,8 +148,8 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
     """The instant some ticks after the beginning of a segment, as far as it is finite."""
     first = segment.instant()
     states, samples = list(first.states), first.sample.copy()
-    for i, (bench, drive) in enumerate(segment.drives.items()):
-        run = session.runs[bench]
+    for i, (side, drive) in enumerate(segment.drives.items()):
+        run = session.runs[side]
         if ticks <= 0 or drive.frozen or run.kind != drive.kind:
             continue
         with np.errstate(all="ignore"):

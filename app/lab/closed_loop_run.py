@@ -1,4 +1,4 @@
-"""One bench, a robot under a control law, as simulated in a session."""
+"""One side, a robot under a control law, as simulated in a session."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class ClosedLoopRun:
         store: provides its loops.
 
     Attributes:
-        bench: name of the bench.
+        side: name of the side.
         law: name of its control law.
         is_typed: whether that is a typed law.
         place: its state, log row and distances; another object as soon as anything changes.
@@ -64,14 +64,14 @@ class ClosedLoopRun:
         self,
         store: LoopCache,
         robot: Robot,
-        bench: str,
+        side: str,
         law: str,
         parameters: Parameters,
         curve: Curve,
         start: Start = ON_PATH,
     ) -> None:
         self._store, self.robot, self._made_with = store, robot, parameters
-        self.bench, self.law, self.is_typed = bench, law, is_text(law)
+        self.side, self.law, self.is_typed = side, law, is_text(law)
         self.diverged: Diverged | None = None
         self._inputs: tuple[Parameters, Curve, Push] | None = None
         self._leg: Leg | None = None
@@ -213,7 +213,7 @@ class ClosedLoopRun:
     def _made_input(self, frozen: bool) -> Input:
         self._recorded = self.settings  # those of the input
         size, rest = self._layouts.changed, self._layouts.state.size - self._layouts.changed
-        return Input(self.bench, self.kind, self.settings, frozen, size, rest, self._made_with)
+        return Input(self.side, self.kind, self.settings, frozen, size, rest, self._made_with)
 
     def loop(self) -> Loop:
         """The fastest loop of its kind available now."""

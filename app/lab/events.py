@@ -10,7 +10,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 MOST, FIRST = 500, 16  # events that are kept, and for which there is room at first
-_ROW = np.dtype([("run", "i4"), ("time", "f8"), ("name", "O"), ("detail", "O"), ("benches", "O")])
+_ROW = np.dtype([("run", "i4"), ("time", "f8"), ("name", "O"), ("detail", "O"), ("sides", "O")])
 
 
 class LabEvent(Struct, frozen=True):
@@ -22,14 +22,14 @@ class LabEvent(Struct, frozen=True):
         name: "set", "path", "robot", "law", "reset", "hold", "let_go", "pull", "release",
             "identify" or "diverged".
         detail: the parameter, the path, the robot, or the `short_name` of the law; or empty.
-        benches: the benches concerned.
+        sides: the sides concerned.
     """
 
     run: int
     time: float
     name: str
     detail: str
-    benches: tuple[str, ...]
+    sides: tuple[str, ...]
 
     def repeats(self, earlier: LabEvent) -> bool:
         """Whether it sets the same parameter again, less than a second after an earlier event."""
@@ -82,7 +82,7 @@ class EventLog:
             longer = np.zeros(min(2 * self._count, MOST), _ROW)
             longer[: self._count] = self._rows
             self._rows = longer
-        own = event.run, event.time, event.name, event.detail, event.benches
+        own = event.run, event.time, event.name, event.detail, event.sides
         self._rows[self._count % MOST] = own
         self._count += 1
 

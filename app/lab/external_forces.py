@@ -12,16 +12,16 @@ from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.obstacles import ALONG, Wall, brake_in
 from onpath.models.closed_loop.simulation import FREE, Push
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
 from onpath.models.systems.robots import Robot
 
 
 class Note(Protocol):
-    """Callback for events: what began or ended, and on which benches."""
+    """Callback for events: what began or ended, and on which sides."""
 
-    def __call__(self, name: str, /, *, benches: tuple[str, ...]) -> None: ...
+    def __call__(self, name: str, /, *, sides: tuple[str, ...]) -> None: ...
 
 
 def displaced(frame: Frame, y: Array, by: Array) -> Array:
@@ -35,14 +35,14 @@ class ExternalForces:
 
     Args:
         robot: the model of the robots.
-        runs: by bench.
+        runs: by side.
         note: see `Note`.
         wall: in the way of both end-points, or None.
 
     Attributes:
-        held: benches whose robots are held back.
-        hands: targets of the pulling hands, by bench, in output coordinates, [m].
-        grabbed: bench of the end-point that was grabbed, or None.
+        held: sides whose robots are held back.
+        hands: targets of the pulling hands, by side, in output coordinates, [m].
+        grabbed: side of the end-point that was grabbed, or None.
         pushes: external force on each robot; the same object until something changes.
     """
 
@@ -57,7 +57,7 @@ class ExternalForces:
         self.held: set[str] = set()
         self.hands: dict[str, Array] = {}
         self.grabbed: str | None = None
-        self.pushes: dict[str, Push] = dict.fromkeys(BENCHES, FREE)
+        self.pushes: dict[str, Push] = dict.fromkeys(SIDES, FREE)
         self._offsets: dict[str, Array] = {}
         home, reach = robot.frame.lift(np.zeros(2)), robot.reach
         self._lowest, self._highest = home - reach, home + reach  # of targets
@@ -65,7 +65,7 @@ class ExternalForces:
             self.set_wall(wall)
 
     def set_wall(self, wall: Wall | None) -> None:
-        """Place, move or take away the wall of both benches."""
+        """Place, move or take away the wall of both sides."""
         lifted = None if wall is None else wall.lifted(self._robot.frame)
         for name, push in self.pushes.items():
             self.pushes[name] = replace(push, wall=lifted)
@@ -78,7 +78,7 @@ class ExternalForces:
         """
         changed = tuple(name for name in names if on != (name in self.held))
         if changed:
-            self._note("hold" if on else "let_go", benches=changed)
+            self._note("hold" if on else "let_go", sides=changed)
         for name in changed:
             (self.held.add if on else self.held.discard)(name)
             brake, second = None, None
@@ -88,31 +88,31 @@ class ExternalForces:
                 brake, second = brake_in(self._robot, curve, row["y"], theta, direction)
             self.pushes[name] = replace(self.pushes[name], hold=brake, hold_normal=second)
 
-    def grab(self, bench: str, target: Array, together: Sequence[str]) -> None:
+    def grab(self, side: str, target: Array, together: Sequence[str]) -> None:
         """Pull an end-point towards a target, and others by the same displacement.
 
         Args:
             target: shape (p,), finite: the command has checked it, [m].
-            together: all benches concerned; they stay the same until `release`.
+            together: all sides concerned; they stay the same until `release`.
         """
-        if self.grabbed != bench:
+        if self.grabbed != side:
             self.release()
-            own = self._runs[bench].shown()["y"].copy()
-            self.grabbed = bench
+            own = self._runs[side].shown()["y"].copy()
+            self.grabbed = side
             self._offsets = {name: self._runs[name].shown()["y"] - own for name in together}
-            self._note("pull", benches=tuple(self._offsets))
+            self._note("pull", sides=tuple(self._offsets))
         self.pull({name: target + offset for name, offset in self._offsets.items()})
 
     def pull(self, targets: Mapping[str, Array]) -> None:
         """Pull end-points, each towards a target of its own, until `release`.
 
         Args:
-            targets: by bench, each (p,), [m].
+            targets: by side, each (p,), [m].
         """
         if self.grabbed is None:
             self.grabbed = next(iter(targets))
             self._offsets = {}
-            self._note("pull", benches=tuple(targets))
+            self._note("pull", sides=tuple(targets))
         for name, target in targets.items():
             self.hands[name] = np.minimum(np.maximum(target, self._lowest), self._highest)
             self.pushes[name] = replace(self.pushes[name], hand=self.hands[name])
@@ -120,7 +120,7 @@ class ExternalForces:
     def release(self) -> None:
         """Release all end-points; robots that are held back stay so."""
         if self.hands:
-            self._note("release", benches=tuple(self.hands))
+            self._note("release", sides=tuple(self.hands))
         for name in self.hands:
             self.pushes[name] = replace(self.pushes[name], hand=None)
         self.hands.clear()

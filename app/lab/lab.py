@@ -23,8 +23,8 @@ from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Setup
-from onpath.lessons.benches import bench_titles
 from onpath.lessons.course import NO_LESSONS, Course
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
 from onpath.models.control.forecast import forecasts
@@ -75,7 +75,7 @@ class Lab:
         script: player of the running script, or None.
         message, message_level: message to the user, and "info", "warning", "error", "replay": why
             a robot has stopped is being shown, or "stop": the teacher has stopped the lab.
-        law_refusals: why the law that was last typed for a bench was refused, by bench.
+        law_refusals: why the law that was last typed for a side was refused, by side.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
@@ -302,7 +302,7 @@ class Lab:
         if not found:
             return ""
         name, fault = max(found.items(), key=lambda each: each[1].time)
-        titles = bench_titles(self.session.laws, self.words)
+        titles = side_titles(self.session.laws, self.words)
         return self.words(
             key,
             robot=titles[name],

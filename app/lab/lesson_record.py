@@ -10,14 +10,14 @@ import numpy as np
 from onpath.app.lab.events import LabEvent
 from onpath.app.lab.session import Session
 from onpath.lessons.action_schema import RobotName
-from onpath.lessons.benches import ROLES
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS, Truth
 from onpath.lessons.record import ROBOTS, Happening, Record
+from onpath.lessons.sides import ROLES
 from onpath.lessons.task_schema import Better, Once
 from onpath.models.arrays import Array
-from onpath.models.control.benches import LEFT
 from onpath.models.control.settable import values_of
+from onpath.models.control.sides import LEFT
 from onpath.models.layout import Layout
 from onpath.models.systems.law_parameters import LEVEL_SET
 
@@ -125,7 +125,7 @@ def _changed(session: Session, given: Mapping[str, object]) -> tuple[str, ...]:
 
 def _happening(event: LabEvent) -> Happening:
     """Convert an event to the form used by the checks."""
-    robots = tuple[RobotName, ...](ROLES[name] for name in event.benches)
+    robots = tuple[RobotName, ...](ROLES[name] for name in event.sides)
     return Happening(event.run, event.time, event.name, event.detail, robots)
 
 

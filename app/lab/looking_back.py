@@ -20,7 +20,7 @@ from onpath.models.control.laws.own import short_name
 def look_back(session: Session, ago: float) -> None:
     """Pause and view the state [s] before now, or the oldest one stored."""
     session.running = False
-    session.grips.release()
+    session.forces.release()
     session.viewing = session.time - min(ago, session.history.span())
 
 
@@ -45,9 +45,9 @@ def go_on(session: Session) -> tuple[float, float] | None:
         _take(session, _branch(session, segment))
         session.note("let_go")
         session.note("release")
-        for bench, drive in segment.drives.items():
-            if (law := session.laws[bench]) != drive.kind.controller:
-                session.note("law", short_name(law), (bench,))
+        for side, drive in segment.drives.items():
+            if (law := session.laws[side]) != drive.kind.controller:
+                session.note("law", short_name(law), (side,))
         session.undo_timeline = left
     session.viewing, session.running = None, True
     return None if left is None else (session.time, left.time - session.time)
@@ -62,7 +62,7 @@ def undo_going_on(session: Session) -> bool:
     back = session.undo_timeline
     if back is None:
         return False
-    session.grips.release()
+    session.forces.release()
     session.viewing = None
     session.running = False
     session.undo_timeline = _timeline(session)
@@ -77,7 +77,7 @@ def _timeline(session: Session) -> Timeline:
         session.editor.curve,
         session.history,
         session.runs,
-        session.grips,
+        session.forces,
         session.events,
     )
 
@@ -85,12 +85,12 @@ def _timeline(session: Session) -> Timeline:
 def _take(session: Session, timeline: Timeline) -> None:
     """Switch to the end of a timeline, with the current path and parameters."""
     session.time, session.history = timeline.time, timeline.history
-    session.runs, session.grips = timeline.runs, timeline.grips
+    session.runs, session.forces = timeline.runs, timeline.forces
     session.events = timeline.events
-    session.grips.set_wall(session.wall)
+    session.forces.set_wall(session.wall)
     for run in session.runs.values():
         if run.robot is not session.robot:
-            push = session.grips.pushes[run.bench]
+            push = session.forces.pushes[run.side]
             run.change_robot(session.robot, session.parameters, session.editor.curve, push)
     if timeline.curve is not session.editor.curve:
         for run in session.runs.values():

@@ -28,7 +28,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     refers to it.
 
     Attributes:
-        bench: where the robot is.
+        side: where the robot is.
         kind: of the loop.
         base: settings, but for those at `places`.
         frozen: whether the robot has diverged and stands still.
@@ -38,7 +38,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         places: indices of at most `FEW` settings whose values are stored apart.
     """
 
-    bench: str
+    side: str
     kind: Kind
     base: np.ndarray
     frozen: bool
@@ -79,7 +79,7 @@ class Input(Struct, frozen=True, eq=False, gc=False):
         """Whether they are equal but for their settings."""
         return (
             self.parameters is other.parameters
-            and (self.bench, self.frozen, self.size) == (other.bench, other.frozen, other.size)
+            and (self.side, self.frozen, self.size) == (other.side, other.frozen, other.size)
             and (self.kind, self.rest) == (other.kind, other.rest)
         )
 
@@ -173,7 +173,7 @@ class Segment:
         time: at the beginning, [s].
         dt: length of a tick, [s].
         curve: the path during the segment.
-        drives: by bench.
+        drives: by side.
         sample: plotted values, at the beginning, shape (robots, fields).
     """
 
@@ -226,6 +226,6 @@ def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
         own, states = states[: one.size], states[one.size :]
         given, values = values[: len(one.places)], values[len(one.places) :]
         state, settings = np.concatenate([own, np.zeros(one.rest)]), one.settings(given)
-        drives[one.bench] = Drive(one.kind, state, settings, one.frozen, most, one.parameters)
+        drives[one.side] = Drive(one.kind, state, settings, one.frozen, most, one.parameters)
     time, ticks = float(columns["time"][row]), int(columns["ticks"][row])
     return Segment(time, ticks, inputs.dt, inputs.curve, drives, columns["sample"][row].copy())

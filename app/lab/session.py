@@ -10,7 +10,6 @@ from collections.abc import Mapping
 import numpy as np
 
 from onpath.app.lab.advance_together import NO_FRAME, Frame, Ticks, advance_together
-from onpath.app.lab.belongings import Belongings
 from onpath.app.lab.closed_loop_run import ClosedLoopRun, project
 from onpath.app.lab.events import EventLog, LabEvent
 from onpath.app.lab.external_forces import ExternalForces
@@ -20,14 +19,15 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.recorder import CurrentInstant, Recorder, sample_of
+from onpath.app.lab.robot_settings import RobotSettings
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.timeline import Timeline
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import short_name
+from onpath.models.control.sides import SIDES
 from onpath.models.errors import CodedError
 from onpath.models.layout import Layout
 from onpath.models.paths.path_design import PathDesign, presets
@@ -47,13 +47,13 @@ class Session:
 
     Attributes:
         entry, robot, parameters: catalogue entry, model and parameters of the current robot.
-        runs: the two closed loops, by bench.
+        runs: the two closed loops, by side.
         editor: the path.
         law_changes: laws that come as soon as their loops are made.
         start: where and how the next run starts.
         wall: in the way of both end-points, or None; it stays from run to run.
         hold_direction: in which the next brake acts, one of `DIRECTIONS`.
-        grips: external forces on the robots.
+        forces: external forces on the robots.
         history: the last minute.
         time: simulated, [s].
         running: whether simulated time advances.
@@ -63,14 +63,14 @@ class Session:
         viewing: the past instant being viewed, [s], or None.
         undo_timeline: the timeline replaced by continuing from the past, or None.
         events: user actions and incidents, oldest first.
-        faults: benches whose robots have stopped and have not been reported yet.
+        faults: sides whose robots have stopped and have not been reported yet.
         run_number: number of resets.
         across_since: time since which ξ has had its present unit, [s].
     """
 
     def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
         self._store = store
-        self.earlier: dict[str, Belongings] = {}
+        self.earlier: dict[str, RobotSettings] = {}
         self.history = History(self._samples)
         self._now = CurrentInstant()
         self._recorder = Recorder()
@@ -92,7 +92,7 @@ class Session:
     def choose_robot(self, entry: RobotEntry) -> None:
         """Choose another robot, with its previous parameters and path."""
         if entry is not self.entry:
-            self.earlier[self.entry.name] = self.belongings()
+            self.earlier[self.entry.name] = self.robot_settings()
             self._set_up(entry)
             self.note("robot", entry.name)
 
@@ -118,16 +118,16 @@ class Session:
             self._restart()
             return
         for run in self.runs.values():
-            run.change_robot(robot, parameters, self.editor.curve, self.grips.pushes[run.bench])
+            run.change_robot(robot, parameters, self.editor.curve, self.forces.pushes[run.side])
 
-    def belongings(self) -> Belongings:
+    def robot_settings(self) -> RobotSettings:
         """What the present robot keeps while another one is used."""
         start = self._beginning()
-        return Belongings(self.parameters, self.editor, start, self.wall)
+        return RobotSettings(self.parameters, self.editor, start, self.wall)
 
     def _set_up(self, entry: RobotEntry) -> None:
         self.history.settle()  # a page that is being built in another thread reads it, too
-        new = Belongings(entry.parameters())
+        new = RobotSettings(entry.parameters())
         parameters, editor, start, wall = self.earlier.get(entry.name, new)
         robot, rise = entry.make(parameters), rise_of(parameters)
         editor = editor or PathEditor(robot, self.presets["circle"], rise)
@@ -141,42 +141,42 @@ class Session:
 
     @property
     def laws(self) -> dict[str, str]:
-        """Control law of each bench."""
-        return {bench: run.law for bench, run in self.runs.items()}
+        """Control law of each side."""
+        return {side: run.law for side, run in self.runs.items()}
 
     @property
     def chosen_laws(self) -> dict[str, str]:
-        """Control law of each bench as soon as its loop can run."""
+        """Control law of each side as soon as its loop can run."""
         return self.laws | self.law_changes.coming
 
     def suits(self, law: str) -> bool:
         """Whether a law can be used with the current robot and its controlled output."""
         return suits(law, self.robot, self.parameters)
 
-    def choose_law(self, bench: str, law: str) -> None:
-        """Change the law of a bench as soon as its loop can run; the old law goes on until then."""
-        self.law_changes.coming[bench] = law
+    def choose_law(self, side: str, law: str) -> None:
+        """Change the law of a side as soon as its loop can run; the old law goes on until then."""
+        self.law_changes.coming[side] = law
         self._follow_laws()
 
-    def change_law(self, bench: str, law: str) -> None:
-        """Change the law of a bench now; its robot moves on from where it is."""
-        self.law_changes.coming.pop(bench, None)
-        if law != self.runs[bench].law:
-            push = self.grips.pushes[bench]
-            self.runs[bench].change_law(law, self.parameters, self.editor.curve, push)
+    def change_law(self, side: str, law: str) -> None:
+        """Change the law of a side now; its robot moves on from where it is."""
+        self.law_changes.coming.pop(side, None)
+        if law != self.runs[side].law:
+            push = self.forces.pushes[side]
+            self.runs[side].change_law(law, self.parameters, self.editor.curve, push)
             if self.law_changes.stands_still:  # the run begins with this law
-                self.runs[bench].reset(self.editor.curve, self._beginning())
+                self.runs[side].reset(self.editor.curve, self._beginning())
             else:
-                self.note("law", short_name(law), (bench,))
+                self.note("law", short_name(law), (side,))
 
     def _follow_laws(self) -> bool:
         """Change to the laws whose loops can run now; returns whether time can run."""
-        curve, pushes = self.editor.curve, self.grips.pushes
+        curve, pushes = self.editor.curve, self.forces.pushes
         return self.law_changes.follow(self.runs, self.parameters, curve, pushes)
 
-    def note(self, name: str, detail: str = "", benches: tuple[str, ...] = BENCHES) -> None:
+    def note(self, name: str, detail: str = "", sides: tuple[str, ...] = SIDES) -> None:
         """Record an event; what a drag of a slider repeats within a second is recorded once."""
-        self.events.append(LabEvent(self.run_number, self.time, name, detail, benches))
+        self.events.append(LabEvent(self.run_number, self.time, name, detail, sides))
 
     # Time
 
@@ -206,13 +206,13 @@ class Session:
         dt, profile = time_step(parameters), profile_of(parameters)
         if ticks:
             self._bend(ticks * dt)
-        curve, table, pushes = editor.curve, editor.table, self.grips.pushes
+        curve, table, pushes = editor.curve, editor.table, self.forces.pushes
         while ticks > 0:
             now = round(self.time / dt)
             leg = None if profile is None else profile.leg(now, dt)
             count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
             for run in runs:
-                run.configure(parameters, curve, pushes[run.bench], leg, now)
+                run.configure(parameters, curve, pushes[run.side], leg, now)
             moving = [(run, run.loop()) for run in runs if run.diverged is None]
             part = Ticks(moving, count, self.time, dt, parameters, curve, table)
             begun = [run.place for run in runs]
@@ -223,8 +223,8 @@ class Session:
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
                 if run.diverged is not None:
-                    self.note("diverged", benches=(run.bench,))
-                    self.faults.append(run.bench)
+                    self.note("diverged", sides=(run.side,))
+                    self.faults.append(run.side)
             self.time += count * dt
             ticks -= count
 
@@ -272,10 +272,10 @@ class Session:
         self.faults.clear()
         start, store = self._beginning(), self._store
         self.runs = {
-            bench: ClosedLoopRun(store, self.robot, bench, law, self.parameters, curve, start)
-            for bench, law in laws.items()
+            side: ClosedLoopRun(store, self.robot, side, law, self.parameters, curve, start)
+            for side, law in laws.items()
         }
-        self.grips = ExternalForces(self.robot, self.runs, self.note, self.wall)
+        self.forces = ExternalForces(self.robot, self.runs, self.note, self.wall)
 
     # Start and wall
 
@@ -296,11 +296,11 @@ class Session:
         """Place, move or take away the wall."""
         if wall != self.wall:
             self.wall = wall
-            self.grips.set_wall(wall)
+            self.forces.set_wall(wall)
 
-    def targets(self, bench: str) -> list[str]:
-        """The benches that a gesture at `bench` acts on."""
-        return list(BENCHES) if self.copy else [bench]
+    def targets(self, side: str) -> list[str]:
+        """The sides that a gesture at `side` acts on."""
+        return list(SIDES) if self.copy else [side]
 
     # Samples of an instant
 

@@ -19,8 +19,8 @@ class Timeline:
         time: at its end, [s].
         curve: the path at its end.
         history: the last minute.
-        runs: the two closed loops at its end, by bench.
-        grips: external forces at its end.
+        runs: the two closed loops at its end, by side.
+        forces: external forces at its end.
         events: user actions and incidents.
     """
 
@@ -28,5 +28,5 @@ class Timeline:
     curve: Curve
     history: History
     runs: dict[str, ClosedLoopRun]
-    grips: ExternalForces
+    forces: ExternalForces
     events: EventLog

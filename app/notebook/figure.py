@@ -15,7 +15,7 @@ from onpath.app.notebook.arguments import curve_of
 from onpath.app.notebook.simulate import by_declared_names, entry_named
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import forecast_text, on_path
 from onpath.models.studies.unused import unused_text

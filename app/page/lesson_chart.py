@@ -6,12 +6,12 @@ import numpy as np
 import viser
 from viser import uplot
 
-from onpath.app.common.palette import OF_BENCH, SELECTED
+from onpath.app.common.palette import OF_SIDE, SELECTED
 from onpath.app.page.plots import PADDING
-from onpath.lessons.benches import ROLES, robot_names
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Sketch
+from onpath.lessons.sides import ROLES, robot_names
 from onpath.lessons.words import Words
 
 
@@ -37,8 +37,8 @@ class PredictionChart:
         unit, names = QUANTITIES[sketch.quantity], robot_names(laws, words)
         lines = list[uplot.Series]()
         if truth is not None:
-            for bench, role in ROLES.items():
-                colour = OF_BENCH[bench].hex
+            for side, role in ROLES.items():
+                colour = OF_SIDE[side].hex
                 lines.append(uplot.Series(label=names[role], stroke=colour, width=2))
         if self._answer is not None:
             yours = words("lesson.yours")

@@ -22,11 +22,11 @@ from onpath.app.exports.report_facts import (
 from onpath.app.lab import commands as c
 from onpath.app.page.lesson_chart import PredictionChart
 from onpath.app.page.panels.widgets import Post, add_buttons, on_press
-from onpath.lessons.benches import robot_names
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.progress import Answer
 from onpath.lessons.schema import Choice, Prediction, Sketch
+from onpath.lessons.sides import robot_names
 
 if TYPE_CHECKING:
     from onpath.app.page.lesson_view import LessonView

@@ -17,7 +17,7 @@ from onpath.app.page.lesson_end import LessonEnd
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, on_press
 from onpath.app.page.sketch_answer import SketchAnswer
-from onpath.app.page.step_ways import add_ways
+from onpath.app.page.step_navigation import add_navigation
 from onpath.app.scene.scene import Scene
 from onpath.lessons.course import Course
 from onpath.lessons.schema import (
@@ -140,7 +140,7 @@ class LessonPanel:
                     self._add(number, block, run)
             else:
                 self._add_reading(run)
-            self._handles += add_ways(self._gui, run, self._post)
+            self._handles += add_navigation(self._gui, run, self._post)
 
     def _add_reading(self, run: LessonView) -> None:
         """A button that shows the text before the experiment has run."""

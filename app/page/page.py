@@ -14,6 +14,7 @@ from onpath.app.page.build_queue import in_turn, one_at_a_time
 from onpath.app.page.first_minute import FirstMinute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
+from onpath.app.page.narration import Narration
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_menus import PageMenus
@@ -25,7 +26,6 @@ from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
-from onpath.app.page.saying import Saying
 from onpath.app.page.step_controls import StepControls, StepPlot
 from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.scene.mouse import SceneCallbacks
@@ -55,9 +55,11 @@ class Page:
         exporter: creates the files requested on this page.
     """
 
-    def __init__(self, client: viser.ClientHandle, first: PageSnapshot, desk: PageContext) -> None:
+    def __init__(
+        self, client: viser.ClientHandle, first: PageSnapshot, context: PageContext
+    ) -> None:
         self._client = client
-        self._desk = desk
+        self._context = context
         self._channel = FrameChannel(client)
         self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
@@ -134,12 +136,12 @@ class Page:
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
-        return self._desk.post
+        return self._context.post
 
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        stage = stage_of(robot, DARK if self._desk.dark else LIGHT)
+        stage = stage_of(robot, DARK if self._context.dark else LIGHT)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
         one_at_a_time.rest()
@@ -149,11 +151,13 @@ class Page:
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
         self._client.gui.add_html(render("panel/page.html", words=words))
-        self._saying = Saying(self._client.gui, words, self._wanted, self._scene.captions)
-        self._parts.append(self._saying)
-        self._parts.append(StepDrawings(self._overlays, self._desk.course, words, self._switched))
+        self._narration = Narration(self._client.gui, words, self._wanted, self._scene.captions)
+        self._parts.append(self._narration)
+        self._parts.append(
+            StepDrawings(self._overlays, self._context.course, words, self._switched)
+        )
         self._build_panels(first, words, post)
-        own = {"view": self.reset_view, "summary": self._saying.ask_summary}
+        own = {"view": self.reset_view, "summary": self._narration.ask_summary}
         add_keys(self._client.gui, words, post, own)
         self._building = self.is_outdated = False
 
@@ -175,7 +179,7 @@ class Page:
             self._build_numbers(words)
             tabs = gui.add_tab_group()
             own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        course = self._desk.course
+        course = self._context.course
         build = controls.of_step if tab is None else controls.run_of_step
         self._parts.append(StepControls(gui, own, words, course, build, change, first))
         if tab is not None:  # with the text that speaks of them
@@ -188,11 +192,11 @@ class Page:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
         if tab is None:
-            self._build_ways(first, words, post)
+            self._build_navigation(first, words, post)
             self._build_distance(first, words)
             self._build_step_plot(controls, first, words)
         own = words, post, course, self._scene, change, first, self.exporter.report
-        lesson = LessonPanel(self._client, *own, tab=tab, student=self._desk.code)
+        lesson = LessonPanel(self._client, *own, tab=tab, student=self._context.code)
         self._parts.append(lesson)
 
     def _build_free_lab(
@@ -200,7 +204,7 @@ class Page:
     ) -> None:
         """Build all panels: first what there is to do, then the plot of what it does."""
         self._build_numbers(words)
-        self._build_ways(first, words, post)
+        self._build_navigation(first, words, post)
         self._parts += controls.run(first)
         self._build_distance(first, words)
         self._parts += controls.the_rest(first)
@@ -208,7 +212,7 @@ class Page:
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
         """Build the window with the plot that a lesson's step speaks of."""
-        gui, course, change = self._client.gui, self._desk.course, self._rebuilds.change
+        gui, course, change = self._client.gui, self._context.course, self._rebuilds.change
         plot = controls.plot_of_step, change, first, self.reset_view
         self._step_plot = StepPlot(gui, words, course, *plot)
         self._parts.append(self._step_plot)
@@ -222,24 +226,24 @@ class Page:
             self._rebuilds.submit,
             self._scene,
             self._overlays,
-            self._desk,
+            self._context,
             self.reset_view,
         )
 
     def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the permanent widgets: readout, menus and distance plot."""
         self._build_numbers(words)
-        self._build_ways(first, words, post)
+        self._build_navigation(first, words, post)
         self._build_distance(first, words)
 
-    def _build_ways(self, first: PageSnapshot, words: Words, post: Post) -> None:
+    def _build_navigation(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the ways to the help, to the lessons and into the class."""
         gui = self._client.gui
         self._build_menus(first, words, post)
-        if self._desk.course.lessons:
-            self._parts.append(LessonMenu(gui, words, post, self._desk.course, first))
-        if self._desk.seat is not None:
-            self._parts.append(ClassPanel(gui, words, self._desk, first))
+        if self._context.course.lessons:
+            self._parts.append(LessonMenu(gui, words, post, self._context.course, first))
+        if self._context.seat is not None:
+            self._parts.append(ClassPanel(gui, words, self._context, first))
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""

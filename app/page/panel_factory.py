@@ -71,13 +71,13 @@ class PanelFactory:
         submit: Callable[[Callable[[], None]], None],
         scene: Scene,
         overlays: Overlays,
-        desk: PageContext,
+        context: PageContext,
         reset_view: Callable[[], None],
     ) -> None:
         self._reset_view, self._overlays = reset_view, overlays
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
-        self._scene, self._desk = scene, desk
+        self._scene, self._context = scene, context
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
@@ -142,7 +142,7 @@ class PanelFactory:
             "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "past": lambda: PastPanel(gui, words, post, exporter),
-            "keep": lambda: KeepPanel(gui, words, post, exporter, self._desk),
+            "keep": lambda: KeepPanel(gui, words, post, exporter, self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
             "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),

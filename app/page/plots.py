@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from viser import uplot
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.lab.commands import AskPhase
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.phase_plot import NAME as PHASE_NAME
@@ -17,9 +17,9 @@ from onpath.app.page.panels.phase_plot import PhasePlot
 from onpath.app.page.panels.widgets import Post, on_user_update
 from onpath.app.viser_adapter.containers import beside
 from onpath.app.viser_adapter.frame_channel import update_gui
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT
 from onpath.models.layout import Layout
 from onpath.models.systems.law_parameters import LEVEL_SET
 
@@ -180,13 +180,13 @@ class LivePlot:
         former.remove()
 
     def _series(self) -> tuple[uplot.Series, ...]:
-        """Time and the lines of each bench, named after its law."""
+        """Time and the lines of each side, named after its law."""
         series = [uplot.Series(label=self._words("plots.time"))]
-        for bench, title in bench_titles(self._laws, self._words).items():
+        for side, title in side_titles(self._laws, self._words).items():
             for name, dash, mark in zip(self._names, LINES, MARKS, strict=False):
                 label = f"{title} {name} {mark}" if name else title
-                width = 4 if bench == LEFT else 2  # so that one is seen under the other
-                line = uplot.Series(label=label, stroke=OF_BENCH[bench].hex, width=width)
+                width = 4 if side == LEFT else 2  # so that one is seen under the other
+                line = uplot.Series(label=label, stroke=OF_SIDE[side].hex, width=width)
                 if dash is not None:
                     line["dash"] = dash
                 series.append(line)

@@ -12,8 +12,8 @@ from onpath.app.page import lesson_html as page
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import on_user_update
 from onpath.app.scene.scene import Scene
-from onpath.lessons.benches import robot_names
 from onpath.lessons.schema import Sketch
+from onpath.lessons.sides import robot_names
 
 NUMBERS = 6  # sliders that draw a sketch
 

@@ -27,18 +27,18 @@ class TeacherView(Page):
         self,
         client: viser.ClientHandle,
         first: PageSnapshot,
-        desk: PageContext,
+        context: PageContext,
         teaching: TeacherContext,
     ) -> None:
         self._own_words, self._teaching = Words(first.key.language), teaching
-        super().__init__(client, first, desk)
+        super().__init__(client, first, context)
 
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
         return key.student, key.robot, key.fields, key.plane
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
-        return _ignore if snapshot.key.student else self._desk.post
+        return _ignore if snapshot.key.student else self._context.post
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui, own, teaching = self._client.gui, self._own_words, self._teaching
@@ -53,8 +53,8 @@ class TeacherView(Page):
             self._build_menus(first, own, post)
             self._build_distance(first, words)
             self._parts += self._controls(own, post).everything(first)
-        submit, course = self._rebuilds.submit, self._desk.course
-        panel = TeacherPanel(self._client, own, self._desk.post, course, teaching, submit)
+        submit, course = self._rebuilds.submit, self._context.course
+        panel = TeacherPanel(self._client, own, self._context.post, course, teaching, submit)
         self._parts.append(panel)
 
 

@@ -28,7 +28,7 @@ class Captions:
     torn off swings to and fro.
 
     Attributes:
-        shown: the captions for the latest snapshot, by bench.
+        shown: the captions for the latest snapshot, by side.
     """
 
     def __init__(self, words: Words) -> None:
@@ -38,31 +38,31 @@ class Captions:
         self.shown = dict[str, str]()
 
     def follow(self, snapshot: Snapshot) -> dict[str, str]:
-        """The captions for a snapshot, by bench; call it with one snapshot after the other."""
+        """The captions for a snapshot, by side; call it with one snapshot after the other."""
         views = snapshot.robots.items()
-        self.shown = {bench: self._of(bench, view, snapshot) for bench, view in views}
+        self.shown = {side: self._of(side, view, snapshot) for side, view in views}
         return self.shown
 
-    def _of(self, bench: str, view: RobotView, snapshot: Snapshot) -> str:
-        is_held = bench in snapshot.held_back
-        distance = self._largest_held(bench, view) if is_held else view.distance
+    def _of(self, side: str, view: RobotView, snapshot: Snapshot) -> str:
+        is_held = side in snapshot.held_back
+        distance = self._largest_held(side, view) if is_held else view.distance
         if not is_held:
-            self._before.pop(bench, None)
-        kind = "stopped" if bench in snapshot.stopped else _kind(view, is_held, distance)
+            self._before.pop(side, None)
+        kind = "stopped" if side in snapshot.stopped else _kind(view, is_held, distance)
         if not kind and is_at_end(view, snapshot.path.points):
             kind = "at_end"
         return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
 
-    def _largest_held(self, bench: str, view: RobotView) -> float:
+    def _largest_held(self, side: str, view: RobotView) -> float:
         """Largest distance since a robot has been held back, [m].
 
         Snapshots miss the peaks of the distance, but `max_distance` does not.
         """
-        if bench not in self._before:
-            self._before[bench], self._largest[bench] = view.max_distance, 0.0
-        grown = view.max_distance if view.max_distance > self._before[bench] else 0.0
-        self._largest[bench] = max(self._largest[bench], view.distance, grown)
-        return self._largest[bench]
+        if side not in self._before:
+            self._before[side], self._largest[side] = view.max_distance, 0.0
+        grown = view.max_distance if view.max_distance > self._before[side] else 0.0
+        self._largest[side] = max(self._largest[side], view.distance, grown)
+        return self._largest[side]
 
 
 def is_at_end(view: RobotView, path: np.ndarray) -> bool:
@@ -91,8 +91,8 @@ def _kind(view: RobotView, is_held: bool, distance: float) -> str:
 def spoken(captions: Mapping[str, str], titles: Mapping[str, str], words: Words) -> str:
     """One line with the captions of all robots that have one."""
     said = [
-        words("caption.spoken", robot=titles[bench], caption=caption)
-        for bench, caption in captions.items()
+        words("caption.spoken", robot=titles[side], caption=caption)
+        for side, caption in captions.items()
         if caption
     ]
     return " ".join(said)

@@ -39,14 +39,14 @@ class ContactNodes:
         self._metal = stage.tones.metal
         self._brakes = dict[str, np.ndarray]()
         self._guides: list[viser.BatchedMeshHandle] = []
-        self._labels = {bench: ForceLabel(scene, stage, bench, words) for bench in stage.bases}
+        self._labels = {side: ForceLabel(scene, stage, side, words) for side in stage.bases}
 
     def update(self, snapshot: Snapshot) -> None:
         """Show a snapshot; sends nothing if the same is shown already."""
         path = snapshot.path.points
-        for bench, view in snapshot.robots.items():
+        for side, view in snapshot.robots.items():
             force = hypot(*view.force.tolist())
-            self._labels[bench].show(force, view.tip, path)
+            self._labels[side].show(force, view.tip, path)
         if not _same(snapshot.brakes, self._brakes):
             self._brakes = snapshot.brakes
             self._draw_guides()
@@ -55,15 +55,15 @@ class ContactNodes:
         for node in self._guides:
             node.remove()
         self._guides = []
-        for bench, (place, blocked, free) in self._brakes.items():
+        for side, (place, blocked, free) in self._brakes.items():
             slides = bool(free.any())
             across = free if slides else np.cross([0.0, 1.0, 0.0], blocked)
             turn = np.column_stack([blocked, np.cross(across, blocked), across])
             node = add_copies(
                 self._scene,
-                f"/brakes/{bench}",
+                f"/brakes/{side}",
                 meshes.part("guide" if slides else "clamp"),
-                (self._bases[bench] + place)[None],
+                (self._bases[side] + place)[None],
                 self._metal,
             )
             node.batched_wxyzs = transforms.SO3.from_matrix(turn).wxyz[None]
@@ -76,12 +76,12 @@ class ForceLabel:
     It stays where it is while the end-point moves a little, so that it can be read.
     """
 
-    def __init__(self, scene: viser.SceneApi, stage: Stage, bench: str, words: Words) -> None:
+    def __init__(self, scene: viser.SceneApi, stage: Stage, side: str, words: Words) -> None:
         self._words = words
         self._at: np.ndarray | None = None
-        self._base = stage.bases[bench]
+        self._base = stage.bases[side]
         self._within = stage.low[0] + WIDE / 2, stage.high[0] - WIDE / 2
-        self._text = ChangingText(scene, f"/force_labels/{bench}", np.zeros(3))
+        self._text = ChangingText(scene, f"/force_labels/{side}", np.zeros(3))
 
     def show(self, force: float, tip: np.ndarray, path: np.ndarray) -> None:
         """Show a force [N] on an end-point at `tip`, shape (3,), in the robot's frame [m]."""
@@ -101,5 +101,5 @@ class ForceLabel:
 
 def _same(some: dict[str, np.ndarray], others: dict[str, np.ndarray]) -> bool:
     return some.keys() == others.keys() and all(
-        each is others[bench] or np.array_equal(each, others[bench]) for bench, each in some.items()
+        each is others[side] or np.array_equal(each, others[side]) for side, each in some.items()
     )

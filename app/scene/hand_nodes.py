@@ -32,11 +32,11 @@ class HandNodes:
         if snapshot.pulled == self.pulled:
             return
         self.pulled = snapshot.pulled
-        sizes = np.array([float(bench in self.pulled) for bench in self._bases])
+        sizes = np.array([float(side in self.pulled) for side in self._bases])
         update_node(self._node, batched_scales=np.repeat(sizes[:, None], 3, axis=1))
         if self.pulled:
             robots = snapshot.robots
-            self.move(np.stack([base + robots[bench].tip for bench, base in self._bases.items()]))
+            self.move(np.stack([base + robots[side].tip for side, base in self._bases.items()]))
         self._node.visible = bool(self.pulled)
 
     def move(self, tips: np.ndarray) -> None:

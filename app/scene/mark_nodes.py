@@ -33,7 +33,7 @@ class MarkNodes:
     ) -> None:
         self._nodes: list[viser.SceneNodeHandle] = []
         arrows = list[np.ndarray]()
-        for bench, base in stage.bases.items():
+        for side, base in stage.bases.items():
             front = base - 0.008 * stage.away
             for i, mark in enumerate(marks):
                 tip = front + _placed(robot, mark.at)
@@ -43,7 +43,7 @@ class MarkNodes:
                     arrows.append(np.stack([tail, tip]))
                     place = tail + BEYOND * (tail - tip) / np.linalg.norm(tail - tip)
                 if mark.text:
-                    name = f"/show/marks/{bench}/{i}"
+                    name = f"/show/marks/{side}/{i}"
                     self._nodes.append(add_text(scene, name, mark.text, place, letters))
         if arrows:
             drawn = Arrows(scene, "/show/mark_arrows", np.stack(arrows), stage.tones.line, SHAPE)

@@ -33,9 +33,9 @@ class SceneCallbacks:
     """Callbacks of the scene. They run on viser's event loop, so they must only enqueue.
 
     Attributes:
-        on_grab: the end-point on the named bench is pulled to a target, shape (3,), in the robot's
+        on_grab: the end-point on the named side is pulled to a target, shape (3,), in the robot's
             frame [m]; called again whenever the target moves.
-        on_release: the robot on the named bench is released.
+        on_release: the robot on the named side is released.
         on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
         on_point_drag_end: the control point is released.
         on_point_selected: a control point was clicked or grabbed.
@@ -73,7 +73,7 @@ class Mouse:
 
     def __init__(self, stage: Stage, pointer: Pointer, hooks: SceneCallbacks) -> None:
         self._stage, self._pointer, self._hooks = stage, pointer, hooks
-        self._benches = list(stage.bases)
+        self._sides = list(stage.bases)
         self.motion: Motion | None = None
         self.pull = next(iter(stage.pulls))
         self.path_first = False
@@ -92,23 +92,23 @@ class Mouse:
 
     async def _tip_dragged(self, event: DragEvent) -> None:
         robot = event.instance_index
-        if robot is None or robot >= len(self._benches):  # a browser may send any
+        if robot is None or robot >= len(self._sides):  # a browser may send any
             return
-        bench = self._benches[robot]
+        side = self._sides[robot]
         if event.phase == "start":
             self._covered = self._covered_point(event, robot)
         if self._covered is not None:
             self._drag_point(event, robot, self._covered)
             return
         if event.phase == "end":
-            self._hooks.on_release(bench)
+            self._hooks.on_release(side)
             return
         if event.phase == "start" or self._grip is None:
             self._grip = self._grip_of(robot)
         plane, offset = self._grip
         target = self._pointer.place(event, event.end_position, robot, plane)
         if target is not None:
-            self._hooks.on_grab(bench, target + offset)
+            self._hooks.on_grab(side, target + offset)
 
     def _grip_of(self, robot: int) -> tuple[DragPlane, np.ndarray]:
         """Plane of a new pull, and offset from the drawn end-point to the actual one, [m]."""
@@ -152,7 +152,7 @@ class Mouse:
         The path may have changed since the browser drew it, and a browser may send any number.
         """
         count = 0 if self.motion is None else len(self.motion.path.control_points)
-        if instance is None or instance >= count * len(self._benches):
+        if instance is None or instance >= count * len(self._sides):
             return None
         robot, index = divmod(instance, count)
         return robot, index

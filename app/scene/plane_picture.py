@@ -51,8 +51,8 @@ class PlaneNodes:
         turned = SO3.from_matrix(np.column_stack([x, y, np.cross(x, y)])).wxyz
         size = float(width), float(height)
         self._nodes = [
-            add_png(scene, f"{name}/{bench}", picture.png, size, base + middle, turned)
-            for bench, base in stage.bases.items()
+            add_png(scene, f"{name}/{side}", picture.png, size, base + middle, turned)
+            for side, base in stage.bases.items()
         ]
 
     def remove(self) -> None:

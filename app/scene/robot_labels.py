@@ -57,7 +57,7 @@ class RobotLabels:
         self._arcs: MovingLines | None = None
         places, lines = self._drawn(motion)
         self._places = places
-        names = [f"{bench}/{name}" for bench in stage.bases for name in labels.names]
+        names = [f"{side}/{name}" for side in stage.bases for name in labels.names]
         for name, at in zip(names, places, strict=True):
             text = name.rpartition("/")[2]
             self._texts.append(add_text(scene, f"/show/labels/{name}", text, at, letters))

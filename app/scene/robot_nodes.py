@@ -50,18 +50,18 @@ def link_scales(lengths: np.ndarray) -> np.ndarray:
     return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
 
 
-def bar_colours(bench: str, counts: Counts) -> np.ndarray:
+def bar_colours(side: str, counts: Counts) -> np.ndarray:
     """Linear colours of a robot's bars, shape (n, 3): every other link is behind and darker.
 
     Pieces of a flexible strip are in front.
     """
-    front = palette.OF_BENCH[bench]
+    front = palette.OF_SIDE[side]
     back = front.toward(palette.INK, 0.25)
     return np.stack([(back if each else front).linear for each in counts.behind])
 
 
 def part_looks(
-    bench: str, law: str, counts: Counts, motors: Sequence[int] = ()
+    side: str, law: str, counts: Counts, motors: Sequence[int] = ()
 ) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
@@ -70,7 +70,7 @@ def part_looks(
     each consists of two discs, one in front of the other.
     """
     extras = counts.marks
-    dark = palette.OF_BENCH[bench].toward(palette.INK, 0.45)
+    dark = palette.OF_SIDE[side].toward(palette.INK, 0.45)
     discs, inks = DOT, (palette.WHITE, dark)
     if law_named(law).aim == "theta_ref":
         discs, inks = RING, (dark, palette.WHITE)
@@ -86,7 +86,7 @@ def _add_traces(scene: viser.SceneApi, stage: Stage) -> viser.LineSegmentsHandle
     return scene.add_line_segments(
         "/traces",
         np.zeros((TRACE_SEGMENTS * len(stage.bases), 2, 3)),
-        np.concatenate([fading(palette.OF_BENCH[bench], wall) for bench in stage.bases]),
+        np.concatenate([fading(palette.OF_SIDE[side], wall) for side in stage.bases]),
         thickness=0.006,
     )
 
@@ -167,7 +167,7 @@ class RobotNodes:
             "/grips",
             meshes.grip(),
             poses["tips"],
-            np.stack([palette.OF_BENCH[bench].linear for bench in bases]),
+            np.stack([palette.OF_SIDE[side].linear for side in bases]),
             opacity=0.22,
         )
         self._traces = _add_traces(scene, stage)
@@ -190,7 +190,7 @@ class RobotNodes:
         links = slice(len(self._bases) * counts.links)
         strips = slice(links.stop, None)
         is_link = np.arange(counts.bars) < counts.links
-        own = [bar_colours(bench, counts) for bench in self._bases]
+        own = [bar_colours(side, counts) for side in self._bases]
         of_links = np.concatenate([colours[is_link] for colours in own])
         found = [Bars(scene, "/links", meshes.part("link"), links, of_links, poses)]
         if counts.strip:
@@ -206,7 +206,7 @@ class RobotNodes:
     def _part_looks(self) -> tuple[np.ndarray, np.ndarray]:
         """`part_looks` of all robots, shape (parts, 3) each."""
         laws = self._laws.items()
-        looks = [part_looks(bench, law, self._counts, self._motors) for bench, law in laws]
+        looks = [part_looks(side, law, self._counts, self._motors) for side, law in laws]
         scales = [scale for scales, _ in looks for scale in scales]
         return np.array(scales), np.stack([colour for _, own in looks for colour in own])
 
@@ -247,7 +247,12 @@ class RobotNodes:
 
     def hide(self, hidden: bool) -> None:
         """Hide all that moves but the forces, or show it again."""
-        for node in (*(bars.node for bars in self._bars), self._parts, self.grips, self._traces):
+        for node in (
+            *(bars.node for bars in self._bars),
+            self._parts,
+            self.grips,
+            self._traces,
+        ):
             node.visible = not hidden
 
     def update_traces(self, robots: list[RobotView]) -> None:

@@ -66,7 +66,7 @@ class Scene:
     ) -> None:
         self._client = client
         self._stage, self._words = stage, words
-        self._benches = list(stage.bases)
+        self._sides = list(stage.bases)
         self._origins = stage.origins
         hooks, pointer = hooks or SceneCallbacks(), Pointer(stage)
         self.mouse = Mouse(stage, pointer, hooks)
@@ -131,7 +131,7 @@ class Scene:
         """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
         self._titles.show(snapshot.laws, self.captions.follow(snapshot))
         self._machine.update_laws(snapshot.laws)
-        self._machine.update_traces([snapshot.robots[bench] for bench in self._benches])
+        self._machine.update_traces([snapshot.robots[side] for side in self._sides])
         self._contacts.update(snapshot)
         self._hands.show(snapshot)
         freehand = self._freehand  # another thread may end the stroke

@@ -14,7 +14,7 @@ from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.app.scene.tones import LIGHT, Tones
 from onpath.app.viser_adapter.frame_channel import update_node
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
 from onpath.models.control.laws.registry import law_named
@@ -51,7 +51,7 @@ class Stage:
     """Placement of a kind of robot, and its view. Points are in the robot's own frame, [m].
 
     Attributes:
-        bases: origins of the robots' frames in the world, [m], by bench.
+        bases: origins of the robots' frames in the world, [m], by side.
         low, high: opposite corners of the box that the camera shows of a robot, shape (3,).
         floor: height of the floor, negative.
         elevation, azimuth: angles of the camera above the horizontal and to the right, [rad].
@@ -276,24 +276,24 @@ class Titles:
         self._words, self._laws = words, dict[str, str]()
         self._titles, self._captions = dict[str, str](), dict[str, str]()
         self._texts = {
-            bench: [
-                ChangingText(scene, f"/titles/{bench}/{part}", base + stage.title, size, below)
+            side: [
+                ChangingText(scene, f"/titles/{side}/{part}", base + stage.title, size, below)
                 for part, (below, size) in (("law", TITLE), ("aim", AIM))
             ]
-            for bench, base in stage.bases.items()
+            for side, base in stage.bases.items()
         }
 
     def show(self, laws: dict[str, str], captions: dict[str, str]) -> None:
-        """Show law and caption of each bench; sends nothing if they are shown already."""
+        """Show law and caption of each side; sends nothing if they are shown already."""
         if laws == self._laws and captions == self._captions:
             return
         self._captions = captions
         if laws != self._laws:
-            self._laws, self._titles = laws, bench_titles(laws, self._words)
-        for bench, title in self._titles.items():
-            law, below = self._texts[bench]
+            self._laws, self._titles = laws, side_titles(laws, self._words)
+        for side, title in self._titles.items():
+            law, below = self._texts[side]
             law.show(title)
-            below.show(captions[bench] or self._words(f"aim.{law_named(laws[bench]).aim}"))
+            below.show(captions[side] or self._words(f"aim.{law_named(laws[side]).aim}"))
 
     def hide(self, hidden: bool) -> None:
         """Hide the titles, which are drawn on top of everything else, or show them again."""

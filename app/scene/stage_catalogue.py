@@ -14,7 +14,7 @@ from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
 from onpath.app.scene.tones import LIGHT, Tones
 from onpath.models.arrays import Array
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.path_checks import LEAST_MARGIN
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot

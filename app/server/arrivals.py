@@ -13,10 +13,10 @@ from functools import partial
 import viser
 
 from onpath.app.common.error_log import log_error
+from onpath.app.viser_adapter.addresses import storage_key
 from onpath.app.viser_adapter.connection_limits import PerAddress
 from onpath.app.viser_adapter.connections import connection_of, run_in_thread, turn_away
 from onpath.app.viser_adapter.local_storage import ask_item
-from onpath.app.viser_adapter.places import storage_key
 
 Kept = dict[str, str]
 
@@ -28,7 +28,7 @@ class Arrival:
     Attributes:
         kept: values of the keys, by the names that were asked for; "" where there is none.
         address: the client's, as the limits on connections count it.
-        place: of its page; see `app.viser_adapter.places`.
+        place: of its page; see `app.viser_adapter.addresses`.
     """
 
     client: viser.ClientHandle

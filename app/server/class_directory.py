@@ -8,7 +8,7 @@ from onpath.app.classroom.admission import Admission
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.server.class_service import ClassService
-from onpath.app.viser_adapter.places import CLASS, class_address, class_code_in
+from onpath.app.viser_adapter.addresses import CLASS, class_address, class_code_in
 
 
 class ClassDirectory:

@@ -21,7 +21,7 @@ from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.places import storage_key
+from onpath.app.viser_adapter.addresses import storage_key
 from onpath.models.errors import CodedError
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
@@ -31,7 +31,7 @@ class ClassService:
     """A class of one server process.
 
     Args:
-        place: of its page; empty if it is that of every page. See `app.viser_adapter.places`.
+        place: of its page; empty if it is that of every page. See `app.viser_adapter.addresses`.
         records: from which a student's data are deleted when the teacher asks for it. A class with
             a place is kept in them, too.
         keeper: stores a student's lab on joining.

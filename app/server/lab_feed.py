@@ -47,7 +47,7 @@ class LabFeed:
 
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
         """See `app.simulation.scheduled_lab.Display`."""
-        if stride == AT_EASE and self._source(lab, 1.0)[0].session.grips.grabbed:
+        if stride == AT_EASE and self._source(lab, 1.0)[0].session.forces.grabbed:
             return True  # every frame of delay is felt while dragging
         return is_turn(frame + self._offset, stride)
 

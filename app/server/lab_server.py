@@ -44,9 +44,9 @@ from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
+from onpath.app.viser_adapter.addresses import storage_key
 from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.page_release import clear_page, release_page
-from onpath.app.viser_adapter.places import storage_key
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
@@ -244,14 +244,16 @@ class LabServer:
         teaching = service.teaching(client, lab, reopen) if service else None
         keeps = self._records is not None and not self._records.warning
         days, dark = self._retention.days if keeps else 0, number in self._dark
-        desk = PageContext(code, lab.post, self._course, days, enter, seat, dark, self._privacy_url)
+        context = PageContext(
+            code, lab.post, self._course, days, enter, seat, dark, self._privacy_url
+        )
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
         first = self.simulation.call(take)
         if teaching is None:
-            return LabFeed(Page(client, first, desk), number, nickname)
+            return LabFeed(Page(client, first, context), number, nickname)
         followed = service.followed(number) if service else None
-        return LabFeed(TeacherView(client, first, desk, teaching), number, nickname, followed)
+        return LabFeed(TeacherView(client, first, context, teaching), number, nickname, followed)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Move a client to the session of a code that was typed.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.session import Belongings
+from onpath.app.lab.session import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
 from onpath.models.systems.catalogue import ROBOTS
@@ -16,6 +16,6 @@ def new_lab(store: LoopCache, course: Course) -> Lab:
     lab = Lab(store, course=course)
     session = lab.session
     for name, entry in ROBOTS.items():
-        session.earlier[name] = Belongings(with_values(entry.parameters(), NEWCOMER))
+        session.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))
     session.set_parameters(session.earlier.pop(session.entry.name).parameters)
     return lab

@@ -10,7 +10,7 @@ from urllib.parse import unquote, urlsplit
 
 from websockets.http11 import Request, Response
 
-from onpath.app.viser_adapter.places import takes_websocket
+from onpath.app.viser_adapter.addresses import takes_websocket
 
 LONGEST_PATH = 200  # [characters]; file systems have limits
 HEALTH = "/health"  # answered while the network thread is alive, for process supervisors

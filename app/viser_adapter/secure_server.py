@@ -27,12 +27,12 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from onpath.app.common.error_log import log_error
+from onpath.app.viser_adapter.addresses import not_here, place_of, redirection, without_place
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
-from onpath.app.viser_adapter.places import not_here, place_of, redirection, without_place
 from onpath.app.viser_adapter.request_filter import (
     RequestFilter,
     is_loopback,

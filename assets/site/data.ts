@@ -7,7 +7,7 @@ export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
 export type Setting = number | string
 
-/** One thing that a script or a link does; it has one of these fields, besides `bench`. */
+/** One thing that a script or a link does; it has one of these fields, besides `side`. */
 export interface Act {
     hold?: boolean
     pull?: [number, number]
@@ -18,7 +18,7 @@ export interface Act {
     reset?: boolean
     run?: boolean
     rate?: number
-    bench?: number | null
+    side?: number | null
 }
 
 export interface Script {

@@ -46,8 +46,8 @@ export class Recorded extends Simulation {
             const part = Math.min(left, this.at(this.frame) - this.ticks)
             super.advance(part)
             left -= part
-            this.benches.forEach((bench, i) => {
-                if (bench.stopped && !this.isStopped(ROBOTS[i]!)) this.note("diverged", "", [ROBOTS[i]!])
+            this.sides.forEach((side, i) => {
+                if (side.stopped && !this.isStopped(ROBOTS[i]!)) this.note("diverged", "", [ROBOTS[i]!])
             })
         }
     }
@@ -58,7 +58,7 @@ export class Recorded extends Simulation {
     }
 
     override pull(by: [number, number] | null): void {
-        const pulled = this.benches.some(bench => bench.pulled)
+        const pulled = this.sides.some(side => side.pulled)
         if (pulled !== (by !== null)) this.note(by ? "pull" : "release")
         super.pull(by)
     }
@@ -86,11 +86,11 @@ export class Recorded extends Simulation {
 
     /** Do what a script or a link says. */
     act(act: Act): void {
-        const benches = act.bench == null ? ROBOTS.map((_, i) => i) : [act.bench]
-        if (act.hold !== undefined) this.holdSome(benches, act.hold)
+        const sides = act.side == null ? ROBOTS.map((_, i) => i) : [act.side]
+        if (act.hold !== undefined) this.holdSome(sides, act.hold)
         else if (act.pull) {
-            for (const i of benches) this.benches[i]!.pull(act.pull)
-            this.note("pull", "", benches.map(i => ROBOTS[i]!))
+            for (const i of sides) this.sides[i]!.pull(act.pull)
+            this.note("pull", "", sides.map(i => ROBOTS[i]!))
         } else if (act.release) this.pull(null)
         else if (act.path !== undefined) this.choose(act.path)
         else if (act.reset) this.reset()
@@ -115,16 +115,16 @@ export class Recorded extends Simulation {
         return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }
     }
 
-    private holdSome(benches: number[], on: boolean): void {
-        if (benches.length === this.benches.length) return this.hold(on)
-        for (const i of benches) this.benches[i]!.hold(on)
-        this.note(on ? "hold" : "let_go", "", benches.map(i => ROBOTS[i]!))
+    private holdSome(sides: number[], on: boolean): void {
+        if (sides.length === this.sides.length) return this.hold(on)
+        for (const i of sides) this.sides[i]!.hold(on)
+        this.note(on ? "hold" : "let_go", "", sides.map(i => ROBOTS[i]!))
     }
 
     private write(values: Record<string, number | string>, places: [number, number][]): void {
         for (const [place, value] of places) {
             this.written.set(place, value)
-            for (const bench of this.benches) bench.set(place, value)
+            for (const side of this.sides) side.set(place, value)
         }
         for (const [name, value] of Object.entries(values)) {
             this.settings[name] = value
@@ -143,9 +143,9 @@ export class Recorded extends Simulation {
         const kept = [...this.happenings]
         super.reset() // which sets all sliders
         this.happenings = kept
-        for (const [place, value] of this.written) for (const bench of this.benches) bench.set(place, value)
+        for (const [place, value] of this.written) for (const side of this.sides) side.set(place, value)
         this.data.sliders.forEach(({ place }, i) => {
-            if (place >= 0) for (const bench of this.benches) bench.set(place, this.values[i]!)
+            if (place >= 0) for (const side of this.sides) side.set(place, this.values[i]!)
         })
     }
 
@@ -175,14 +175,14 @@ export class Recorded extends Simulation {
 
     /** All quantities of both robots, in their units. */
     private now(): Record<Robot, Record<string, number>> {
-        const reference = this.benches[0]!.reference()
-        const own = this.benches.map(bench => {
-            const row = bench.logged()
+        const reference = this.sides[0]!.reference()
+        const own = this.sides.map(side => {
+            const row = side.logged()
             const of = (name: keyof SiteFigure["log"]) => row.subarray(this.data.log[name][0], this.data.log[name][0] + this.data.log[name][1])
-            const tip = bench.tip()
-            const [deflection, energy] = this.data.quantities.includes("energy") ? bench.measured() : [0, 0]
+            const tip = side.tip()
+            const [deflection, energy] = this.data.quantities.includes("energy") ? side.measured() : [0, 0]
             return {
-                distance: 1e3 * bench.distance,
+                distance: 1e3 * side.distance,
                 lag: 1e3 * Math.hypot(tip[0] - reference[0], tip[1] - reference[1]),
                 speed: 1e3 * of("speed")[0]!,
                 rate: of("theta_rate")[0]!,

@@ -1,24 +1,24 @@
 // What each robot is doing just now, as app/scene/captions.py says it.
 
-import type { Bench } from "./bench"
+import type { Side } from "./side"
 import { said, written, type FigureData } from "./data"
 import type { Simulation } from "./simulation"
 
-function kind(bench: Bench, off: boolean, data: FigureData): string {
-    if (bench.stopped) return "stopped"
-    const { byClock } = bench.does()
-    if (bench.held) return byClock ? (off ? "torn_off" : "held") : off ? "off" : "waits"
-    const returns = bench.share("far") > data.returns, bounded = bench.share("integral_used") > data.full
-    if (bench.pulled) return returns ? "pulled_far" : bounded ? "pulled_bounded" : "pulled"
+function kind(side: Side, off: boolean, data: FigureData): string {
+    if (side.stopped) return "stopped"
+    const { byClock } = side.does()
+    if (side.held) return byClock ? (off ? "torn_off" : "held") : off ? "off" : "waits"
+    const returns = side.share("far") > data.returns, bounded = side.share("integral_used") > data.full
+    if (side.pulled) return returns ? "pulled_far" : bounded ? "pulled_bounded" : "pulled"
     if (!off) return ""
     if (returns) return "returns"
     return byClock ? "chases" : bounded ? "off_bounded" : "off"
 }
 
 /** Empty for a robot that does what its law's title says. */
-export function caption(bench: Bench, data: FigureData): string {
-    const distance = bench.held ? bench.most : bench.distance
-    const which = kind(bench, distance >= data.off, data)
+export function caption(side: Side, data: FigureData): string {
+    const distance = side.held ? side.most : side.distance
+    const which = kind(side, distance >= data.off, data)
     return which && said(data, `caption.${which}`, { mm: written(data, 1e3 * distance, 0) })
 }
 
@@ -31,10 +31,10 @@ export function spoken(simulation: Simulation, captions: string[]): string {
 
 /** Why robots have stopped, why the path goes no further, or which point keys move. */
 export function notes(simulation: Simulation): string {
-    const { benches, followed, selected, data } = simulation
-    const lines = benches.map((bench, i) => {
-        const reason = bench.does().stops[bench.stopped - 1]
-        const time = written(data, bench.ticks * data.dt, 1)
+    const { sides, followed, selected, data } = simulation
+    const lines = sides.map((side, i) => {
+        const reason = side.does().stops[side.stopped - 1]
+        const time = written(data, side.ticks * data.dt, 1)
         return reason ? said(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
     })
     if (followed.fault) {

@@ -51,7 +51,7 @@ export class Controls {
             ...(data.paths.length > 1 ? { path: this.paths() } : {}),
         }
         const shown = Object.keys(every).filter(name => data.controls.includes(name))
-        const laws = data.choices.length ? simulation.benches.map((_, i) => this.laws(i)) : []
+        const laws = data.choices.length ? simulation.sides.map((_, i) => this.laws(i)) : []
         const buttons = made("div", "buttons", ...shown.map(name => every[name]!), ...laws)
         const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
         this.element = made("div", "controls", buttons, made("div", "sliders", ...sliders))
@@ -62,7 +62,7 @@ export class Controls {
     /** Write the present state on the buttons. */
     show(): void {
         const { data, held } = this.simulation
-        const both = data.benches.length > 1 ? "_both" : ""
+        const both = data.sides.length > 1 ? "_both" : ""
         written(this.held, said(data, held ? `run.let${both}_go` : `run.hold${both}`))
         this.held.ariaPressed = String(held)
         written(this.run, said(data, this.page.running ? "run.pause" : "run.run"))
@@ -109,13 +109,13 @@ export class Controls {
         })
     }
 
-    private laws(bench: number): HTMLElement {
-        const { data, benches } = this.simulation
-        const side = benches.length > 1 ? `, ${this.simulation.side(bench)}` : ""
+    private laws(side: number): HTMLElement {
+        const { data, sides } = this.simulation
+        const suffix = sides.length > 1 ? `, ${this.simulation.sideName(side)}` : ""
         const titles = data.choices.map(law => data.laws[law]!.title)
-        const first = data.choices.indexOf(benches[bench]!.law)
-        return this.choice(said(data, "standalone.law") + side, titles, first, chosen => {
-            benches[bench]!.change(data.choices[chosen]!)
+        const first = data.choices.indexOf(sides[side]!.law)
+        return this.choice(said(data, "standalone.law") + suffix, titles, first, chosen => {
+            sides[side]!.change(data.choices[chosen]!)
             this.page.changed()
         })
     }

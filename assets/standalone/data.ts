@@ -9,7 +9,7 @@ export type Point = [number, number]
 type Numbers<Name extends string> = Record<Name, number>
 type Texts<Name extends string> = Record<Name, string>
 
-export type BenchData = Texts<"colour" | "dark"> & { law: number }
+export type SideData = Texts<"colour" | "dark"> & { law: number }
 
 export interface LawData extends Texts<"title" | "text"> {
     aim: "theta" | "theta_ref"
@@ -37,7 +37,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
     log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used", Place>
-    benches: BenchData[]
+    sides: SideData[]
     laws: LawData[]
     /** Laws from which readers may choose. */
     choices: number[]

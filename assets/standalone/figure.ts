@@ -20,7 +20,7 @@ const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL]
 export class Figure {
     running = !matchMedia("(prefers-reduced-motion: reduce)").matches
     private readonly data = this.simulation.data
-    private readonly views = this.simulation.benches.map(bench => new View(bench, this.data))
+    private readonly views = this.simulation.sides.map(side => new View(side, this.data))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))
     private readonly plot = new Plot(this.simulation)
@@ -62,7 +62,7 @@ export class Figure {
         this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
         this.titles.forEach((element, i) => {
             const law = (element.textContent = simulation.title(i))
-            element.title = simulation.benches[i]!.does().text
+            element.title = simulation.sides[i]!.does().text
             const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
             this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
         })
@@ -75,7 +75,7 @@ export class Figure {
     private parts(): HTMLElement[] {
         const { data } = this
         const robots = this.views.map((view, i) => {
-            const heading = made("h2", `title bench${i}`, this.titles[i]!, " ", this.captions[i]!)
+            const heading = made("h2", `title side${i}`, this.titles[i]!, " ", this.captions[i]!)
             view.canvas.setAttribute("role", "img")
             return made("section", "robot", heading, view.canvas)
         })
@@ -122,9 +122,9 @@ export class Figure {
             view.draw(simulation.followed, simulation.selected, traced.map(moment => moment.tips[i]!))
         })
         this.plot.draw(moments)
-        const captions = simulation.benches.map(bench => caption(bench, data))
+        const captions = simulation.sides.map(side => caption(side, data))
         this.captions.forEach((element, i) => written(element, captions[i]!))
-        const now = simulation.benches.map((bench, i) => `${simulation.title(i)} ${number(data, 1e3 * bench.distance, 1)}`)
+        const now = simulation.sides.map((side, i) => `${simulation.title(i)} ${number(data, 1e3 * side.distance, 1)}`)
         written(this.axis, `${said(data, "standalone.plot")}: ${now.join(", ")}`)
         const late = this.lost > LATE ? said(data, "standalone.late") : ""
         const note = [notes(simulation), late].filter(Boolean).join(" ")

@@ -30,10 +30,10 @@ export class Plot {
             if (held) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
         })
         this.axes(ink, x, y, top, begin)
-        simulation.benches.forEach((bench, i) => {
+        simulation.sides.forEach((side, i) => {
             ink.setLineDash(DASHES[i % DASHES.length]!)
             const way = moments.map(({ time, millimetres }): Point => [x(time), y(millimetres[i]!)])
-            stroke(ink, way, bench.data.colour, 2)
+            stroke(ink, way, side.data.colour, 2)
         })
         ink.setLineDash([])
     }

@@ -1,6 +1,6 @@
-// The simulated figure: benches on a path, time, and what its reader does. It knows no page.
+// The simulated figure: sides on a path, time, and what its reader does. It knows no page.
 
-import { Bench, MOST_TICKS } from "./bench"
+import { Side, MOST_TICKS } from "./side"
 import { said, type FigureData, type Point } from "./data"
 import type { Kernels } from "./kernels"
 import { Path } from "./path"
@@ -24,7 +24,7 @@ export class Simulation {
     /** The control point that keys move. */
     selected: number | null = null
     readonly paths = this.data.paths.map(path => new Path(path, this.data, this.kernels))
-    readonly benches = this.data.benches.map(each => new Bench(each, this.data, this.kernels, this.paths[0]!))
+    readonly sides = this.data.sides.map(each => new Side(each, this.data, this.kernels, this.paths[0]!))
     readonly values = this.data.sliders.map(slider => slider.value)
     private readonly poles = new Poles(this.data, this.kernels)
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
@@ -38,23 +38,23 @@ export class Simulation {
     get followed(): Path { return this.paths[this.path]! }
 
     /** What a robot is called: its law, and its side if both have the same. */
-    title(bench: number): string {
-        const law = this.benches[bench]!.does().title
-        const alike = this.benches.filter(each => each.does().title === law).length > 1
-        return alike ? said(this.data, "bench.title", { law, side: this.side(bench) }) : law
+    title(side: number): string {
+        const law = this.sides[side]!.does().title
+        const alike = this.sides.filter(each => each.does().title === law).length > 1
+        return alike ? said(this.data, "side.title", { law, side: this.sideName(side) }) : law
     }
 
-    readonly side = (bench: number): string => said(this.data, bench ? "bench.right" : "bench.left")
+    readonly sideName = (side: number): string => said(this.data, side ? "side.right" : "side.left")
     /** What is said of the poles, if a law has them. */
     lines(): string[] {
-        const bench = this.data.controls.includes("poles") && this.benches.find(each => each.does().linear)
-        return bench ? this.poles.lines(bench.settings) : []
+        const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)
+        return side ? this.poles.lines(side.settings) : []
     }
 
     /** What is seen now. */
     moment(): Moment {
-        const { time, held, benches } = this
-        return { time, held, tips: benches.map(bench => bench.tip()), millimetres: benches.map(bench => 1e3 * bench.distance) }
+        const { time, held, sides } = this
+        return { time, held, tips: sides.map(side => side.tip()), millimetres: sides.map(side => 1e3 * side.distance) }
     }
 
     advance(ticks: number): void {
@@ -62,7 +62,7 @@ export class Simulation {
         this.followed.advance(ticks * this.data.dt)
         for (let left = ticks; left > 0; ) {
             const part = Math.min(left, period - (this.ticks % period))
-            for (const bench of this.benches) bench.advance(part)
+            for (const side of this.sides) side.advance(part)
             this.ticks += part
             left -= part
             if (this.ticks % period === 0) this.remember()
@@ -77,12 +77,12 @@ export class Simulation {
     hold(on: boolean): void {
         if (on === this.held) return
         this.held = on
-        for (const bench of this.benches) bench.hold(on)
+        for (const side of this.sides) side.hold(on)
     }
 
     /** Pull all tips by so much in the picture; null: let go. */
     pull(by: Point | null): void {
-        for (const bench of this.benches) bench.pull(by)
+        for (const side of this.sides) side.pull(by)
     }
 
     /** Begin anew, with the values of the sliders. */
@@ -90,7 +90,7 @@ export class Simulation {
         this.ticks = 0
         this.held = false
         this.followed.settle()
-        for (const bench of this.benches) bench.begin(this.followed)
+        for (const side of this.sides) side.begin(this.followed)
         this.values.forEach((value, i) => this.set(i, value))
         this.recent = [this.moment()]
     }
@@ -111,6 +111,6 @@ export class Simulation {
     set(slider: number, value: number): void {
         this.values[slider] = value
         const { place } = this.data.sliders[slider]!
-        if (place >= 0) for (const bench of this.benches) bench.set(place, value)
+        if (place >= 0) for (const side of this.sides) side.set(place, value)
     }
 }

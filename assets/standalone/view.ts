@@ -1,6 +1,6 @@
 // The picture of one robot, in two dimensions.
 
-import type { Bench } from "./bench"
+import type { Side } from "./side"
 import type { FigureData, Point } from "./data"
 import type { Path } from "./path"
 
@@ -24,7 +24,7 @@ export class View {
     private left = 0
     private top = 0
 
-    constructor(private readonly bench: Bench, private readonly data: FigureData) {}
+    constructor(private readonly side: Side, private readonly data: FigureData) {}
 
     /** Metres of the picture that a way of so many pixels is. */
     readonly metres = (dx: number, dy: number): Point => [dx / this.scale, -dy / this.scale]
@@ -36,7 +36,7 @@ export class View {
         const away = (place: Point) => distance(this.pixel(place))
         const far = controls.includes("drag") ? path.spots().map(away) : []
         const nearest = Math.min(...far)
-        const tip = controls.includes("pull") ? away(this.bench.tip()) : Infinity
+        const tip = controls.includes("pull") ? away(this.side.tip()) : Infinity
         if (nearest < NEAR && (far.indexOf(nearest) === selected || nearest + TIE < tip)) return far.indexOf(nearest)
         return tip < REACH ? "tip" : null
     }
@@ -50,7 +50,7 @@ export class View {
         const spots = controls.includes("drag") ? path.spots() : []
         if (selected !== null) this.disc(ink, spots[selected]!, 9, colours.selected)
         for (const spot of spots) this.disc(ink, spot, 6, colours.point)
-        this.line(ink, trace, this.bench.data.colour + FAINT, 3)
+        this.line(ink, trace, this.side.data.colour + FAINT, 3)
         for (const mark of path.fault?.marks ?? []) this.disc(ink, mark, 4, colours.warning)
         this.robot(ink)
         this.marker(ink)
@@ -69,28 +69,28 @@ export class View {
     private readonly pixel = ([x, y]: Point): Point => [(x - this.left) * this.scale, (this.top - y) * this.scale]
     private robot(ink: CanvasRenderingContext2D): void {
         const { sizes, strip, colours } = this.data
-        const { dark, colour } = this.bench.data
-        const picture = this.bench.picture()
+        const { dark, colour } = this.side.data
+        const picture = this.side.picture()
         const links = sizes.bars - strip
         for (let i = 0; i < sizes.bars; i++) {
             const ends = points(picture.subarray(4 * i, 4 * i + 4))
             this.line(ink, ends, i < links && i % 2 === 0 ? dark : colour, i < links ? 9 : 5)
         }
         for (const joint of points(picture.subarray(4 * sizes.bars))) this.disc(ink, joint, 5, colours.steel)
-        this.disc(ink, this.bench.tip(), 5, colours.ink)
+        this.disc(ink, this.side.tip(), 5, colours.ink)
     }
 
     /** A ring at a reference point that a law aims at, a dot with a white rim at a closest point. */
     private marker(ink: CanvasRenderingContext2D): void {
-        const { dark } = this.bench.data
-        const { aim } = this.bench.does()
+        const { dark } = this.side.data
+        const { aim } = this.side.does()
         const [rim, radius, ...colours] = aim === "theta_ref" ? [9, 6, dark, "#fff"] as const : [7, 5, "#fff", dark] as const
-        this.disc(ink, this.bench.aim(), rim, colours[0])
-        this.disc(ink, this.bench.aim(), radius, colours[1])
+        this.disc(ink, this.side.aim(), rim, colours[0])
+        this.disc(ink, this.side.aim(), radius, colours[1])
     }
 
     private force(ink: CanvasRenderingContext2D): void {
-        const [begin, end] = [this.pixel(this.bench.tip()), this.pixel(this.bench.arrow())]
+        const [begin, end] = [this.pixel(this.side.tip()), this.pixel(this.side.arrow())]
         const [dx, dy] = [end[0] - begin[0], end[1] - begin[1]]
         const length = Math.hypot(dx, dy)
         if (length < 6) return

@@ -371,9 +371,9 @@ gains-students =
 
 ## Die beiden Prüfstände
 
-bench-left = links
-bench-right = rechts
-bench-title = { $law }, { $side }
+side-left = links
+side-right = rechts
+side-title = { $law }, { $side }
 
 law-trajectory_tracking-label = Folgeregelung
 law-trajectory_tracking-text = Folgt einem Punkt, der nach der Uhr auf der Kurve läuft, was der Roboter auch tut.

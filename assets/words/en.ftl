@@ -371,11 +371,11 @@ gains-students =
        *[other] { $count } students
     }
 
-## The two benches; the names of the control laws stand in models/
+## The two sides; the names of the control laws stand in models/
 
-bench-left = left
-bench-right = right
-bench-title = { $law }, { $side }
+side-left = left
+side-right = right
+side-title = { $law }, { $side }
 
 aim-theta = aims at the closest point
 aim-theta_ref = aims at its reference point

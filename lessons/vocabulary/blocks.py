@@ -22,10 +22,10 @@ from onpath.lessons.task_schema import (
 )
 from onpath.lessons.vocabulary.kinds import kind_faults
 from onpath.lessons.vocabulary.names import EVENTS, HIGHEST, LONGEST, one_of
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
@@ -112,13 +112,13 @@ def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
     """The names of a check that are unknown."""
     parameters = None if entry is None else specs(entry.parameters)
     if isinstance(check, Setting | Once) and check.equals is not None:
-        values = {"path": [*presets(), OWN], **{bench: [*LAWS, OWN] for bench in BENCHES}}
+        values = {"path": [*presets(), OWN], **{side: [*LAWS, OWN] for side in SIDES}}
         if check.name in values:
             yield from one_of(str(check.equals), values[check.name], check.name)
         elif parameters is not None and check.name in parameters:
             yield from kind_faults(check.name, check.equals, parameters[check.name])
     if isinstance(check, Setting | Once | Only) and parameters is not None:
-        others = ("path", "robot", *BENCHES)
+        others = ("path", "robot", *SIDES)
         others = (*others, "start", "wall") if isinstance(check, Only) else (*others, "length")
         for name in check.names if isinstance(check, Only) else (check.name,):
             yield from one_of(name, [*parameters, *others], "parameter")

@@ -29,8 +29,8 @@ from onpath.lessons.vocabulary.names import (
 )
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.closed_loop.start import Start, check_start
-from onpath.models.control.benches import checked_laws
 from onpath.models.control.settable import changed, specs, with_values
+from onpath.models.control.sides import checked_laws
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets

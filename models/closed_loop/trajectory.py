@@ -123,7 +123,7 @@ def measured_names(robot: Robot) -> list[str]:
 
 
 def header(
-    robot: Robot, level_set: bool = False, benches: bool = False, measured: bool = False
+    robot: Robot, level_set: bool = False, sides: bool = False, measured: bool = False
 ) -> list[str]:
     """Column names of the CSV, with units.
 
@@ -133,7 +133,7 @@ def header(
 
     Args:
         level_set: whether xi1 is a level set.
-        benches: whether the rows name the bench.
+        sides: whether the rows name the side.
         measured: whether there are columns of the joint angles as measured.
     """
     p, m = robot.system.p, robot.system.m
@@ -141,7 +141,7 @@ def header(
     xi = [(f"xi{i + 1}", "m2" if level_set and i == 0 else "m") for i in range(p - 1)]
     return [
         "t_s",
-        *["bench"] * benches,
+        *["side"] * sides,
         "law",
         *robot.system.coordinate_names,
         *(f"{name}_rate_{unit}_s" for name, _, unit in units),
@@ -164,20 +164,20 @@ def write_csv(
     file: TextIO,
     robot: Robot,
     trajectories: Iterable[Trajectory],
-    benches: Sequence[str] | None = None,
+    sides: Sequence[str] | None = None,
 ) -> None:
     """Write one row per millisecond and control law, with nine significant digits.
 
     The same trajectories give the same bytes.
 
     Args:
-        benches: of a lab, one for each trajectory; they get a column. None: there are none.
+        sides: of a lab, one for each trajectory; they get a column. None: there are none.
     """
     writer = csv.writer(file, lineterminator="\n")
     runs = list(trajectories)
     level_set, measured = (run.level_set for run in runs), (MEASURED in run.fields for run in runs)
     read = any(measured)
-    writer.writerow(header(robot, any(level_set), benches is not None, read))
+    writer.writerow(header(robot, any(level_set), sides is not None, read))
     for number, run in enumerate(runs):
         f = run.fields
         names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
@@ -187,7 +187,7 @@ def write_csv(
         )  # exact: as they are
         columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
         law = f'"{run.controller}"' if "," in run.controller else run.controller
-        name = law if benches is None else f"{benches[number]},{law}"
+        name = law if sides is None else f"{sides[number]},{law}"
         line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"
         columns += 0.0  # turns -0 into 0
         rows = np.column_stack([run.t, columns]).tolist()

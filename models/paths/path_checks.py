@@ -12,8 +12,8 @@ bends; by Schur's theorem it implies that points with less arc length between th
 second one forbids two strands side by side, and those that cross. Strands of a space curve may
 cross in the plan view, 2 TUBE above each other.
 
-`curve_faults.py` evaluates the expressions for the lab, `models/page/edit.py` translates them for
-pages without a server: same path, same verdict.
+`curve_faults.py` evaluates the expressions for the lab, and `models/web_export/edit.py` translates
+them for pages without a server: same path, same verdict.
 """
 
 from __future__ import annotations

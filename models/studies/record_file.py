@@ -21,7 +21,7 @@ UNEVEN = 0.1  # deviation of a time step from the others, relative to them, that
 
 
 def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
-    """The law and the record of each part of the file: rows of one bench and law, one by one.
+    """The law and the record of each part of the file: rows of one side and law, one by one.
 
     The law is "" in a file without a column of that name. Its other columns may stand in any order.
 
@@ -46,7 +46,7 @@ def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
     missing: CodedError | None = None
     for measured in (True, False):
         try:
-            return measured, read_table(path, _columns(robot, measured), ("bench", LAW))
+            return measured, read_table(path, _columns(robot, measured), ("side", LAW))
         except CodedError as error:
             if error.message.code != "error.table_no_column":
                 raise

@@ -13,7 +13,7 @@ from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.scheduled_lab import ScheduledLab
-from onpath.models.control.benches import BENCHES, RIGHT
+from onpath.models.control.sides import RIGHT, SIDES
 from tests.bench.client_protocol import unpacked
 
 ARGUMENTS = (
@@ -128,7 +128,7 @@ class _Watch:
         for message in unpacked(raw) if isinstance(raw, bytes) else ():
             tips = message.get("updates", {}).get("batched_positions")
             if message.get("name") == "/grips" and tips is not None:
-                self.tip = np.reshape(tips, (-1, 3))[BENCHES.index(RIGHT)]
+                self.tip = np.reshape(tips, (-1, 3))[SIDES.index(RIGHT)]
                 if self.rest is None or np.abs(self.tip - self.rest).max() > MOVED:
                     self.moved_at = self.moved_at or now
 

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("playwright")
 
 from onpath.app.lab import commands as c
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.support.browser import Tab, wait_for
 
 TRACKER, FOLLOWER = LEFT, RIGHT
@@ -24,7 +24,7 @@ def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
     for _ in range(5):  # two laps: as in the paper's experiment, held back at the rightmost point
         tab.ask(*[c.StepOnce()] * 400)
     tab.press("Hold both back")
-    wait_for(lambda: len(lab.session.grips.held) == 2)
+    wait_for(lambda: len(lab.session.forces.held) == 2)
     tab.press("Run")
     wait_for(lambda: lab.session.time > 4.0)
     assert lab.session.runs[FOLLOWER].max_distance < 0.003
@@ -32,13 +32,13 @@ def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
     shown = tab.page.get_by_role("row", name="Path following").first.inner_text()
     assert float(shown.split("\t")[-1].split()[0]) < 3.0
     tab.press("Let both go")
-    wait_for(lambda: not lab.session.grips.held)
+    wait_for(lambda: not lab.session.forces.held)
     tab.button("Hold both back").wait_for()
     wait_for(lambda: max(run.distance for run in lab.session.runs.values()) < 2e-3)
 
 
 def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
-    held = tab.session.grips.held
+    held = tab.session.forces.held
     box = tab.button("Hold while pressed").bounding_box()
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
@@ -154,9 +154,9 @@ def test_keys_do_what_the_buttons_do(tab: Tab) -> None:
     wait_for(lambda: lab.session.time > paused)
     assert lab.session.time == pytest.approx(paused + 1e-3, abs=1e-9)
     keys.press("h")
-    wait_for(lambda: len(lab.session.grips.held) == 2)
+    wait_for(lambda: len(lab.session.forces.held) == 2)
     keys.press("h")
-    wait_for(lambda: not lab.session.grips.held)
+    wait_for(lambda: not lab.session.forces.held)
     keys.press("r")
     wait_for(lambda: lab.session.time == 0.0)
     keys.press("Space")

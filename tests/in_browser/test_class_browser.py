@@ -267,7 +267,7 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     teacher.page.keyboard.press("h")
     teacher.answer()
     first.ask()
-    assert not first.session.grips.held and not teacher.session.grips.held
+    assert not first.session.forces.held and not teacher.session.forces.held
     teacher.page.get_by_label("Tube", exact=True).filter(visible=True).click()
     wait_for(lambda: teacher.client.scene.get_handle_by_name("/show/tube") is not None)
     assert first.client.scene.get_handle_by_name("/show/tube") is None

@@ -10,7 +10,7 @@ from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import RIGHT
+from onpath.models.control.sides import RIGHT
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough

@@ -66,7 +66,7 @@ def test_nothing_is_seen_of_the_viewer_s_own_page(browser: Browser, server: LabS
     assert tab.page.evaluate("window.looks") > 0
     assert tab.page.evaluate("window.uncovered") == []
     tab.press("Hold both back")
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     context.close()
 
 
@@ -74,15 +74,15 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab = visit(browser, server, newcomer=True)
     invitation, spoken = tab.page.locator("#op-invitation"), tab.page.locator("#op-voice")
     tab.button("Hold them back").click()
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     expect(invitation).to_be_hidden()
     expect(spoken).to_contain_text(re.compile(r"Held back\. Trajectory tracking: torn off: \d+ mm"))
     expect(spoken).to_contain_text(re.compile(r"Path following: waits: \d mm"))
     tab.button("Let them go").click()
-    wait_for(lambda: not tab.session.grips.held)
+    wait_for(lambda: not tab.session.forces.held)
     expect(invitation).to_contain_text("pull")
     tab.page.keyboard.press("d")
-    wait_for(lambda: tab.session.grips.hands)
+    wait_for(lambda: tab.session.forces.hands)
     expect(invitation).to_be_hidden()
     tab.page.keyboard.press("x")
     expect(invitation).to_contain_text("Bend the path")
@@ -432,7 +432,7 @@ def test_the_first_hold_moves_nothing_in_the_panel(browser: Browser) -> None:
     tab = visit(browser, server)
     tab.page.evaluate(WATCH_PANEL)
     tab.button("Hold both back").click()
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     time = tab.session.time
     wait_for(lambda: tab.session.time > time + 1)
     tab.settle()

@@ -42,14 +42,14 @@ LAWS = ("trajectory_tracking", "path_following")
 PATHS = ("circle", "clover", "segment")
 HAND_TARGET = """(() => {
     onpath.drag()
-    const [{figure, kernels, settings}] = onpath.simulation.benches
+    const [{figure, kernels, settings}] = onpath.simulation.sides
     return figure.settings.hand_target.map(place => kernels.numbers[settings + place])
 })()"""
 """Where a hand pulls the first robot's end-point to."""
-IS_PULLED = "onpath.simulation.benches[0].pulled"
+IS_PULLED = "onpath.simulation.sides[0].pulled"
 SPEEDS = """(() => {
     const [begin, size] = onpath.data.log.v
-    return [...onpath.simulation.benches[0].logged().slice(begin, begin + size)]
+    return [...onpath.simulation.sides[0].logged().slice(begin, begin + size)]
 })()"""
 """Speeds of the first robot's joints in the last row of its log, [rad/s]."""
 CLOSE = 1e-12
@@ -79,11 +79,11 @@ ACT = """([what, value]) => {
     else if (what === "set") simulation.set(...value)
     else if (what === "move") simulation.followed.move(...value)
     else if (what === "drop") simulation.followed.finish()
-    else if (what === "change") simulation.benches[value[0]].change(value[1])
+    else if (what === "change") simulation.sides[value[0]].change(value[1])
     else simulation[what](value)
 }"""
-LOGGED = "onpath.simulation.benches.map(bench => [...bench.logged()])"
-DISTANCES = "onpath.simulation.benches.map(bench => bench.distance)"
+LOGGED = "onpath.simulation.sides.map(side => [...side.logged()])"
+DISTANCES = "onpath.simulation.sides.map(side => side.distance)"
 
 
 TABLE = """(() => {
@@ -196,7 +196,7 @@ def test_held_back_the_tracker_is_torn_off_and_the_follower_waits(opened: Opened
     opened.press("Hold both back")
     opened.press("Pause")  # holding lets it run
     opened.do(("advance", 2000))
-    tracker, follower = opened.number("onpath.simulation.benches.map(bench => bench.most)")
+    tracker, follower = opened.number("onpath.simulation.sides.map(side => side.most)")
     assert tracker > 0.04 and follower < 0.003
     said = opened.page.get_by_role("status")
     wait_for(lambda: "torn off" in said.inner_text() and "waits" in said.inner_text(), WAIT)
@@ -259,7 +259,7 @@ def test_the_same_inputs_give_the_trajectory_of_python(still: Opened, script: li
             close = EDITED if edited else CLOSE
             np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=close)
             assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
-            expected = [bench.distance() for bench in python.benches]
+            expected = [side.distance() for side in python.sides]
             np.testing.assert_allclose(opened.number(DISTANCES), expected, atol=1e-5)
 
 
@@ -297,7 +297,7 @@ def test_every_robot_follows_also_a_path_whose_points_are_dragged(
 def drawn(opened: Opened) -> tuple[list[Array], list[Array]]:
     """The traces of both robots, and their lines in the plot, [px]."""
     strokes = opened.page.evaluate(STROKES)
-    colours = opened.number("onpath.data.benches.map(bench => bench.colour.toLowerCase())")
+    colours = opened.number("onpath.data.sides.map(side => side.colour.toLowerCase())")
     traces = [np.array(way) for canvas, ink, way in strokes if canvas < 2 and ink[:4] == "rgba"]
     curves = [np.array(way) for canvas, ink, way in strokes if canvas == 2 and ink in colours]
     return traces, curves
@@ -381,16 +381,16 @@ def test_a_tip_is_dragged_with_the_mouse(opened: Opened) -> None:
     opened.page.evaluate(THREE_FRAMES)
     box = opened.page.locator("canvas").nth(1).bounding_box()
     assert box
-    x, y = opened.number("onpath.views[1].pixel(onpath.simulation.benches[1].tip())")
+    x, y = opened.number("onpath.views[1].pixel(onpath.simulation.sides[1].tip())")
     mouse = opened.page.mouse
     mouse.move(box["x"] + x, box["y"] + y)
     mouse.down()
     mouse.move(box["x"] + x, box["y"] + y - 30, steps=3)
     opened.do(("advance", 1000))
-    pulled = opened.number("onpath.simulation.benches.map(bench => bench.tip())")
+    pulled = opened.number("onpath.simulation.sides.map(side => side.tip())")
     mouse.up()
     opened.do(("advance", 3000))
-    free = opened.number("onpath.simulation.benches.map(bench => bench.tip())")
+    free = opened.number("onpath.simulation.sides.map(side => side.tip())")
     assert all(up[1] > down[1] + 0.001 for up, down in zip(pulled, free, strict=True))
 
 
@@ -458,7 +458,7 @@ def tip_on(page: Page) -> tuple[float, float]:
     """Where the first robot's end-point is in the window."""
     box = page.locator("canvas").first.bounding_box()
     assert box
-    x, y = page.evaluate("onpath.views[0].pixel(onpath.simulation.benches[0].tip())")
+    x, y = page.evaluate("onpath.views[0].pixel(onpath.simulation.sides[0].tip())")
     return box["x"] + x, box["y"] + y
 
 
@@ -592,14 +592,14 @@ def test_why_a_robot_has_stopped_is_said_as_in_the_lab(browser: Browser, tmp_pat
     opened.press("Pause")
     opened.press("Reset")
     opened.page.evaluate(  # a joint is thrown
-        """const {state, kernels} = onpath.simulation.benches[0], {q} = onpath.data.state
+        """const {state, kernels} = onpath.simulation.sides[0], {q} = onpath.data.state
         kernels.numbers[state + q[0] + q[1]] = 1e4"""
     )
     opened.do(("advance", 50))
     opened.page.evaluate(THREE_FRAMES)
     said = opened.page.locator(".note").inner_text()
     assert said.startswith("Trajectory tracking stopped at 0.0 s: a joint turns faster than 100")
-    assert opened.number("onpath.simulation.benches[1].stopped") == 0
+    assert opened.number("onpath.simulation.sides[1].stopped") == 0
     assert max(map(abs, opened.number(SPEEDS))) < 100  # it is seen as it was before that
     opened.press("Reset")
     opened.page.evaluate(THREE_FRAMES)

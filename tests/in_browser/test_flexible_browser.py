@@ -16,7 +16,7 @@ from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab import commands as c
 from onpath.app.scene.stage_catalogue import HORIZONTAL, IN_PATH_PLANE
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import RIGHT
+from onpath.models.control.sides import RIGHT
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE
 from onpath.models.systems.flexible_robot import UNSTABLE
 from tests.support.browser import Tab, wait_for
@@ -68,16 +68,16 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
 
     def pulled() -> np.ndarray:
-        return lab.session.robot.place(lab.session.grips.hands[FOLLOWER])
+        return lab.session.robot.place(lab.session.forces.hands[FOLLOWER])
 
     with tab.dragging(start, (start[0] + 45, start[1] + 25)):
-        wait_for(lambda: lab.session.grips.hands and np.linalg.norm(pulled() - before) > 0.01)
+        wait_for(lambda: lab.session.forces.hands and np.linalg.norm(pulled() - before) > 0.01)
         moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
         tab.ask(c.SetRunning(True))
         wait_for(lambda: deflection(tab) > 1e-3)
-    wait_for(lambda: not lab.session.grips.hands)
+    wait_for(lambda: not lab.session.forces.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
     assert tab.said() == ""
 

@@ -86,7 +86,7 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
     pupil.act("Open lesson 1: Path or timetable?")
     pupil.arrive(0)
     pupil.press("h")
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     pupil.press("h")
     pupil.act("Next")
 

@@ -198,24 +198,24 @@ def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> Non
     before = tab.lab.asked
     tab.focus(tab.button("Hold both back").first)
     tab.page.keyboard.press(key)
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     assert asked_since(tab, before) == 1 and tab.session.running
 
 
 def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> None:
     lab = tab.lab
     tab.button("Hold both back").first.click()
-    wait_for(lambda: lab.session.grips.held)
+    wait_for(lambda: lab.session.forces.held)
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
             tab.focus(control)
-        held = bool(lab.session.grips.held)
+        held = bool(lab.session.forces.held)
         tab.page.keyboard.press("h")
-        wait_for(lambda held=held: bool(lab.session.grips.held) is not held)
+        wait_for(lambda held=held: bool(lab.session.forces.held) is not held)
         tab.page.keyboard.press("d")
-        wait_for(lambda: lab.session.grips.hands)
+        wait_for(lambda: lab.session.forces.hands)
         tab.page.keyboard.press("x")
-        wait_for(lambda: not lab.session.grips.hands)
+        wait_for(lambda: not lab.session.forces.hands)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:

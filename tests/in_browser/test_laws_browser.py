@@ -1,4 +1,4 @@
-"""The laws of the benches, chosen with a real mouse."""
+"""The laws of the sides, chosen with a real mouse."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.share_code import encode
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.own import PATH_FOLLOWING, VIEW
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough

@@ -128,12 +128,12 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
 def hold_for(tab: Tab, seconds: float) -> None:
     """Hold both robots back by the button, for some simulated seconds."""
     tab.button("Hold both back").first.click()
-    wait_for(lambda: tab.session.grips.held)
+    wait_for(lambda: tab.session.forces.held)
     tab.ask(c.SetRunning(True))
     begin = tab.session.time
     wait_for(lambda: tab.session.time > begin + seconds)
     tab.button("Let both go").first.click()
-    wait_for(lambda: not tab.session.grips.held)
+    wait_for(lambda: not tab.session.forces.held)
 
 
 def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab) -> None:

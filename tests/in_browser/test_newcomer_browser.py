@@ -15,7 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from tests.in_browser.test_pointer_browser import ARROWS, SCENES
 from tests.support.browser import WAIT, Tab, wait_for
 
@@ -129,7 +129,7 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
     expect(plot).to_be_in_viewport(ratio=1)
     box = plot.bounding_box()
     assert box is not None
-    wait_for(lambda: all(tab.placed(name, tab.tip(name))[1] < box["y"] for name in BENCHES))
+    wait_for(lambda: all(tab.placed(name, tab.tip(name))[1] < box["y"] for name in SIDES))
     expect(tab.page.get_by_role("heading").first).to_be_in_viewport()
     take(tab, 1)
     expect(plot).to_have_count(0)

@@ -11,7 +11,7 @@ pytest.importorskip("playwright")
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.support.browser import Tab, wait_for
 
 TRACKER, FOLLOWER = LEFT, RIGHT
@@ -38,7 +38,7 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     start = tab.placed(name, before[name])
     goal = start[0] - 40, start[1] + 30
     with tab.dragging(start, goal):
-        wait_for(lambda: lab.session.grips.grabbed == name and len(lab.session.grips.hands) == 2)
+        wait_for(lambda: lab.session.forces.grabbed == name and len(lab.session.forces.hands) == 2)
         wait_for(lambda: math.dist(tab.placed(name, hand_targets(lab)[name]), goal) < 12)
         pulled = hand_targets(lab)
         moved = {each: pulled[each] - before[each] for each in pulled}
@@ -48,13 +48,14 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
         for each, run in lab.session.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
             assert np.linalg.norm(run.shown()["force"]) > 0.1
-    wait_for(lambda: lab.session.grips.grabbed is None and not lab.session.grips.hands)
+    wait_for(lambda: lab.session.forces.grabbed is None and not lab.session.forces.hands)
 
 
 def hand_targets(lab: Lab) -> dict[str, np.ndarray]:
     """Positions of the pulling hands, in the path's plane, shape (2,) each, [m]."""
     return {
-        name: lab.session.robot.frame.planar(hand) for name, hand in lab.session.grips.hands.items()
+        name: lab.session.robot.frame.planar(hand)
+        for name, hand in lab.session.forces.hands.items()
     }
 
 
@@ -64,8 +65,8 @@ def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
     stop_between_control_points(tab)
     start = tab.placed(TRACKER, tab.tip(TRACKER))
     with tab.dragging(start, (start[0] - 30, start[1])):
-        wait_for(lambda: tab.session.grips.hands)
-        assert list(tab.session.grips.hands) == [TRACKER]
+        wait_for(lambda: tab.session.forces.hands)
+        assert list(tab.session.forces.hands) == [TRACKER]
     tab.page.get_by_label("Copy to both").check()
     wait_for(lambda: tab.session.copy)
 

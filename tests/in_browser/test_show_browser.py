@@ -16,7 +16,7 @@ from playwright.sync_api import Browser, expect
 from onpath.app.common import palette
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import RIGHT
+from onpath.models.control.sides import RIGHT
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -77,8 +77,8 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
 
     end = tab.placed(RIGHT, tab.tip(RIGHT))
     with tab.dragging(end, (end[0] + 40, end[1] - 20)):  # nothing of it is in the mouse's way
-        wait_for(lambda: tab.session.grips.grabbed == RIGHT)
-    wait_for(lambda: tab.session.grips.grabbed is None)
+        wait_for(lambda: tab.session.forces.grabbed == RIGHT)
+    wait_for(lambda: tab.session.forces.grabbed is None)
 
     tab.ask(c.SetLanguage("de"))  # the page is built anew, and shows the same
     wait_for(tab.is_built)

@@ -145,7 +145,7 @@ def test_with_one_thumb_on_a_telephone(browser: Browser, addresses: dict[str, st
     assert page.evaluate("site.stage.simulation.held")
     reader.button("Pause").tap()
     x, y = reader.place(page.locator(".step.open .robot canvas").first)
-    tip = "site.stage.figure.views[0].pixel(site.stage.simulation.benches[0].tip())"
+    tip = "site.stage.figure.views[0].pixel(site.stage.simulation.sides[0].tip())"
     dx, dy = page.evaluate(tip)
     pulled = "site.stage.simulation.happenings.map(each => each.name)"
     reader.swipe(*([x + dx, y + dy - way] for way in (0, 10, 20, 30)))

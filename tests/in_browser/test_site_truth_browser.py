@@ -14,13 +14,13 @@ import pytest
 from onpath.app.exports.site.task_data import check_data, check_words
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.assets import asset_path
-from onpath.lessons.benches import robot_names
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.record import Record
+from onpath.lessons.sides import robot_names
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN, short_name
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.path_design import presets
 from tests.support.random_records import some_check, some_record
 from tests.support.site_export import LESSON, exported_site
@@ -191,7 +191,7 @@ def test_checks_say_and_decide_what_the_lab_s_do(
 
 def as_data(record: Record) -> dict[str, Any]:
     """A record as the page keeps one."""
-    laws = {bench: short_name(law) for bench, law in {**DEFAULT_LAWS, **record.laws}.items()}
+    laws = {side: short_name(law) for side, law in {**DEFAULT_LAWS, **record.laws}.items()}
     gains = {
         name: getattr(record.parameters, name) for name in ("K1", "K2", "task", "encoder_counts")
     }

@@ -120,7 +120,7 @@ def test_on_a_telephone_a_step_and_the_buttons_it_speaks_of_are_seen_together(
     tab.ask(c.SetRunning(True))
     hold.tap()
     tab.page.locator("#op-bar").get_by_role("button", name="Let go").wait_for()
-    assert tab.session.grips.held and is_seen(tab, 9)
+    assert tab.session.forces.held and is_seen(tab, 9)
     tab.ask(TakeStep(LESSON, 1))  # a prediction to sketch
     wait_for(lambda: is_seen(tab, 1))
     tab.page.locator("#op-bar").wait_for(state="hidden")

@@ -16,7 +16,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, Download, Page
 
 from onpath.app.server.lab_server import LabServer
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.bench.mouse_latency import NO_TRIANGLES
 from tests.support.browser import SELDOM, THREE_FRAMES, Tab, wait_for
 from tests.support.csv_columns import read_csv
@@ -130,7 +130,7 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
             assert 0 < x < 390 and 0 < y < 0.5 * 844
     tab.button("Hold both back").scroll_into_view_if_needed()
     tab.press("Hold both back")
-    wait_for(lambda: len(tab.session.grips.held) == 2)
+    wait_for(lambda: len(tab.session.forces.held) == 2)
     assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
     context.close()
 

@@ -16,7 +16,7 @@ from onpath.app.lab import commands as c
 from onpath.app.scene.wall_nodes import ARM
 from onpath.app.server.lab_server import LabServer
 from onpath.models.closed_loop.obstacles import Wall
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -57,7 +57,7 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
     with tab.dragging(tab.placed(RIGHT, end), tab.placed(RIGHT, goal)):
         wait_for(lambda: abs(wall_of(tab).angle - (0.5 - math.pi / 2)) < 0.05)
     assert wall_of(tab).place == pytest.approx(now.place)
-    assert not session.grips.hands and session.editor.design.name == "circle"
+    assert not session.forces.hands and session.editor.design.name == "circle"
     for key, moved in (("l", [0.002, 0.0]), ("k", [0.0, -0.002])):
         before = wall_of(tab)
         keyboard.press(key)
@@ -96,7 +96,7 @@ def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
     goal = np.array([0.03, 0.07])
     with tab.dragging(tab.placed(RIGHT, start), tab.placed(RIGHT, goal)):
         wait_for(lambda: np.linalg.norm(session.start.place(session.editor.curve) - goal) < NEAR)
-    assert not session.grips.hands and session.editor.design.name == "circle"
+    assert not session.forces.hands and session.editor.design.name == "circle"
     expect(tab.number("Beside the path")).not_to_have_value("0")
     tab.enter("Speed along", "150")
     wait_for(lambda: session.start.along == pytest.approx(0.15))

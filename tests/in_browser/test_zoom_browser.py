@@ -124,6 +124,6 @@ def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 6))
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for()
     tab.page.locator("#op-bar").get_by_role("button", name="Hold back").click()
-    wait_for(lambda: tab.session.grips.held)
+    wait_for(lambda: tab.session.forces.held)
     expect(tab.slider("K1")).to_be_in_viewport()
     tab.ask(c.Hold(False))

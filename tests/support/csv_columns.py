@@ -9,14 +9,14 @@ import numpy as np
 
 from onpath.models.arrays import Array
 
-TEXTS = ("bench", "law")
+TEXTS = ("side", "law")
 
 
 def read_csv(file: TextIO) -> dict[str, dict[str, Array]]:
-    """Columns by the bench, or the law if there is none: column name -> array."""
+    """Columns by the side, or the law if there is none: column name -> array."""
     rows: dict[str, list[dict[str, str]]] = {}
     for row in csv.DictReader(file):
-        rows.setdefault(row.get("bench", row["law"]), []).append(row)
+        rows.setdefault(row.get("side", row["law"]), []).append(row)
     return {
         name: {
             column: np.array([float(row[column]) for row in own])

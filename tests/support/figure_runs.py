@@ -27,14 +27,14 @@ from onpath.models.systems.parameters import time_step
 Act = tuple[str, Any]
 """("advance", ticks), ("hold", on), ("set", (slider, value)), ("choose", path), ("reset", None),
 ("pull", metres to the right and up in the picture, or None), ("move", (point, its new place)),
-("drop", None), ("change", (bench, law))."""
+("drop", None), ("change", (side, law))."""
 
 
 LOOPS = LoopCache()
 LOOPS.close()  # nothing is compiled
 
 
-class PythonBench:
+class PythonSide:
     """One robot of a figure."""
 
     def __init__(self, figure: FigureChoice, law: str, curve: Curve) -> None:
@@ -100,7 +100,7 @@ class PythonFigure:
             PathEditor(figure.machine, design_of(*path)) for path in figure.paths.items()
         ]
         self.editor, self.curve = self.editors[0], next(iter(figure.paths.values()))
-        self.benches = [PythonBench(figure, law, self.curve) for law in figure.laws]
+        self.sides = [PythonSide(figure, law, self.curve) for law in figure.laws]
 
     def act(self, act: Act) -> None:
         """Do what a reader does."""
@@ -108,8 +108,8 @@ class PythonFigure:
         if what == "advance":
             self.editor.advance(value * time_step(self.figure.parameters))
         if what in ("advance", "hold", "set", "pull", "change"):
-            for number, bench in enumerate(self.benches):
-                self._act_on(bench, number, what, value)
+            for number, side in enumerate(self.sides):
+                self._act_on(side, number, what, value)
         elif what == "move":
             with suppress(CodedError):  # there is no such curve
                 self.editor.drag(value[0], np.array(value[1]))
@@ -120,27 +120,27 @@ class PythonFigure:
             self._begin()
         self.held = value if what == "hold" else self.held
 
-    def _act_on(self, bench: PythonBench, number: int, what: str, value: Any) -> None:
+    def _act_on(self, side: PythonSide, number: int, what: str, value: Any) -> None:
         if what == "advance":
-            bench.curve = self.editor.curve
-            bench.advance(value)
+            side.curve = self.editor.curve
+            side.advance(value)
         elif what == "hold" and value != self.held:
-            bench.hold(value)
+            side.hold(value)
         elif what == "set":
             name = self.figure.sliders[value[0]]
-            bench.parameters = changed(bench.parameters, name, value[1])
+            side.parameters = changed(side.parameters, name, value[1])
         elif what == "pull":
-            bench.pull(value)
+            side.pull(value)
         elif what == "change" and number == value[0]:
-            bench.change(self.figure.every_law[value[1]])
+            side.change(self.figure.every_law[value[1]])
 
     def _begin(self) -> None:
         self.editor.finish()
         self.editor.settle()
         self.held = False
-        for bench in self.benches:
-            bench.begin(self.editor.curve, self.editor.design.name == "edited")
+        for side in self.sides:
+            side.begin(self.editor.curve, self.editor.design.name == "edited")
 
     def rows(self) -> list[Array]:
         """The last row of each log."""
-        return [bench.row for bench in self.benches]
+        return [side.row for side in self.sides]

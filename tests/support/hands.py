@@ -17,8 +17,8 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
 from onpath.app.page.panels.widgets import label_of
 from onpath.lessons.words import ENGLISH
-from onpath.models.control.benches import RIGHT
 from onpath.models.control.settable import specs, value_of
+from onpath.models.control.sides import RIGHT
 from tests.support.browser import Tab, wait_for
 
 ROBOT = RIGHT
@@ -178,14 +178,14 @@ class Pull:
     seconds: float
 
     def __call__(self, hands: Hands) -> None:
-        tab, grips = hands.tab, hands.session.grips
+        tab, forces = hands.tab, hands.session.forces
         tip = tab.tip(ROBOT)
         hand = tip + np.array([self.right, self.up]) / 1e3
         with hands.dragging(tab.placed(ROBOT, tip), tab.placed(ROBOT, hand)):
-            wait_for(lambda: grips.grabbed == ROBOT)
-            wait_for(lambda: hands.is_near(grips.hands[ROBOT], hand))
+            wait_for(lambda: forces.grabbed == ROBOT)
+            wait_for(lambda: hands.is_near(forces.hands[ROBOT], hand))
             hands.tab.elapse(self.seconds)
-        wait_for(lambda: not grips.hands)
+        wait_for(lambda: not forces.hands)
 
 
 @dataclass(frozen=True)
@@ -203,7 +203,7 @@ class DragBall:
         with hands.dragging(tab.placed(ROBOT, points[index]), tab.placed(ROBOT, end)):
             wait_for(lambda: np.linalg.norm(editor.points()[index] - end) < NEAR)
         wait_for(lambda: editor.design.points is not points)
-        assert not hands.session.grips.hands
+        assert not hands.session.forces.hands
 
 
 Gesture = Wait | Press | Key | Enter | Slide | Choose | Pull | DragBall

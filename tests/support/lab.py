@@ -16,8 +16,8 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.trajectory import Trajectory, join
-from onpath.models.control.benches import BENCHES, LEFT, RIGHT
 from onpath.models.control.settable import specs, value_of
+from onpath.models.control.sides import LEFT, RIGHT, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.parameter_specs import checked
 
@@ -61,9 +61,9 @@ def do(lab: Lab, *commands: Command) -> None:
 
 
 def replayed(session: Session) -> dict[str, Trajectory]:
-    """What both robots did in the last minute, millisecond by millisecond, by bench."""
+    """What both robots did in the last minute, millisecond by millisecond, by side."""
     runs = replay(session.robot, session.history.all())
-    return {bench: join("", parts) for bench, parts in runs.items()}
+    return {side: join("", parts) for side, parts in runs.items()}
 
 
 def states(session: Session) -> dict[str, np.ndarray]:
@@ -90,7 +90,7 @@ def assert_sound(lab: Lab) -> None:
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
     assert 0.125 <= lab.session.rate <= 4
-    assert lab.session.grips.held <= set(BENCHES) and set(lab.session.grips.hands) <= set(BENCHES)
+    assert lab.session.forces.held <= set(SIDES) and set(lab.session.forces.hands) <= set(SIDES)
     assert lab.session.viewing is None or not lab.session.running
     assert_drawable(take_snapshot(lab, 1.0))
 

@@ -52,7 +52,7 @@ def _value(spec: Spec) -> st.SearchStrategy[Any]:
 
 
 @st.composite
-def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
+def sides(draw: st.DrawFn, robot: str) -> RobotSetup:
     """A set-up of one robot, as `capture` makes it."""
     lab = ROBOTS[robot].parameters()
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
@@ -65,7 +65,7 @@ def benches(draw: st.DrawFn, robot: str) -> RobotSetup:
 def setups(draw: st.DrawFn) -> Setup:
     """A set-up of a lab, as `capture` makes it."""
     names = draw(st.lists(st.sampled_from(list(ROBOTS)), unique=True, max_size=2))
-    found = {name: draw(benches(name)) for name in sorted(names)}
+    found = {name: draw(sides(name)) for name in sorted(names)}
     return Setup(
         robot=draw(st.sampled_from(list(ROBOTS))),
         robots={name: robot for name, robot in found.items() if robot != RobotSetup()},

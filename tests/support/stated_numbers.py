@@ -18,11 +18,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
-from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.measures.stated import take_stated
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.schema import Lesson
+from onpath.lessons.sides import ROLES
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from tests.support.checkout import ROOT
@@ -153,7 +153,7 @@ def _played(lab: Lab, script: Script) -> Run:
     lab.script, lab.session.running = player_of(script), True
     while lab.script is not None:
         run(lab, 0.1)
-    return {ROLES[bench]: _motion(each) for bench, each in replayed(lab.session).items()}
+    return {ROLES[side]: _motion(each) for side, each in replayed(lab.session).items()}
 
 
 def _motion(run: Trajectory) -> Motion:

@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from onpath.app.viser_adapter.places import place_of, storage_key
+from onpath.app.viser_adapter.addresses import place_of, storage_key
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.simulated_browser import MOVING
 

@@ -10,10 +10,10 @@ from onpath.app.exports.report_plot import draw_prediction
 from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Truth
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Sketch
+from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words
 
 ROUND = (1.0, 2.0, 5.0, 10.0)  # tops of an axis, times a power of ten

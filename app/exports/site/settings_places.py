@@ -29,13 +29,13 @@ def writes(figure: FigureChoice, values: Mapping[str, Value], before: Parameters
         before: the parameters until then.
 
     Raises:
-        Unsupported: the loop would be another one, or the benches would need different numbers.
+        Unsupported: the loop would be another one, or the sides would need different numbers.
     """
     after = with_values(before, values)
-    per_bench = [_writes(figure, law, values, before, after) for law in figure.laws]
-    if any(own != per_bench[0] for own in per_bench):
-        raise Unsupported(f"{', '.join(values)}: another number for each bench")
-    return per_bench[0]
+    per_side = [_writes(figure, law, values, before, after) for law in figure.laws]
+    if any(own != per_side[0] for own in per_side):
+        raise Unsupported(f"{', '.join(values)}: another number for each side")
+    return per_side[0]
 
 
 def _writes(

@@ -51,12 +51,12 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
         Unsupported: a figure cannot do it.
     """
     what = action.what
-    bench = {"bench": _bench(action.only)}
+    side = {"side": _side(action.only)}
     if what == "hold":
-        return {"hold": action.hold, **bench}
+        return {"hold": action.hold, **side}
     if what == "pull":
         assert action.pull is not None
-        return {"pull": _in_picture(figure, action.pull), **bench}
+        return {"pull": _in_picture(figure, action.pull), **side}
     if what == "set":
         values = action.set or {}
         return {"set": values, "write": writes(figure, values, parameters)}
@@ -67,8 +67,8 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
     raise Unsupported(f"{what}: only in the lab")
 
 
-def _bench(only: RobotName | str) -> int | None:
-    """Number of the bench that an action concerns; None: all."""
+def _side(only: RobotName | str) -> int | None:
+    """Number of the side that an action concerns; None: all."""
     return list(ROBOTS).index(only) if only in ROBOTS else None  # type: ignore[arg-type]
 
 

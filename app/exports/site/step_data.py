@@ -11,7 +11,6 @@ from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_
 from onpath.app.exports.site.task_data import task_data
 from onpath.lessons.adaptive.branches import answers_meant
 from onpath.lessons.adaptive.own_numbers import filled, marked
-from onpath.lessons.benches import robot_names
 from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
@@ -25,6 +24,7 @@ from onpath.lessons.schema import (
     Step,
     Text,
 )
+from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Reference, Setting, Task
 from onpath.lessons.words import Words
 from onpath.models.control.settable import values_of

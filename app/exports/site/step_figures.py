@@ -17,8 +17,8 @@ from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets

@@ -8,7 +8,6 @@ from typing import Any
 
 import msgspec
 
-from onpath.lessons.benches import robot_names
 from onpath.lessons.checks import (
     bound_words,
     compare_words,
@@ -18,12 +17,13 @@ from onpath.lessons.checks import (
 )
 from onpath.lessons.labels import setting_label, value_label
 from onpath.lessons.record import ROBOTS as ROLES
+from onpath.lessons.sides import robot_names
 from onpath.lessons.task_schema import Bound, Check, Compare, Event, Only, Order, Setting, Task
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs, values_of
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters

@@ -21,10 +21,10 @@ from onpath.models.closed_loop.simulation import (
     raised,
     settings_vector,
 )
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import law_name, law_named
 from onpath.models.control.settable import changed, specs, with_values
+from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.errors import CodedError, said_by
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
@@ -45,12 +45,12 @@ class FigureChoice:
 
     Attributes:
         robot: name in the catalogue.
-        laws: of the benches, from left to right: one or two.
+        laws: of the sides, from left to right: one or two.
         paths: name -> curve; it begins with the first one.
         parameters: of the robot, the laws and the task.
         sliders: names of parameters that readers may change; each is a number of the settings.
         controls: some of `CONTROLS`.
-        choices: further laws, which readers may choose for each bench.
+        choices: further laws, which readers may choose for each side.
     """
 
     robot: str
@@ -63,7 +63,7 @@ class FigureChoice:
 
     @property
     def every_law(self) -> tuple[str, ...]:
-        """The laws of the benches, then those to choose besides, each once."""
+        """The laws of the sides, then those to choose besides, each once."""
         return tuple(dict.fromkeys((*self.laws, *self.choices)))
 
     @property
@@ -77,15 +77,15 @@ class FigureChoice:
         return self.entry.make(self.parameters)
 
     def kind(self, law: str, curve: Curve) -> Kind:
-        """The kind of a bench's loop."""
+        """The kind of a side's loop."""
         return kind_of(law, self.parameters, raised(curve, self.parameters))
 
     def kernel(self, law: str, curve: Curve) -> Kernel:
-        """The loop of a bench on a path."""
+        """The loop of a side on a path."""
         return kernel_of(self.machine, self.kind(law, curve))
 
     def start(self, law: str, curve: Curve) -> Array:
-        """The first state of a bench: at rest on the path at θ = 0."""
+        """The first state of a side: at rest on the path at θ = 0."""
         followed = raised(curve, self.parameters)
         kernel = self.kernel(law, curve)
         return first_state(self.machine, kernel, followed, self.start_at(curve))
@@ -96,7 +96,7 @@ class FigureChoice:
         return robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
 
     def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
-        """The settings of a bench, with nothing in its way."""
+        """The settings of a side, with nothing in its way."""
         own = parameters or self.parameters
         kernel = self.kernel(law, curve)
         return settings_vector(self.machine, kernel, own, raised(curve, own), FREE)
@@ -125,7 +125,7 @@ def chosen(
     """
     if robot not in ROBOTS:
         raise unknown_name(robot, list(ROBOTS), "robot")
-    if not 1 <= len(laws) <= len(BENCHES):
+    if not 1 <= len(laws) <= len(SIDES):
         raise ValueError(f"laws: expected one or two, got {len(laws)}")
     entry = ROBOTS[robot]
     parameters = with_values(entry.parameters(), values or {})

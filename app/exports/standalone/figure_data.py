@@ -21,7 +21,7 @@ from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.scene.captions import FULL, OFF, RETURNS
 from onpath.app.scene.tones import DARK, LIGHT, Tones
-from onpath.lessons.benches import law_text, law_titles
+from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
@@ -32,15 +32,15 @@ from onpath.models.closed_loop.page_functions import (
     stop_reasons,
 )
 from onpath.models.closed_loop.simulation import raised
-from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import specs, value_of
-from onpath.models.page.edit import CHECKS, OUTLINE, ROW
-from onpath.models.page.fit import FINE, PIECE
-from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
+from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.systems.parameters import time_step
+from onpath.models.web_export.edit import CHECKS, OUTLINE, ROW
+from onpath.models.web_export.fit import FINE, PIECE
+from onpath.models.web_export.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 
 
 def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
@@ -58,7 +58,7 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "log": _places(
             kernel.log, ("q", "v", "y", "theta", "theta_ref", "u", "force", "far", "integral_used")
         ),
-        "benches": _benches(figure),
+        "sides": _sides(figure),
         "laws": _laws(figure, words),
         "choices": [figure.every_law.index(law) for law in _choices(figure)],
         "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
@@ -96,7 +96,7 @@ _EDIT = {
     "blend": BLEND,
     "nudge": NUDGE,
 }
-"""Sizes of vectors of models/page; and as in the lab: how often
+"""Sizes of vectors of models/web_export; and as in the lab: how often
 a refused way is halved, seconds of a blend, and the step of a key, [m]."""
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
@@ -137,13 +137,13 @@ def _sizes(figure: FigureChoice, kernel: Kernel) -> dict[str, int]:
     }
 
 
-def _benches(figure: FigureChoice) -> list[dict[str, Any]]:
-    names = BENCHES if len(figure.laws) > 1 else (RIGHT,)
+def _sides(figure: FigureChoice) -> list[dict[str, Any]]:
+    names = SIDES if len(figure.laws) > 1 else (RIGHT,)
     return [
         {
             "law": figure.every_law.index(law),
-            "colour": palette.OF_BENCH[name].hex,
-            "dark": palette.OF_BENCH[name].toward(palette.INK, 0.45).hex,
+            "colour": palette.OF_SIDE[name].hex,
+            "dark": palette.OF_SIDE[name].toward(palette.INK, 0.45).hex,
         }
         for name, law in zip(names, figure.laws, strict=True)
     ]

@@ -12,18 +12,18 @@ from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import measurements, page_functions
 from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
-from onpath.models.page.edit import edit_functions, edit_scans
-from onpath.models.page.fit import (
+from onpath.models.paths.curve_fit import control_points
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.path_design import PathDesign, presets
+from onpath.models.web_export.edit import edit_functions, edit_scans
+from onpath.models.web_export.fit import (
     arc_scan,
     resample_scan,
     spline_function,
     table_function,
 )
-from onpath.models.page.poles import pole_functions, roots_scan
-from onpath.models.page.states import begin_function, change_function
-from onpath.models.paths.curve_fit import control_points
-from onpath.models.paths.curves import Curve
-from onpath.models.paths.path_design import PathDesign, presets
+from onpath.models.web_export.poles import pole_functions, roots_scan
+from onpath.models.web_export.states import begin_function, change_function
 
 Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
 

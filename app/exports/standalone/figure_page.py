@@ -8,7 +8,7 @@ from hashlib import sha256
 from onpath.app.common.templates import inlined, json_block, render, styled
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
-from onpath.lessons.benches import law_label
+from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
 
 POLICY = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from onpath.lessons.words import Words
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
 from onpath.models.paths.path_checks import TUBE
 
@@ -13,7 +13,7 @@ PLAIN = (
     *("standalone.path", "standalone.plot", "standalone.law", "standalone.late"),
     *("standalone.coincide", "standalone.drag_hint"),
     *("gains.across", "gains.along"),
-    *(f"bench.{bench}" for bench in BENCHES),
+    *(f"side.{side}" for side in SIDES),
 )
 _BEHAVIOURS = (
     *("behaviour.no_overshoot", "behaviour.no_oscillation", "behaviour.damping"),
@@ -31,7 +31,7 @@ _FILLED = {
     "standalone.scene": ("law",),
     "standalone.refused": ("reason",),
     "standalone.selected": ("number", "all"),
-    "bench.title": ("law", "side"),
+    "side.title": ("law", "side"),
     "say.no_further": ("reasons",),
     "say.stopped": ("robot", "time", "reason"),
     "gains.poles": ("poles",),

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import out_of_range, unknown_name
 
@@ -52,12 +52,12 @@ def point(value: Array, size: int) -> Array:
     return checked
 
 
-def bench(name: str) -> str:
-    """Check the name of a bench.
+def side(name: str) -> str:
+    """Check the name of a side.
 
     Raises:
-        ValueError: there is no such bench.
+        ValueError: there is no such side.
     """
-    if name not in BENCHES:
-        raise unknown_name(name, list(BENCHES), "bench")
+    if name not in SIDES:
+        raise unknown_name(name, list(SIDES), "side")
     return name

@@ -26,7 +26,7 @@ class Freeze(Command):
         if self.on == lab.frozen:
             return
         if self.on:
-            lab.session.grips.release()
+            lab.session.forces.release()
             if lab.session.editor.proposed is not None:  # a point is being dragged
                 finish(lab)
         lab.frozen = self.on

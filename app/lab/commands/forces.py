@@ -12,7 +12,7 @@ from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.obstacles import check_direction
-from onpath.models.control.benches import BENCHES, RIGHT
+from onpath.models.control.sides import RIGHT, SIDES
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,20 +20,20 @@ class Hold(Command):
     """Hold end-points back, or release them; None toggles.
 
     Attributes:
-        bench: whose end-point; None means both. See `SetCopy`.
+        side: whose end-point; None means both. See `SetCopy`.
     """
 
     on: bool | None = None
-    bench: str | None = None
+    side: str | None = None
 
     @override
     def apply(self, lab: Lab) -> None:
         lab.return_to_present()
-        session, names = lab.session, list[str](BENCHES)
-        if self.bench is not None:
-            names = session.targets(checks.bench(self.bench))
-        on = not session.grips.held.intersection(names) if self.on is None else self.on
-        session.grips.hold(names, on, session.editor.curve, session.hold_direction)
+        session, names = lab.session, list[str](SIDES)
+        if self.side is not None:
+            names = session.targets(checks.side(self.side))
+        on = not session.forces.held.intersection(names) if self.on is None else self.on
+        session.forces.hold(names, on, session.editor.curve, session.hold_direction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,9 +51,9 @@ class SetHoldDirection(Command):
         direction = check_direction(self.direction)
         lab.return_to_present()
         session = lab.session
-        session.hold_direction, held = direction, sorted(session.grips.held)
-        session.grips.hold(held, False, session.editor.curve)
-        session.grips.hold(held, True, session.editor.curve, direction)
+        session.hold_direction, held = direction, sorted(session.forces.held)
+        session.forces.hold(held, False, session.editor.curve)
+        session.forces.hold(held, True, session.editor.curve, direction)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,27 +65,27 @@ class Grab(Command):
             because the flexible arm can also be pulled within a horizontal plane.
     """
 
-    bench: str
+    side: str
     target: Array
 
     @override
     def apply(self, lab: Lab) -> None:
-        name = checks.bench(self.bench)
+        name = checks.side(self.side)
         target = checks.point(self.target, lab.session.robot.system.p)
         lab.return_to_present()
-        lab.session.grips.grab(name, target, lab.session.targets(name))
+        lab.session.forces.grab(name, target, lab.session.targets(name))
 
 
 @dataclass(frozen=True, slots=True)
 class Release(Command):
-    """Release the end-points; with a bench, only if that robot's is being pulled."""
+    """Release the end-points; with a side, only if that robot's is being pulled."""
 
-    bench: str | None = None
+    side: str | None = None
 
     @override
     def apply(self, lab: Lab) -> None:
-        if self.bench in (None, lab.session.grips.grabbed):
-            lab.session.grips.release()
+        if self.side in (None, lab.session.forces.grabbed):
+            lab.session.forces.release()
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +99,10 @@ class MoveHand(Command):
     def apply(self, lab: Lab) -> None:
         by = np.array([checks.finite(self.right), checks.finite(self.up)])
         lab.return_to_present()
-        session, grips = lab.session, lab.session.grips
-        name = grips.grabbed or RIGHT
-        target = grips.hands.get(name, session.runs[name].shown()["y"])
-        grips.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
+        session, forces = lab.session, lab.session.forces
+        name = forces.grabbed or RIGHT
+        target = forces.hands.get(name, session.runs[name].shown()["y"])
+        forces.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,32 +8,32 @@ from typing_extensions import override
 
 from onpath.app.lab.commands import checks
 from onpath.app.lab.lab import Command, Lab
-from onpath.models.control.benches import checked_laws
 from onpath.models.control.laws.own import own_law
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError
 
 
 @dataclass(frozen=True, slots=True)
 class ChooseLaw(Command):
-    """Change the control law of a bench, whose robot moves on from where it is.
+    """Change the control law of a side, whose robot moves on from where it is.
 
     Attributes:
-        bench: one of `models.control.benches.BENCHES`.
+        side: one of `models.control.sides.SIDES`.
         law: the name of a law of the registry, or a typed law; see `law_named`.
     """
 
-    bench: str
+    side: str
     law: str
 
     @override
     def apply(self, lab: Lab) -> None:
         session = lab.session
-        law = checked_laws({self.bench: self.law}, session.entry)[self.bench]
+        law = checked_laws({self.side: self.law}, session.entry)[self.side]
         if not session.suits(law):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
-        session.choose_law(self.bench, law)
-        if lab.law_refusals.pop(self.bench, ""):
+        session.choose_law(self.side, law)
+        if lab.law_refusals.pop(self.side, ""):
             lab.clear_message()
 
 
@@ -42,19 +42,19 @@ class TypeLaw(Command):
     """Change to a law that the user has typed; if it is refused, its panel tells why.
 
     Attributes:
-        bench: see `ChooseLaw`.
+        side: see `ChooseLaw`.
         text: see `models.control.laws.own`.
     """
 
-    bench: str
+    side: str
     text: str
 
     @override
     def apply(self, lab: Lab) -> None:
-        bench = checks.bench(self.bench)
+        side = checks.side(self.side)
         try:
             own_law(self.text)  # names of the registry are not typed laws
-            ChooseLaw(bench, self.text).apply(lab)
+            ChooseLaw(side, self.text).apply(lab)
         except ValueError as error:
-            lab.law_refusals[bench] = lab.words.sentence(error)
+            lab.law_refusals[side] = lab.words.sentence(error)
             raise

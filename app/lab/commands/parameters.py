@@ -9,7 +9,7 @@ from typing_extensions import override
 
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.session import Session
-from onpath.lessons.benches import law_label
+from onpath.lessons.sides import law_label
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.control.settable import changed
@@ -110,7 +110,7 @@ class ChooseRobot(Command):
             return
         before = lab.session.laws
         lab.session.choose_robot(ROBOTS[self.name])
-        unsuitable = [law for bench, law in before.items() if law != lab.session.laws[bench]]
+        unsuitable = [law for side, law in before.items() if law != lab.session.laws[side]]
         lab.show_message("")
         if unsuitable:
             names = ", ".join(law_label(law, lab.words) for law in dict.fromkeys(unsuitable))

@@ -27,7 +27,7 @@ class _PullAcross(Command):
     def apply(self, lab: Lab) -> None:
         session = lab.session
         rows = {name: run.shown() for name, run in session.runs.items()}
-        session.grips.pull({name: self._hand(session, row) for name, row in rows.items()})
+        session.forces.pull({name: self._hand(session, row) for name, row in rows.items()})
 
     @staticmethod
     def _hand(session: Session, row: dict[str, Array]) -> Array:
@@ -46,7 +46,7 @@ class Pulse(Command):
     def apply(self, lab: Lab) -> None:
         lab.return_to_present()
         session = lab.session
-        if lab.script is not None or session.grips.grabbed is not None:
+        if lab.script is not None or session.forces.grabbed is not None:
             return
         session.running = True
         begin, end = session.time, session.time + FRAMES * FRAME

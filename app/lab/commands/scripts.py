@@ -20,9 +20,9 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
 from onpath.app.lab.setups.setup import RATES
 from onpath.lessons.action_schema import Action, Laws, RobotName, RunStart, Script
-from onpath.lessons.benches import BENCH_OF
+from onpath.lessons.sides import SIDE_OF
 from onpath.models.closed_loop.start import Start
-from onpath.models.control.benches import BENCHES, checked_laws
+from onpath.models.control.sides import SIDES, checked_laws
 from onpath.models.errors import CodedError
 
 
@@ -39,7 +39,7 @@ class ScriptHold(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.grips.hold(_benches(self.only), self.on, lab.session.editor.curve)
+        lab.session.forces.hold(_sides(self.only), self.on, lab.session.editor.curve)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +56,10 @@ class ScriptPull(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session, name = lab.session, BENCH_OF[self.only or "follower"]
+        session, name = lab.session, SIDE_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
         there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
-        session.grips.grab(name, there, _benches(self.only))
+        session.forces.grab(name, there, _sides(self.only))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ class ScriptLaws(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        for bench, law in checked_laws(self.laws.named, lab.session.entry).items():
-            lab.session.change_law(bench, law)
+        for side, law in checked_laws(self.laws.named, lab.session.entry).items():
+            lab.session.change_law(side, law)
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,8 +130,8 @@ def player_of(script: Script) -> ScriptPlayer[Command]:
     return ScriptPlayer(timed, script.until)
 
 
-def _benches(only: RobotName | Literal[""]) -> list[str]:
-    return [BENCH_OF[only]] if only else list(BENCHES)
+def _sides(only: RobotName | Literal[""]) -> list[str]:
+    return [SIDE_OF[only]] if only else list(SIDES)
 
 
 def _laws(action: Action) -> list[Command]:

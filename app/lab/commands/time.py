@@ -173,6 +173,6 @@ def _look_back(lab: Lab, ago: float) -> None:
         return
     if session.viewing is None:
         lab.show_message(words("say.looking_back"))
-    if session.grips.hands:
+    if session.forces.hands:
         lab.show_message(words("say.looking_back") + " " + words("say.let_go"))
     look_back(session, ago)

@@ -16,8 +16,8 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of
-from onpath.models.control.benches import RIGHT
 from onpath.models.control.settable import changed, specs
+from onpath.models.control.sides import RIGHT
 from onpath.models.errors import CodedError
 from onpath.models.studies.identification import (
     BALANCE,
@@ -34,7 +34,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use
-MEASURED = RIGHT  # the bench whose record is used; any would do, under any law
+MEASURED = RIGHT  # the side whose record is used; any would do, under any law
 # the robot is the same while these are unchanged
 PLANT = ("plant", "coulomb", "stiction", "encoder_step", "sensor_noise")
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}

@@ -13,9 +13,9 @@ from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.loops.typed_loops import Key
 from onpath.models.closed_loop.simulation import FREE, Push, kind_of
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -32,10 +32,10 @@ class LawChanges:
 
     Args:
         store: provides the loops.
-        change: changes the law of a bench now.
+        change: changes the law of a side now.
 
     Attributes:
-        coming: laws whose loops are being made, by bench.
+        coming: laws whose loops are being made, by side.
         stands_still: whether time waits for them, because a run begins with them.
         refusals: why typed laws could not be used, as far as not reported yet.
     """
@@ -57,18 +57,18 @@ class LawChanges:
         """
         both = {**DEFAULT_LAWS, **laws}
         first = {
-            bench: law if suits(law, robot, parameters) else DEFAULT_LAWS[bench]
-            for bench, law in both.items()
+            side: law if suits(law, robot, parameters) else DEFAULT_LAWS[side]
+            for side, law in both.items()
         }
         self.coming = {b: law for b, law in self.coming.items() if suits(law, robot, parameters)}
         late = dict[str, str]()
-        for bench, law in list(first.items()):
+        for side, law in list(first.items()):
             if is_text(law):
                 ready = self._is_ready((robot, kind_of(law, parameters, curve, FREE)))
                 if not ready:
-                    first[bench] = DEFAULT_LAWS[bench]
+                    first[side] = DEFAULT_LAWS[side]
                 if ready is False:
-                    late[bench] = law
+                    late[side] = law
         self.stands_still = bool(late) or (self.stands_still and bool(self.coming))
         self.coming = late | self.coming
         return first
@@ -83,39 +83,39 @@ class LawChanges:
         """Make the changes that can be made now, and ask for the loops that are lacking.
 
         Args:
-            parameters, curve, pushes: the inputs of the next frame; pushes by bench.
+            parameters, curve, pushes: the inputs of the next frame; pushes by side.
 
         Returns:
             Whether time can run: no robot is under a typed law that needs another loop.
         """
-        typed = [bench for bench, run in runs.items() if run.is_typed]
+        typed = [side for side, run in runs.items() if run.is_typed]
         if not (typed or self.coming or self._asked):
             return True
         found = {b: runs[b].lacks(parameters, curve, pushes[b]) for b in typed}
         lacking = {b: (runs[b].robot, kind) for b, kind in found.items() if kind is not None}
         coming = {
-            bench: (runs[bench].robot, kind_of(law, parameters, curve, pushes[bench]))
-            for bench, law in self.coming.items()
+            side: (runs[side].robot, kind_of(law, parameters, curve, pushes[side]))
+            for side, law in self.coming.items()
         }
         self._ask([*lacking.values(), *coming.values()])
-        for bench, (robot, kind) in coming.items():
+        for side, (robot, kind) in coming.items():
             ready = self._is_ready((robot, kind))
             if ready:
                 self._store.prepare(robot, kind_of(kind.controller, parameters, curve))
-                self._change(bench, self.coming[bench])
+                self._change(side, self.coming[side])
             elif ready is None:
-                del self.coming[bench]
+                del self.coming[side]
         self.stands_still = self.stands_still and bool(self.coming)
-        goes_on = [self._goes_on(bench, runs[bench], key) for bench, key in lacking.items()]
+        goes_on = [self._goes_on(side, runs[side], key) for side, key in lacking.items()]
         return all(goes_on) and not self.stands_still
 
-    def _goes_on(self, bench: str, run: ClosedLoopRun, key: Key) -> bool:
-        """Whether a typed law can go on; if it never can, the bench gets that of a new lab."""
+    def _goes_on(self, side: str, run: ClosedLoopRun, key: Key) -> bool:
+        """Whether a typed law can go on; if it never can, the side gets that of a new lab."""
         if run.kind == key[1] or run.law != key[1].controller:  # or it has just been changed
             return True
         ready = self._is_ready(key)
         if ready is None:
-            self._change(bench, DEFAULT_LAWS[bench])
+            self._change(side, DEFAULT_LAWS[side])
         return ready is not False
 
     def _ask(self, keys: Sequence[Key]) -> None:

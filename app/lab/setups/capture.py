@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from onpath.app.lab.belongings import Belongings
+from onpath.app.lab.robot_settings import RobotSettings
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
 from onpath.models.closed_loop.start import Start
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.settable import specs, values_of
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import NOTHING, Spec
@@ -25,7 +25,7 @@ DIGITS = 6
 
 def capture(session: Session) -> Setup:
     """The current set-up of a session; a path being dragged counts only after the drag."""
-    robots = {**session.earlier, session.entry.name: session.belongings()}
+    robots = {**session.earlier, session.entry.name: session.robot_settings()}
     found = {name: _captured(name, own, session.presets) for name, own in sorted(robots.items())}
     return Setup(
         robot=session.entry.name,
@@ -38,7 +38,7 @@ def capture(session: Session) -> Setup:
     )
 
 
-def _captured(name: str, own: Belongings, paths: Mapping[str, PathDesign]) -> RobotSetup:
+def _captured(name: str, own: RobotSettings, paths: Mapping[str, PathDesign]) -> RobotSetup:
     """The set-up of one robot."""
     wall = own.wall
     return RobotSetup(

@@ -22,8 +22,8 @@ from onpath.app.lab.setups.setup import (
 from onpath.models.closed_loop.obstacles import Wall, check_direction
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
-from onpath.models.control.benches import checked_laws
 from onpath.models.control.settable import changed
+from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, control_points, open_through

@@ -6,7 +6,7 @@ from onpath.app.lab.path_editor import BLEND
 from onpath.app.lab.session import Session
 from onpath.app.lab.setups.plan import planned, wanted_robot
 from onpath.app.lab.setups.setup import RobotSetup, Setup
-from onpath.models.control.benches import checked_laws
+from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameters import rise_of
 

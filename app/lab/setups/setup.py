@@ -12,8 +12,8 @@ from typing import Annotated, Any
 import msgspec
 
 from onpath.models.closed_loop.obstacles import ALONG
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.expressions import LONGEST
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.curves import TERMS
 from onpath.models.paths.path_design import MOST_POINTS
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -64,7 +64,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         robots: the set-up of each robot, by name; stored as "benches".
-        laws: control laws that differ from a new lab's, by bench.
+        laws: control laws that differ from a new lab's, by side.
         hold: direction in which brakes act.
     """
 
@@ -75,7 +75,7 @@ class Setup(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     rate: float = 1.0
     copy: bool = True
     exaggeration: float = 1.0
-    laws: Annotated[dict[Word, LawName], msgspec.Meta(max_length=len(BENCHES))] = {}
+    laws: Annotated[dict[Word, LawName], msgspec.Meta(max_length=len(SIDES))] = {}
     hold: Word = ALONG
 
 

@@ -14,10 +14,10 @@ import msgspec
 from onpath.app.lab.setups.former import DEFAULTS, brought_up
 from onpath.app.lab.setups.plan import planned
 from onpath.app.lab.setups.setup import Setup, plain
-from onpath.models.control.benches import checked_laws
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import checked_laws
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 

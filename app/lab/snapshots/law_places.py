@@ -20,8 +20,8 @@ def law_places(session: Session, time: float, before: PageSnapshot | None) -> La
         time: that is shown, [s].
         before: the previous whole snapshot of the same lab.
     """
-    aims = {bench: law_named(law) for bench, law in session.chosen_laws.items()}
-    aims = {bench: law for bench, law in aims.items() if law.channels is not None}
+    aims = {side: law_named(law) for side, law in session.chosen_laws.items()}
+    aims = {side: law for side, law in aims.items() if law.channels is not None}
     version = (session.entry.name, session.editor.version, *session.chosen_laws.values())
     old = None if before is None else before.places
     if old is not None and old.version == version:
@@ -34,8 +34,8 @@ def law_places(session: Session, time: float, before: PageSnapshot | None) -> La
     curve = session.editor.curve if past is None else past.curve
     fields = session.sample_layout.unpack(instant.sample)
     found = dict[str, Place]()
-    for row, bench in enumerate(session.runs):
-        if bench in aims:
-            theta, rate = (float(fields[name][row, 0]) for name in (aims[bench].aim, "theta_rate"))
-            found[bench] = place_at(robot, parameters, curve, theta, rate)
+    for row, side in enumerate(session.runs):
+        if side in aims:
+            theta, rate = (float(fields[name][row, 0]) for name in (aims[side].aim, "theta_rate"))
+            found[side] = place_at(robot, parameters, curve, theta, rate)
     return LawPlaces(time, version, found)

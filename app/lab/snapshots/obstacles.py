@@ -13,7 +13,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.obstacles import Wall, wall_force
 from onpath.models.closed_loop.start import Start, left_of
-from onpath.models.control.benches import BENCHES, LEFT
+from onpath.models.control.sides import LEFT, SIDES
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.robots import Robot
 
@@ -34,11 +34,11 @@ def drawn_brakes(session: Session) -> dict[str, Array]:
     """`Snapshot.brakes`."""
     if session.viewing is not None:
         return {}
-    pushes, rows = session.grips.pushes, dict[str, Array]()
-    for bench in BENCHES:
-        if bench in session.grips.held and (hold := pushes[bench].hold) is not None:
-            slides = pushes[bench].hold_normal is None
-            rows[bench] = _brake_rows(session.robot, *(each.tobytes() for each in hold), slides)
+    pushes, rows = session.forces.pushes, dict[str, Array]()
+    for side in SIDES:
+        if side in session.forces.held and (hold := pushes[side].hold) is not None:
+            slides = pushes[side].hold_normal is None
+            rows[side] = _brake_rows(session.robot, *(each.tobytes() for each in hold), slides)
     return rows
 
 
@@ -64,7 +64,7 @@ def wall_state(session: Session) -> WallState | None:
     wall, lifted = session.wall, _lifted(session)
     if wall is None:
         return None
-    forces: dict[str, float] = {bench: 0.0 for bench in BENCHES}
+    forces: dict[str, float] = {side: 0.0 for side in SIDES}
     if lifted is not None:
         robot, n = session.robot, session.robot.system.n
         past = None if session.viewing is None else session.history.at(session.viewing)
@@ -72,8 +72,8 @@ def wall_state(session: Session) -> WallState | None:
             past.instant() if past else session.instant(),
             robot.plant(session.parameters),
         )
-        for bench, state in zip(BENCHES, instant.states, strict=True):
-            forces[bench] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
+        for side, state in zip(SIDES, instant.states, strict=True):
+            forces[side] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
     return WallState(wall.z1, wall.z2, wall.angle, forces)
 
 

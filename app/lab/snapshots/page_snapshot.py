@@ -31,9 +31,9 @@ class RunState:
         rate: requested simulated seconds per second.
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
-        laws: control law of each bench, also while the past is viewed or its loop is being made.
+        laws: control law of each side, also while the past is viewed or its loop is being made.
         hold_direction: in which brakes act, one of `models.closed_loop.obstacles.DIRECTIONS`.
-        law_refusals: why the law that was last typed for a bench was refused, by bench.
+        law_refusals: why the law that was last typed for a side was refused, by side.
     """
 
     now: float
@@ -52,7 +52,7 @@ class WallState:
     """The wall; see `models.closed_loop.obstacles.Wall`.
 
     Attributes:
-        forces: between each end-point and the wall, by bench, [N].
+        forces: between each end-point and the wall, by side, [N].
     """
 
     z1: float
@@ -68,7 +68,7 @@ class LawPlaces:
     Attributes:
         time: at which the robots were there, [s].
         version: changes whenever the robot, the path or a law does.
-        of: places, by bench; benches whose laws have the same poles everywhere are missing.
+        of: places, by side; sides whose laws have the same poles everywhere are missing.
     """
 
     time: float

@@ -22,14 +22,14 @@ from onpath.app.lab.snapshots.snapshot import END, Counts, RobotView
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.loop_vectors import log_layout
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.projection import LocalCurve, basis
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
-UNTRACED = np.zeros((0, len(BENCHES), 3))
+UNTRACED = np.zeros((0, len(SIDES), 3))
 
 
 def robot_views(
@@ -47,7 +47,7 @@ def robot_views(
     """
     drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
     middle = 3 * counts.points
-    points = drawn[:, :middle].reshape(len(BENCHES), -1, 3)
+    points = drawn[:, :middle].reshape(len(SIDES), -1, 3)
     trails = UNTRACED
     if traces is not None:
         trails = np.concatenate([robot.place(traces), points[None, :, END]])
@@ -56,7 +56,7 @@ def robot_views(
     speeds, distances, far, used = (sample[:, slices[name].start].tolist() for name in names)
     bent = slices.get("deflection")
     return {
-        bench: RobotView(
+        side: RobotView(
             law=instant.laws[i],
             points=points[i],
             poses=drawn[i, middle:],
@@ -70,7 +70,7 @@ def robot_views(
             integral_used=used[i],
             deflection=np.nan if bent is None else float(sample[i, bent.start]),
         )
-        for i, bench in enumerate(BENCHES)
+        for i, side in enumerate(SIDES)
     }
 
 
@@ -126,7 +126,7 @@ class RobotGeometry:
         self, q: Sequence[Array], seen: Sequence[Array], table: Array, exaggeration: float
     ) -> Array:
         given = np.concatenate(q), np.concatenate(seen), table, exaggeration
-        return self._draw(*given)[0].reshape(len(BENCHES), -1).copy()
+        return self._draw(*given)[0].reshape(len(SIDES), -1).copy()
 
 
 @per_thread
@@ -165,7 +165,7 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
         (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> one
         column per robot: `RobotView.points`, then `RobotView.poses`.
     """
-    p, both = robot.system.p, len(BENCHES)
+    p, both = robot.system.p, len(SIDES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
     table = ca.SX.sym("table", dimension * ORDERS, TERMS)
     exaggeration = ca.SX.sym("exaggeration")

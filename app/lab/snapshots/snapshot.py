@@ -220,17 +220,17 @@ class Snapshot:
         time: simulated, [s].
         running: whether simulated time advances.
         achieved_speed: simulated seconds per wall second over the last second.
-        robots: by bench, left first.
+        robots: by side, left first.
         path: followed by both robots.
         held: whether Hold is on.
-        held_back: benches of the robots that it holds.
-        brakes: of the robots that are held back, by bench: where the end-point was held [m], the
+        held_back: sides of the robots that it holds.
+        brakes: of the robots that are held back, by side: where the end-point was held [m], the
             unit vector along which it cannot move, and the one along which it can, shape (3, 3);
             the latter is 0 if it cannot move at all. Empty while the past is viewed.
-        stopped: benches of the robots that have diverged by then and stand still.
+        stopped: sides of the robots that have diverged by then and stand still.
         remedy: see `Breakdown.remedy`; empty if no robot is stopped.
-        grabbed: bench of the robot whose end-point is being pulled, or None.
-        pulled: benches of the robots at which a hand pulls now; empty while the past is viewed.
+        grabbed: side of the robot whose end-point is being pulled, or None.
+        pulled: sides of the robots at which a hand pulls now; empty while the past is viewed.
         message: message to the user (a divergence, a refusal), plain text, or "".
         message_level: see `Lab`.
         note: remark on the scale of the drawing, or "".
@@ -262,8 +262,8 @@ class Snapshot:
 
     @property
     def laws(self) -> dict[str, str]:
-        """Control law of each bench."""
-        return {bench: view.law for bench, view in self.robots.items()}
+        """Control law of each side."""
+        return {side: view.law for side, view in self.robots.items()}
 
     @property
     def motion(self) -> Motion:

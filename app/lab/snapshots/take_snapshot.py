@@ -33,8 +33,8 @@ from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
-from onpath.models.control.benches import RIGHT
 from onpath.models.control.settable import values_of
+from onpath.models.control.sides import RIGHT
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import Parameters
@@ -123,15 +123,15 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
         "achieved_speed": achieved,
         "robots": robot_views(session.robot, curve, instant, traces, larger),
         "path": _path_view(session, curve, key, before),
-        "held": bool(session.grips.held),
-        "grabbed": session.grips.grabbed,
+        "held": bool(session.forces.held),
+        "grabbed": session.forces.grabbed,
         "message": message,
         "message_level": level,
         "note": scale_note(session, lab.words),
         "key": key,
         "wall": drawn_wall(session),
         "start": _drawn_start(session),
-        "held_back": tuple(bench for bench in session.runs if bench in session.grips.held),
+        "held_back": tuple(side for side in session.runs if side in session.forces.held),
         "pulled": _pulled(session),
         "brakes": drawn_brakes(session),
         "stopped": _stopped(session, time),
@@ -145,16 +145,16 @@ def _drawn_start(session: Session) -> Array:
 
 def _pulled(session: Session) -> tuple[str, ...]:
     """`Snapshot.pulled`."""
-    hands = session.grips.hands
+    hands = session.forces.hands
     if not hands or session.viewing is not None:
         return ()
-    return tuple(bench for bench in session.runs if bench in hands)
+    return tuple(side for side in session.runs if side in hands)
 
 
 def _stopped(session: Session, time: float) -> tuple[str, ...]:
-    """Benches whose robots had diverged by a time, [s]."""
-    faults = {bench: run.diverged for bench, run in session.runs.items()}
-    return tuple(bench for bench, fault in faults.items() if fault and fault.time <= time)
+    """Sides whose robots had diverged by a time, [s]."""
+    faults = {side: run.diverged for side, run in session.runs.items()}
+    return tuple(side for side, fault in faults.items() if fault and fault.time <= time)
 
 
 def _shown(lab: Lab) -> tuple[Instant, Curve, float]:

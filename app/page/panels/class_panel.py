@@ -18,16 +18,21 @@ class ClassPanel:
     """A folder with fields for class code and nickname, or with the student's name once joined."""
 
     def __init__(
-        self, gui: viser.GuiApi, words: Words, desk: PageContext, first: PageSnapshot
+        self, gui: viser.GuiApi, words: Words, context: PageContext, first: PageSnapshot
     ) -> None:
-        self._words, seat = words, desk.seat
+        self._words, seat = words, context.seat
         assert seat is not None
         with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
             code, hint = seat.code.upper(), words("class.code_hint")
             self._code = _required_text(gui, words("class.code"), hint, code)
             self._stored = gui.add_html(
-                render("panel/stored.html", days=desk.keep_days, url=desk.privacy_url, words=words)
+                render(
+                    "panel/stored.html",
+                    days=context.keep_days,
+                    url=context.privacy_url,
+                    words=words,
+                )
             )
             hint = words("class.nickname_hint")
             self._name = _required_text(gui, words("class.nickname"), hint, kind="name")

@@ -12,11 +12,11 @@ from onpath.app.common.templates import render
 from onpath.app.exports.comparison import Results
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.panels.widgets import on_press
-from onpath.lessons.benches import law_label, law_text, law_titles
+from onpath.lessons.sides import law_label, law_text, law_titles
 from onpath.lessons.words import Words
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import SIDES
 from onpath.models.studies.comparison import OBSTRUCTIONS, worst
 
 MOST = 6  # laws in one comparison
@@ -27,7 +27,7 @@ Ask = Callable[[list[str], str, Callable[[Results, bytes], None]], None]
 class ComparePanel:
     """Choice of laws and obstruction, and what they lead to.
 
-    A law that is typed for a bench is among the laws as long as it is there.
+    A law that is typed for a side is among the laws as long as it is there.
 
     Args:
         ask: starts a comparison: laws, obstruction, and what is called with the results so far and
@@ -46,7 +46,7 @@ class ComparePanel:
                 for name, law in LAWS.items()
                 if law.travels and law.suits(system)
             }
-            self._typed = {b: self._own(gui, b, first.run.laws[b]) for b in BENCHES}
+            self._typed = {b: self._own(gui, b, first.run.laws[b]) for b in SIDES}
             self._own_laws = first.run.laws
             self._obstructions = {words(f"obstruction.{name}"): name for name in OBSTRUCTIONS}
             self._obstruction = gui.add_dropdown(
@@ -58,20 +58,20 @@ class ComparePanel:
             self._shown = gui.add_html("")
         on_press(start, self._start)
 
-    def _own(self, gui: viser.GuiApi, bench: str, law: str) -> viser.GuiCheckboxHandle:
-        hint, label = self._words("compare.own_hint"), self._words(f"laws.own_{bench}")
+    def _own(self, gui: viser.GuiApi, side: str, law: str) -> viser.GuiCheckboxHandle:
+        hint, label = self._words("compare.own_hint"), self._words(f"laws.own_{side}")
         return gui.add_checkbox(label, False, visible=is_text(law), hint=hint)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Offer the typed laws of the benches."""
+        """Offer the typed laws of the sides."""
         if snapshot.run.laws == self._own_laws:
             return
         self._own_laws = snapshot.run.laws
-        for bench, box in self._typed.items():
-            box.visible = is_text(self._own_laws[bench])
+        for side, box in self._typed.items():
+            box.visible = is_text(self._own_laws[side])
 
     def _chosen(self) -> list[str]:
-        """The laws that are chosen; the same law typed for both benches once."""
+        """The laws that are chosen; the same law typed for both sides once."""
         laws = [name for name, box in self._laws.items() if box.value]
         typed = [self._own_laws[b] for b, box in self._typed.items() if box.visible and box.value]
         return [*laws, *dict.fromkeys(typed)]

@@ -13,7 +13,7 @@ from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, add_menu, on_user_update
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import FlexibleLink
@@ -170,10 +170,10 @@ class FlexiblePanel:
 
 def deflections(snapshot: PageSnapshot, words: Words) -> str:
     """Tip deflection of each robot as text."""
-    titles = bench_titles(snapshot.laws, words)
+    titles = side_titles(snapshot.laws, words)
     each = [
-        words("flexible.deflection", robot=titles[bench], value=f"{view.deflection * 1e3:.1f}")
-        for bench, view in snapshot.robots.items()
+        words("flexible.deflection", robot=titles[side], value=f"{view.deflection * 1e3:.1f}")
+        for side, view in snapshot.robots.items()
     ]
     factor = snapshot.run.exaggeration
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None

@@ -23,7 +23,7 @@ from onpath.app.page.panels.widgets import (
     SwitchedParameter,
     on_press,
 )
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.own import is_text
@@ -116,11 +116,11 @@ def channels_by_owner(
     parameters: Parameters, laws: Mapping[str, str], places: Mapping[str, Place], words: Words
 ) -> Channels:
     """The channels of the laws by whose they are, those with the same gains once."""
-    found, titles = Channels(), bench_titles(laws, words)
-    for bench, law in laws.items():
-        channels = channels_of(law, parameters, places.get(bench))
-        own = bench in places or is_text(law) or isinstance(channels, Message)
-        found[titles[bench] if own else ""] = channels
+    found, titles = Channels(), side_titles(laws, words)
+    for side, law in laws.items():
+        channels = channels_of(law, parameters, places.get(side))
+        own = side in places or is_text(law) or isinstance(channels, Message)
+        found[titles[side] if own else ""] = channels
     return found
 
 

@@ -19,13 +19,13 @@ class KeepPanel:
     """A folder that shows the codes and accepts typed ones."""
 
     def __init__(
-        self, gui: viser.GuiApi, words: Words, post: Post, exporter: Exporter, desk: PageContext
+        self, gui: viser.GuiApi, words: Words, post: Post, exporter: Exporter, context: PageContext
     ) -> None:
-        self._desk, self._words, self._code = desk, words, ""
+        self._context, self._words, self._code = context, words, ""
         with gui.add_folder(words("keep.title"), expand_by_default=False):
-            if desk.keep_days:
-                gui.add_html(_code(words("keep.yours"), shown(desk.code), words))
-                gui.add_html(note(words("keep.until", days=desk.keep_days), small=True))
+            if context.keep_days:
+                gui.add_html(_code(words("keep.yours"), shown(context.code), words))
+                gui.add_html(note(words("keep.until", days=context.keep_days), small=True))
                 gui.add_html(render("panel/field.html", kind="code", required=False))
                 self._typed = gui.add_text(words("keep.other"), "", hint=words("keep.other_hint"))
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
@@ -37,7 +37,7 @@ class KeepPanel:
             pasted = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             use = gui.add_button(words("keep.use"), color="gray", icon=viser.Icon.DOWNLOAD)
             report = gui.add_button(words("keep.report"), color="gray", icon=viser.Icon.REPORT)
-            if desk.keep_days:
+            if context.keep_days:
                 self._with_code = gui.add_checkbox(words("keep.with_code"), initial_value=False)
                 gui.add_html(note(words("keep.with_code_means"), small=True))
         on_press(share, lambda: post(c.Share()))
@@ -52,12 +52,12 @@ class KeepPanel:
 
     def _code_in_report(self) -> str:
         """The session code if the user wants it in the report: whoever reads it can use it."""
-        return self._desk.code if self._desk.keep_days and self._with_code.value else ""
+        return self._context.code if self._context.keep_days and self._with_code.value else ""
 
     def _enter(self) -> None:
         self._say(self._words("keep.moment"))
         try:
-            self._desk.enter(self._typed.value)  # rebuilds the page without this panel
+            self._context.enter(self._typed.value)  # rebuilds the page without this panel
         except (ValueError, OSError) as error:
             self._said.content = refused(self._words.sentence(error))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from onpath.app.common.templates import render
-from onpath.lessons.benches import law_label, law_text
+from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.control.laws.expressions import FUNCTIONS, LARGEST_EXPONENT

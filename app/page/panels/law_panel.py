@@ -1,4 +1,4 @@
-"""The control laws of the two benches: a menu for each, a box for an own law, and a help page."""
+"""The control laws of the two sides: a menu for each, a box for an own law, and a help page."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from functools import partial
 
 import viser
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseLaw, Command, TypeLaw
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
@@ -16,11 +16,11 @@ from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, add_menu
-from onpath.lessons.benches import law_label, law_text
+from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.own import OWN, is_text, tidy
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import SIDES
 
 MOST_ASKED = 8  # laws that were asked for and are remembered until they come
 Menu = viser.GuiDropdownHandle[str]
@@ -35,14 +35,14 @@ class LawPanel:
         self._names = {law_label(n, words): n for n, law in LAWS.items() if law.suits(system)}
         self._names[words("laws.own")] = OWN
         self._laws, self._spatial = first.run.laws, system.p == 3
-        self._typing: set[str] = set()  # benches whose box is open before a law has been typed
-        self._asked: dict[str, list[str]] = {bench: [] for bench in BENCHES}  # laws still to come
+        self._typing: set[str] = set()  # sides whose box is open before a law has been typed
+        self._asked: dict[str, list[str]] = {side: [] for side in SIDES}  # laws still to come
         self._menus = dict[str, Menu]()
         self._boxes = dict[str, OwnLawBox]()
-        for bench in BENCHES:
-            self._menus[bench] = self._add(gui, bench)
-            use = partial(self._use, bench)
-            self._boxes[bench] = OwnLawBox(gui, words, bench, self._laws[bench], use)
+        for side in SIDES:
+            self._menus[side] = self._add(gui, side)
+            use = partial(self._use, side)
+            self._boxes[side] = OwnLawBox(gui, words, side, self._laws[side], use)
         self._just_changed: set[str] = set()
         self._shown: tuple[dict[str, str], dict[str, str]] | None = None
         self._sentences = gui.add_html(self._said())
@@ -61,66 +61,66 @@ class LawPanel:
         if now is not None and now == self._shown:
             return
         self._shown = now
-        for bench, menu in self._menus.items():
-            law = run.laws[bench]
-            if law != self._laws[bench] and not self._was_asked(bench, law):
-                self._typing.discard(bench)
+        for side, menu in self._menus.items():
+            law = run.laws[side]
+            if law != self._laws[side] and not self._was_asked(side, law):
+                self._typing.discard(side)
                 if is_text(law):
-                    self._boxes[bench].take(law)
-            if bench not in late:
-                label = self._label(bench, law)
+                    self._boxes[side].take(law)
+            if side not in late:
+                label = self._label(side, law)
                 if menu.value != label:
                     menu.value = label
-                self._boxes[bench].show(is_text(law) or bench in self._typing)
-            self._boxes[bench].follow(run.law_refusals.get(bench, ""))
+                self._boxes[side].show(is_text(law) or side in self._typing)
+            self._boxes[side].follow(run.law_refusals.get(side, ""))
         if run.laws != self._laws:
             self._laws = run.laws
             self._sentences.content = self._said()
 
-    def _label(self, bench: str, law: str) -> str:
+    def _label(self, side: str, law: str) -> str:
         """The entry of the menu that is shown."""
-        own = is_text(law) or bench in self._typing
+        own = is_text(law) or side in self._typing
         return self._words("laws.own") if own else law_label(law, self._words)
 
-    def _add(self, gui: viser.GuiApi, bench: str) -> Menu:
+    def _add(self, gui: viser.GuiApi, side: str) -> Menu:
         words = self._words
         return add_menu(
             gui,
-            words(f"laws.{bench}"),
+            words(f"laws.{side}"),
             self._names,
-            partial(self._choose, bench),
-            shown=self._label(bench, self._laws[bench]),
+            partial(self._choose, side),
+            shown=self._label(side, self._laws[side]),
             hint=words("laws.hint"),
         )
 
-    def _choose(self, bench: str, law: str) -> None:
-        self._just_changed.add(bench)
-        self._boxes[bench].show(law == OWN)
+    def _choose(self, side: str, law: str) -> None:
+        self._just_changed.add(side)
+        self._boxes[side].show(law == OWN)
         if law == OWN:
-            self._typing.add(bench)
+            self._typing.add(side)
         else:
-            self._typing.discard(bench)
-            self._ask(bench, law, ChooseLaw(bench, law))
+            self._typing.discard(side)
+            self._ask(side, law, ChooseLaw(side, law))
 
-    def _use(self, bench: str, text: str) -> None:
-        self._ask(bench, tidy(text), TypeLaw(bench, text))
+    def _use(self, side: str, text: str) -> None:
+        self._ask(side, tidy(text), TypeLaw(side, text))
 
-    def _ask(self, bench: str, law: str, command: Command) -> None:
-        if law != self._laws[bench]:
-            self._asked[bench] = [*self._asked[bench][-MOST_ASKED:], law]
+    def _ask(self, side: str, law: str, command: Command) -> None:
+        if law != self._laws[side]:
+            self._asked[side] = [*self._asked[side][-MOST_ASKED:], law]
         self._post(command)
 
-    def _was_asked(self, bench: str, law: str) -> bool:
+    def _was_asked(self, side: str, law: str) -> bool:
         """Whether a law that has come was asked for here; it and those before it are forgotten."""
-        asked = self._asked[bench]
+        asked = self._asked[side]
         if law not in asked:
             return False
-        self._asked[bench] = asked[asked.index(law) + 1 :]
+        self._asked[side] = asked[asked.index(law) + 1 :]
         return True
 
     def _said(self) -> str:
-        """What the laws do, each once, in the colour of its bench."""
-        said = {law: OF_BENCH[bench].hex for bench, law in reversed(self._laws.items())}
+        """What the laws do, each once, in the colour of its side."""
+        said = {law: OF_SIDE[side].hex for side, law in reversed(self._laws.items())}
         laws = [
             (said[law], law_label(law, self._words), law_text(law, self._words), is_text(law))
             for law in dict.fromkeys(self._laws.values())

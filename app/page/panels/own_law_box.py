@@ -1,4 +1,4 @@
-"""The box in which a user types a law for one bench, with the button that puts it into force."""
+"""The box in which a user types a law for one side, with the button that puts it into force."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class OwnLawBox:
     """
 
     def __init__(
-        self, gui: viser.GuiApi, words: Words, bench: str, law: str, use: Callable[[str], None]
+        self, gui: viser.GuiApi, words: Words, side: str, law: str, use: Callable[[str], None]
     ) -> None:
         shown = is_text(law)
         self._text = gui.add_text(
-            words(f"laws.own_{bench}"),
+            words(f"laws.own_{side}"),
             lines_of(law if shown else PATH_FOLLOWING),
             multiline=True,
             visible=shown,

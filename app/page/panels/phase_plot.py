@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import viser
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.systems.law_parameters import LEVEL_SET
 
@@ -49,7 +49,7 @@ def phase_picture(
 
     Args:
         phase: see `PageSnapshot.phase`.
-        laws: control law of each bench.
+        laws: control law of each side.
         level_set: whether ξ₁ is an area, [m²], instead of a distance.
     """
     values = phase.astype(float) * (1e6 if level_set else 1e3)
@@ -64,12 +64,12 @@ def phase_picture(
     lines: list[dict[str, Any]] = [
         {
             "title": title,
-            "colour": OF_BENCH[bench],
+            "colour": OF_SIDE[side],
             "width": 3 if i == 0 else 1.6,  # so that one is seen under the other
             "points": " ".join(f"{x:.1f},{y:.1f}" for x, y in places[:, i]),
             "now": places[-1, i].round(1).tolist() if len(places) else None,
         }
-        for i, (bench, title) in enumerate(bench_titles(laws, words).items())
+        for i, (side, title) in enumerate(side_titles(laws, words).items())
     ]
     unit = "-level_set" if level_set else ""
     return render(

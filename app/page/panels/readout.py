@@ -7,11 +7,11 @@ from functools import lru_cache, partial
 import viser
 from markupsafe import escape
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.viser_adapter.frame_channel import update_gui
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 
 
@@ -44,13 +44,13 @@ def _frame(words: Words, laws: tuple[tuple[str, str], ...], running: bool) -> st
     """Template of the readout, with {} and {name} for the values updated at 10 Hz.
 
     Args:
-        laws: benches and their control laws.
+        laws: sides and their control laws.
         running: whether the clock runs.
     """
-    titles = bench_titles(dict(laws), words)
+    titles = side_titles(dict(laws), words)
     table = render(
         "panel/readout.html",
-        rows=[(OF_BENCH[bench].hex, title) for bench, title in titles.items()],
+        rows=[(OF_SIDE[side].hex, title) for side, title in titles.items()],
         words=words,
     )
     clock = words(

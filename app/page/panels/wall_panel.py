@@ -6,12 +6,12 @@ import math
 
 import viser
 
-from onpath.app.common.palette import OF_BENCH
+from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, WallState, robot_of
 from onpath.app.page.panels.widgets import Post, on_user_update, set_number
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 
 FARTHEST = 400.0  # [mm]
@@ -79,10 +79,9 @@ class WallPanel:
         set_number(self._first, wall.z1 * 1e3)
         set_number(self._second, wall.z2 * 1e3)
         set_number(self._angle, math.degrees(wall.angle))
-        titles = bench_titles(snapshot.laws, self._words)
+        titles = side_titles(snapshot.laws, self._words)
         forces = [
-            (OF_BENCH[bench].hex, titles[bench], f"{force:.1f}")
-            for bench, force in wall.forces.items()
+            (OF_SIDE[side].hex, titles[side], f"{force:.1f}") for side, force in wall.forces.items()
         ]
         content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
         if self._forces.content != content:

@@ -207,7 +207,7 @@ def _digits(step: float) -> int:
 
 
 class OwnGainWidgets(ParameterWidgets):
-    """Sliders for the gains that only single laws have, shown while a bench has such a law."""
+    """Sliders for the gains that only single laws have, shown while a side has such a law."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         super().__init__(gui, words, post, list(OWN_GAINS), first)

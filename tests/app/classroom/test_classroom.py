@@ -221,7 +221,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     klass.room.freeze(True)
     klass.look()
     before = lab.session.time
-    assert lab.message == ENGLISH("class.frozen") and not lab.session.grips.hands
+    assert lab.message == ENGLISH("class.frozen") and not lab.session.forces.hands
     for command in (
         c.SetRunning(False),
         c.StepOnce(),
@@ -234,7 +234,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     run(lab, 0.5)
     run(outside, 0.5)
     assert lab.session.time == before and outside.session.time > 0.4
-    assert lab.session.running and lab.session.parameters.K1 != 1.0 and not lab.session.grips.hands
+    assert lab.session.running and lab.session.parameters.K1 != 1.0 and not lab.session.forces.hands
     klass.room.freeze(False)
     klass.look()
     run(lab, 0.5)

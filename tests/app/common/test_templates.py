@@ -25,7 +25,7 @@ from onpath.app.classroom.results import distribution
 from onpath.app.common.templates import environment, phrase, render
 from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
-from onpath.app.page import lesson_html, saying
+from onpath.app.page import lesson_html, narration
 from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
@@ -45,7 +45,7 @@ from onpath.lessons.schema import (
 )
 from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words, languages
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 
@@ -173,8 +173,8 @@ def shown(words: Words, text: str) -> str:
     sent: list[str] = []
     gui: Any = SimpleNamespace(add_html=lambda content: None)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(saying, "update_gui", lambda handle, name, content: sent.append(content))
-        saying.Saying(gui, words, DEFAULTS, Captions(words)).follow(snapshot)  # type: ignore[arg-type]
+        patch.setattr(narration, "update_gui", lambda handle, name, content: sent.append(content))
+        narration.Narration(gui, words, DEFAULTS, Captions(words)).follow(snapshot)  # type: ignore[arg-type]
     return sent[0]
 
 

@@ -16,7 +16,7 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words, languages
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from tests.support.csv_columns import read_csv
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, finish, new_lab, replayed, run, store, y
 
@@ -54,7 +54,7 @@ def eventful() -> tuple[Lab, list]:
 def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
     lab, seen = eventful()
     runs = replayed(lab.session)
-    assert set(runs) == set(BENCHES)
+    assert set(runs) == set(SIDES)
     for name, trajectory in runs.items():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3)
         assert trajectory.t[-1] == pytest.approx(lab.session.time - 1e-3)
@@ -94,7 +94,7 @@ def test_csv_tells_the_distance_to_the_path_as_it_was() -> None:
     columns = read_csv(
         io.StringIO(csv_bytes(lab.session.robot, lab.session.history.all()).decode())
     )
-    assert set(columns) == set(BENCHES)
+    assert set(columns) == set(SIDES)
     first = slice(0, 330)  # on the circle
     radius = np.hypot(columns[TRACKER]["y1_m"], columns[TRACKER]["y2_m"])[first]
     assert columns[TRACKER]["distance_m"][first] == pytest.approx(np.abs(radius - 0.05), abs=1e-9)

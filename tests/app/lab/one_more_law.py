@@ -28,8 +28,8 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.closed_loop.wasm_loop import wasm_of
-from onpath.models.control.benches import LEFT
 from onpath.models.control.settable import value_of, with_values
+from onpath.models.control.sides import LEFT
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.lab import FRAME, do, finish, run, store

@@ -13,7 +13,7 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import to_data
 from onpath.app.storage.lab_state import put_back
 from onpath.lessons.progress import Progress
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT
 from tests.support.lab import assert_sound, store
 
 KEPT = Setup(robots={"five_bar": RobotSetup({"reach": 4.0, "K1": 500.0})}, laws={LEFT: "sliding"})

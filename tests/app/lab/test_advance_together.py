@@ -12,7 +12,7 @@ from onpath.app.lab.advance_together import advance_together
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.looking_back import forget_history
 from onpath.models.closed_loop.loops import CompiledLoop
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, FRAME, do, finish, new_lab, store
@@ -31,7 +31,7 @@ def random_command(rng: np.random.Generator, lab: Lab) -> list[c.Command]:
         [c.SetParameter(*other[rng.integers(len(other))])],
         [c.ChoosePath(str(rng.choice(list(presets()))))],
         [c.Hold(bool(rng.integers(2)))],
-        [c.Grab(BENCHES[rng.integers(2)], target)],
+        [c.Grab(SIDES[rng.integers(2)], target)],
         [c.Release()],
         [c.SetRate(float(rng.choice([0.5, 1.0, 2.0])))],
         [c.SetRunning(bool(rng.integers(3)))],
@@ -89,7 +89,7 @@ def test_advancing_together_equals_advancing_one_by_one(seed: int) -> None:
 
 
 def vars_of(event: object) -> list[object]:
-    return [getattr(event, name) for name in ("run", "time", "name", "detail", "benches")]
+    return [getattr(event, name) for name in ("run", "time", "name", "detail", "sides")]
 
 
 def compiled_labs(count: int) -> list[Lab]:
@@ -111,13 +111,13 @@ def test_a_frame_is_one_call_per_kind_of_loop(monkeypatch: pytest.MonkeyPatch) -
         do(lab, c.SetParameter("K1", gain))
     monkeypatch.setattr(CompiledLoop, "run_many", counted)
     advance_together([lab.frame(FRAME) for lab in labs])
-    assert calls == [len(labs)] * len(BENCHES)
+    assert calls == [len(labs)] * len(SIDES)
 
 
 def test_one_lab_s_error_leaves_the_others_alone() -> None:
     labs, alone, errors = compiled_labs(4), new_lab(FRAME), list[Exception]()
     labs[1].session.editor.table = np.zeros(3)
-    labs[2].session.grips.pushes.clear()
+    labs[2].session.forces.pushes.clear()
     for _ in range(3):
         advance_together([lab.frame(FRAME) for lab in labs], errors.append)
         alone.advance(FRAME)

@@ -1,4 +1,4 @@
-"""A bench gets another control law while its robot moves: what goes on, and what begins anew."""
+"""A side gets another control law while its robot moves: what goes on, and what begins anew."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.snapshots.snapshot import MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.systems.robots import Robot
 from tests.support.lab import FRAME, assert_sound, do, new_lab, run, states
 
@@ -30,34 +30,34 @@ ONLY_SQUARE = next(name for name, law in LAWS.items() if law.square)
 OTHERS = [name for name in LAWS if name not in DEFAULT_LAWS.values()]
 
 
-def change(lab: Lab, bench: str, law: str) -> None:
+def change(lab: Lab, side: str, law: str) -> None:
     """Change a law at once, as a script does."""
-    lab.session.change_law(bench, law)
+    lab.session.change_law(side, law)
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("bench", BENCHES)
-def test_the_robot_goes_on_from_where_it_is(bench: str, law: str) -> None:
+@pytest.mark.parametrize("side", SIDES)
+def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetParameter("K3", 500.0), c.Hold(True))
     run(lab, 0.3)
-    before, time = states(lab.session)[bench], lab.session.time
-    own = lab.session.runs[bench]
+    before, time = states(lab.session)[side], lab.session.time
+    own = lab.session.runs[side]
     old = {name: value.copy() for name, value in own.fields().items()}
-    change(lab, bench, law)
+    change(lab, side, law)
     new = own.fields()
-    if law == DEFAULT_LAWS[bench]:
+    if law == DEFAULT_LAWS[side]:
         assert np.array_equal(own.state, before)
         return
     for name in ("q", "v", "theta", "theta_rate", "u", "encoder", "encoder_rate", "phase"):
         assert np.array_equal(new[name], old[name]), name
     assert new["theta_ref"] == new["theta"] and not new["integral"].any()
     assert all(not new[name].any() for name, _ in LAWS[law].memory)
-    assert lab.session.time == time and lab.session.laws[bench] == law
+    assert lab.session.time == time and lab.session.laws[side] == law
     event = lab.session.events.last
     assert event is not None
-    assert (event.name, event.detail, event.benches) == ("law", law, (bench,))
-    assert lab.session.grips.held == set(BENCHES)
+    assert (event.name, event.detail, event.sides) == ("law", law, (side,))
+    assert lab.session.forces.held == set(SIDES)
     run(lab, 0.2)
     assert_sound(lab)
 
@@ -100,16 +100,16 @@ def test_a_choice_is_taken_back_before_its_loop_is_ready() -> None:
 
 
 @pytest.mark.parametrize(
-    ("bench", "law", "said"),
+    ("side", "law", "said"),
     [
-        ("middle", "set_point", "unknown bench"),
+        ("middle", "set_point", "unknown side"),
         (LEFT, "sett_point", "did you mean set_point"),
         (RIGHT, "", "unknown law"),
     ],
 )
-def test_a_wrong_name_is_refused_and_changes_nothing(bench: str, law: str, said: str) -> None:
+def test_a_wrong_name_is_refused_and_changes_nothing(side: str, law: str, said: str) -> None:
     lab = new_lab(0.1)
-    do(lab, c.ChooseLaw(bench, law))
+    do(lab, c.ChooseLaw(side, law))
     assert said in lab.message and lab.message_level == "warning"
     assert lab.session.chosen_laws == DEFAULT_LAWS
 
@@ -124,7 +124,7 @@ def test_a_law_that_does_not_suit_the_robot() -> None:
 
 
 def changing() -> Lab:
-    """A lab whose benches change their laws twice, with memories of different sizes."""
+    """A lab whose sides change their laws twice, with memories of different sizes."""
     lab = new_lab(0.5)
     change(lab, LEFT, WITH_MEMORY)
     run(lab, 0.5)
@@ -138,24 +138,24 @@ def test_history_is_replayed_to_the_last_bit_across_changes() -> None:
     lab = new_lab(0.5)
     seen: list[tuple[str, float, np.ndarray, np.ndarray]] = []
     for laws in ({LEFT: WITH_MEMORY}, {RIGHT: "waiting_clock", LEFT: "set_point"}, DEFAULT_LAWS):
-        for bench, law in laws.items():
-            change(lab, bench, law)
+        for side, law in laws.items():
+            change(lab, side, law)
         for _ in range(20):
             run(lab, FRAME)
-            for bench, own in lab.session.runs.items():
+            for side, own in lab.session.runs.items():
                 row = own.shown()
-                seen.append((bench, lab.session.time, row["q"].copy(), row["u"].copy()))
+                seen.append((side, lab.session.time, row["q"].copy(), row["u"].copy()))
     runs = replay(lab.session.robot, lab.session.history.all())
     names = [trajectory.controller for trajectory in runs[LEFT]]
     assert names == ["trajectory_tracking", WITH_MEMORY, "set_point", "trajectory_tracking"]
     fields = {
-        bench: {n: np.concatenate([p.fields[n] for p in parts]) for n in ("q", "u")}
-        for bench, parts in runs.items()
+        side: {n: np.concatenate([p.fields[n] for p in parts]) for n in ("q", "u")}
+        for side, parts in runs.items()
     }
-    for bench, time, q, u in seen:
+    for side, time, q, u in seen:
         at = round(time * 1e3) - 1
-        assert np.array_equal(fields[bench]["q"][at], q)
-        assert np.array_equal(fields[bench]["u"][at], u)
+        assert np.array_equal(fields[side]["q"][at], q)
+        assert np.array_equal(fields[side]["u"][at], u)
 
 
 def test_looking_back_shows_each_frame_under_its_law() -> None:
@@ -180,19 +180,19 @@ def test_going_on_from_before_a_change_and_undoing_that() -> None:
     assert past is not None
     do(lab, c.GoOn())
     assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}  # those of now
-    for bench, own in lab.session.runs.items():
-        drive = past.drives[bench]
-        assert drive.kind.controller == DEFAULT_LAWS[bench]
+    for side, own in lab.session.runs.items():
+        drive = past.drives[side]
+        assert drive.kind.controller == DEFAULT_LAWS[side]
         assert np.array_equal(own.fields()["q"], drive.state[:2])
         assert own.fields()["theta_ref"] == own.fields()["theta"]
-    told = [(event.detail, event.benches) for event in lab.session.events if event.name == "law"]
+    told = [(event.detail, event.sides) for event in lab.session.events if event.name == "law"]
     assert told == [("set_point", (LEFT,)), ("waiting_clock", (RIGHT,))]
     run(lab, 0.3)
     change(lab, RIGHT, "contouring")
     do(lab, c.UndoGoOn())
     assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
-    for bench, state in states(lab.session).items():
-        assert np.array_equal(state, end[bench])
+    for side, state in states(lab.session).items():
+        assert np.array_equal(state, end[side])
     run(lab, 0.1)
     do(lab, c.UndoGoOn())
     assert lab.session.laws[RIGHT] == "contouring"
@@ -225,13 +225,13 @@ def test_a_set_up_carries_the_laws() -> None:
     assert other.session.laws == DEFAULT_LAWS
 
 
-def test_files_tell_the_bench_and_the_law_of_every_row() -> None:
+def test_files_tell_the_side_and_the_law_of_every_row() -> None:
     lab = changing()
     change(lab, RIGHT, "set_point")  # both alike
     run(lab, 0.2)
     history = lab.session.history.all()
     rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.session.robot, history).decode())))
-    found = dict.fromkeys((row["bench"], row["law"]) for row in rows)
+    found = dict.fromkeys((row["side"], row["law"]) for row in rows)
     assert list(found) == [
         (LEFT, "trajectory_tracking"),
         (LEFT, WITH_MEMORY),

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.lab.events import FIRST, MOST, EventLog, LabEvent
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from tests.support.kept_blocks import blocks_kept
 
 NAMES, DETAILS = ("set", "path", "hold", "release"), ("K1", "speed", "")
@@ -18,7 +18,7 @@ EVENTS = st.builds(
     time=st.floats(0, 9).map(lambda time: round(time, 1)),
     name=st.sampled_from(NAMES),
     detail=st.sampled_from(DETAILS),
-    benches=st.sampled_from([BENCHES, BENCHES[:1]]),
+    sides=st.sampled_from([SIDES, SIDES[:1]]),
 )
 
 
@@ -40,7 +40,7 @@ def test_events_are_kept_in_their_order_but_for_repetitions(
 def test_the_latest_events_are_kept() -> None:
     log, expected = EventLog(), deque[LabEvent](maxlen=MOST)
     for number in range(2 * MOST + 7):
-        event = LabEvent(0, float(number), "set", "K1", BENCHES)
+        event = LabEvent(0, float(number), "set", "K1", SIDES)
         log.append(event)
         expected.append(event)
     assert list(log) == list(expected)
@@ -51,6 +51,6 @@ def test_events_are_no_objects_of_their_own() -> None:
 
     def note_events() -> None:
         for number in range(MOST):
-            log.append(LabEvent(0, 2.0 * number, "set", "K1", BENCHES))
+            log.append(LabEvent(0, 2.0 * number, "set", "K1", SIDES))
 
     assert blocks_kept(note_events, "*/lab/events.py", __file__) < 20

@@ -118,7 +118,7 @@ def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
     assert lab.message == "" and max(r.distance for r in lab.session.runs.values()) < 2e-3
 
 
-def test_each_robot_keeps_its_bench() -> None:
+def test_each_robot_keeps_its_side() -> None:
     lab = Lab(store())
     do(lab, c.SetParameter("K1", 900), c.ChoosePath("clover"))
     do(lab, c.ChooseRobot("flexible"))

@@ -7,7 +7,7 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from tests.support.lab import FOLLOWER, TRACKER, assert_sound, do, new_lab, replayed, run, states
 
 
@@ -25,8 +25,8 @@ def test_both_robots_go_on_from_where_they_are() -> None:
     for payload in (0.02, 0.05, 0.0):
         do(lab, c.SetParameter("payload", payload))
         assert (session.run_number, session.time) == (runs, time)
-        for bench, state in states(session).items():
-            assert np.array_equal(state, before[bench])
+        for side, state in states(session).items():
+            assert np.array_equal(state, before[side])
         assert (session.robot is unloaded) == (payload == 0)
     assert lab.message == ""
 
@@ -47,11 +47,11 @@ def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
     for payload in (0.02, 0.04, 0.0):
         do(lab, c.SetParameter("payload", payload))
         run(lab, 0.5)
-        ends.append({bench: own.row.copy() for bench, own in lab.session.runs.items()})
-    for bench, own in lab.session.runs.items():
-        log = replayed(lab.session)[bench]
+        ends.append({side: own.row.copy() for side, own in lab.session.runs.items()})
+    for side, own in lab.session.runs.items():
+        log = replayed(lab.session)[side]
         assert np.allclose(np.diff(log.t), 1e-3)
-        shown = own.log.unpack(ends[-1][bench])
+        shown = own.log.unpack(ends[-1][side])
         assert log.fields["y"][-1] == pytest.approx(shown["y"], abs=1e-12)
         assert np.abs(np.diff(log.fields["y"], axis=0)).max() < 1e-3  # [m] in a tick: no jump
 
@@ -75,8 +75,8 @@ def test_going_back_to_before_the_load_goes_on_with_it() -> None:
 def test_a_typed_law_goes_on_too() -> None:
     lab = flexible_lab(0.2)
     do(lab, c.SetParameter("law", "redefined"))
-    for bench in BENCHES:
-        do(lab, c.TypeLaw(bench, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
+    for side in SIDES:
+        do(lab, c.TypeLaw(side, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
     run(lab, 0.5)
     time = lab.session.time
     do(lab, c.SetParameter("payload", 0.02))

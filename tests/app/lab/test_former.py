@@ -34,8 +34,8 @@ from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.storage.records import Records, file_url
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT
 from onpath.models.control.settable import value_of, values_of
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from tests.support.built_in import built_in_course
@@ -114,12 +114,12 @@ def test_a_share_code_moves_as_it_moved(name: str) -> None:
     case = CASES[name]
     lab = opened(case["code"])
     moved = held(lab)
-    for bench, place in case["end_points"].items():
-        assert y(lab.session, bench) == pytest.approx(place, abs=1e-9)  # of another machine
+    for side, place in case["end_points"].items():
+        assert y(lab.session, side) == pytest.approx(place, abs=1e-9)  # of another machine
     told = opened(case["code"])
     do(told, *(c.SetParameter(n, v) for n, v in written_out(case).items()), c.Reset())
-    for bench, state in held(told).items():
-        assert np.array_equal(state, moved[bench])
+    for side, state in held(told).items():
+        assert np.array_equal(state, moved[side])
 
 
 def written_out(case: Mapping[str, Any]) -> dict[str, Any]:

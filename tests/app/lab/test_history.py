@@ -22,7 +22,7 @@ from onpath.app.lab.segments import FEW, HistoryFrame, Input, Inputs, Segment
 from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, RIGHT
+from onpath.models.control.sides import DEFAULT_LAWS, RIGHT, SIDES
 from onpath.models.paths.curves import Curve, circle
 from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, new_lab, run, states, y
 
@@ -245,7 +245,7 @@ def test_past_is_shown_as_it_was() -> None:
         assert at is not None
         begin = at.time
         then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
-        for name in BENCHES:
+        for name in SIDES:
             was, shown = then.robots[name], now.robots[name]
             assert shown.joints == pytest.approx(was.joints, abs=1e-3)
             assert shown.tip == pytest.approx(was.tip, abs=1e-6)
@@ -300,7 +300,7 @@ def test_going_on_forgets_what_came_after() -> None:
     most = lab.session.runs[TRACKER].max_distance
     do(lab, c.LookAt(lab.session.time - 0.2), c.GoOn())
     assert lab.session.time < 0.21 and lab.session.history.span() < 0.21
-    assert not lab.session.grips.held and not lab.session.grips.hands
+    assert not lab.session.forces.held and not lab.session.forces.hands
     assert lab.session.runs[TRACKER].max_distance < most / 3
     run(lab, 0.5)
     assert contiguous(lab.session.history)

@@ -17,10 +17,10 @@ from onpath.app.lab.loops import loop_cache
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
-from onpath.models.control.benches import LEFT
 from onpath.models.control.laws.law import ControlAction, View
 from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import LEFT
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.lab import FRAME, do, finish, run
 

@@ -235,7 +235,7 @@ def test_hints_come_one_at_a_time(lab: Lab) -> None:
 def test_links_act_on_the_lab(lab: Lab) -> None:
     do(lab, c.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
     assert lab.session.parameters.K3 == 100.0 and lab.session.editor.design.name == "clover"
-    assert lab.session.grips.held
+    assert lab.session.forces.held
     do(lab, c.Act((Action(set={"K3": 1e9}),)))
     assert lab.session.parameters.K3 == 100.0 and "K3" in lab.message
 

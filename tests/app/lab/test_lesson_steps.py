@@ -19,8 +19,8 @@ from onpath.app.lab.setups.setup import Setup
 from onpath.app.storage.lab_state import LabState, keep, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.models.closed_loop.simulation import FREE
-from onpath.models.control.benches import BENCHES, RIGHT
 from onpath.models.control.settable import changed
+from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.built_in import built_in_course
 from tests.support.cases import some
@@ -76,7 +76,7 @@ def assert_at_the_beginning(lab: Lab) -> None:
     for name, one in lab.session.runs.items():
         assert np.array_equal(one.state, states[name])
     assert lab.session.time == 0.0 and lab.session.viewing is None
-    assert lab.session.grips.pushes == dict.fromkeys(BENCHES, FREE) and not lab.session.grips.held
+    assert lab.session.forces.pushes == dict.fromkeys(SIDES, FREE) and not lab.session.forces.held
     assert lab.session.editor.selected is None and lab.session.editor.proposed is None
     assert np.array_equal(lab.session.editor.table, lab.session.editor.design.curve.table())
 
@@ -143,7 +143,7 @@ def reloaded(lab: Lab) -> Lab:
     again = new_lab()
     put_back(again, kept[0])
     assert capture(again.session) == capture(lab.session) and here(again) == here(lab)
-    assert again.session.time == 0.0 and not again.session.grips.held and not again.session.events
+    assert again.session.time == 0.0 and not again.session.forces.held and not again.session.events
     return again
 
 
@@ -177,7 +177,7 @@ MEDDLING = (
     asked(c.SetRunning(True)),
     asked(c.SetRunning(True), c.LookAt(0.05)),
     asked(c.SetRunning(True), c.LookAt(0.05), c.GoOn()),
-    asked(*(c.ChooseLaw(bench, "waiting_clock") for bench in BENCHES)),
+    asked(*(c.ChooseLaw(side, "waiting_clock") for side in SIDES)),
     asked(c.TypeLaw(RIGHT, "across = -300*xi - 30*dxi; along = -5*dtheta")),
     asked(c.SetWall(True), c.PlaceWall(0.04, 0.01, 0.3)),
     asked(c.SetHoldDirection("both"), c.Hold(True)),

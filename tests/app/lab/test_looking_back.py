@@ -43,7 +43,7 @@ def seen(lab: Lab) -> Seen:
         + np.array([run.distance, run.max_distance]).tobytes()
         for run in lab.session.runs.values()
     )
-    held = frozenset(lab.session.grips.held)
+    held = frozenset(lab.session.forces.held)
     return Seen(lab.session.time, kept, robots, held, tuple(lab.session.events))
 
 
@@ -113,10 +113,10 @@ def test_a_restored_lab_continues_as_if_nothing_had_happened() -> None:
         do(each, c.Hold(True))
         run(each, 0.5)
     do(lab, c.LookAt(0.7), c.GoOn())
-    assert not lab.session.grips.held
+    assert not lab.session.forces.held
     run(lab, 0.3)
     do(lab, c.UndoGoOn())
-    assert lab.session.grips.held == twin.session.grips.held != set()
+    assert lab.session.forces.held == twin.session.forces.held != set()
     for each in (lab, twin):
         each.session.simulate(50)
         do(each, c.Hold(False))
@@ -184,7 +184,7 @@ def test_acting_on_the_lab_while_looking_back_returns_to_the_present_and_says_so
         assert "present" in lab.message
     lab = new_lab(0.5)
     do(lab, c.MoveHand(0.01, 0.0), c.LookAt(0.3))
-    assert "let go" in lab.message and not lab.session.grips.hands
+    assert "let go" in lab.message and not lab.session.forces.hands
     lab = new_lab(0.5)
     do(lab, c.LookAt(0.3), c.ChoosePath("figure of eight"))
     assert "refused" in lab.message

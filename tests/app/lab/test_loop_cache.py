@@ -26,8 +26,8 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control import speed_limit
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.lab import FRAME, do, finish, run, states
 from tests.support.lab import store as store_of_other_tests
@@ -96,7 +96,7 @@ def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate
     for name, state in states(lab.session).items():
         assert np.array_equal(state, reference.session.runs[name].state)
         assert lab.session.runs[name].diverged is None
-    assert len(gate.passed) == len(BENCHES)
+    assert len(gate.passed) == len(SIDES)
 
 
 def test_a_failed_compilation_is_logged_once_for_each_kind_and_the_lab_continues(
@@ -117,7 +117,7 @@ def test_a_failed_compilation_is_logged_once_for_each_kind_and_the_lab_continues
         finish(store)
     warnings = [r for r in caplog.records if r.name == "onpath.app.lab.loops.loop_cache"]
     assert all("interpreted" in warning.getMessage() for warning in warnings)
-    assert len(warnings) == 2 * len(BENCHES)  # free, and held
+    assert len(warnings) == 2 * len(SIDES)  # free, and held
     assert lab.session.time == pytest.approx(42 * FRAME, abs=2e-3)
     assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab, store))
 
@@ -154,7 +154,7 @@ def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
         do(lab, *commands)
         lab.advance(FRAME)
         assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
-    assert len(store._kept) == 2 * len(BENCHES)
+    assert len(store._kept) == 2 * len(SIDES)
 
 
 class Quick(InterpretedLoop):
@@ -234,7 +234,7 @@ def test_settings_changed_without_end_do_not_hold_up_another_lab(
     assert len(store._waiting) <= compile_queue.MOST
     gate.set()
     wait_for(lambda: (run(lab, FRAME), lab.session.laws[LEFT] == "waiting_clock")[1], PATIENCE)
-    assert len(gate.passed) <= 2 * len(BENCHES)
+    assert len(gate.passed) <= 2 * len(SIDES)
 
 
 def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache) -> None:

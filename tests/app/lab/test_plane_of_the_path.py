@@ -111,8 +111,8 @@ def test_a_plane_out_of_reach_is_refused_and_changes_nothing(name: str, value: f
     do(lab, c.SetParameter(name, value))
     assert lab.message and lab.message_level == "warning"
     assert lab.session.robot is robot
-    for bench, state in states(lab.session).items():
-        np.testing.assert_array_equal(state, before[bench])
+    for side, state in states(lab.session).items():
+        np.testing.assert_array_equal(state, before[side])
 
 
 def test_labs_with_different_planes_run_together_as_alone() -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.pulse import ASIDE, FRAME, FRAMES
-from onpath.models.control.benches import RIGHT
+from onpath.models.control.sides import RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab, replayed, run
 
@@ -23,7 +23,7 @@ def test_both_are_pulled_across_and_let_go(robot: str) -> None:
     for motion in replayed(lab.session).values():
         before = float(motion.distance[(motion.t > begin - 0.1) & (motion.t < begin)].max())
         assert before + 5e-5 < motion.distance[motion.t >= begin].max() < 2 * ASIDE
-    assert lab.script is None and not lab.session.grips.hands
+    assert lab.script is None and not lab.session.forces.hands
     names = [event.name for event in lab.session.events]
     assert names.count("pull") == names.count("release") == 1
 
@@ -49,7 +49,7 @@ def test_a_hand_that_pulls_already_is_not_taken_away() -> None:
     target = lab.session.runs[RIGHT].shown()["y"] + np.array([0.01, 0.0])
     do(lab, c.Grab(RIGHT, target), c.Pulse())
     run(lab, 1.0)
-    assert lab.session.grips.grabbed == RIGHT and lab.script is None
+    assert lab.session.forces.grabbed == RIGHT and lab.script is None
 
 
 def test_it_pulls_each_robot_where_it_is() -> None:

@@ -30,8 +30,8 @@ from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models import systems
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments, run
@@ -68,9 +68,9 @@ def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
     return lab
 
 
-def off_path(session: Session, bench: str) -> float:
+def off_path(session: Session, side: str) -> float:
     """How far a robot is off its path, [m]: the crane's output, and the others' end-point."""
-    run = session.runs[bench]
+    run = session.runs[side]
     if session.entry.name == "overhead_crane":
         return float(np.abs(run.shown()["xi"]).max())
     return run.distance
@@ -95,7 +95,7 @@ def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> Non
 def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
     lab = lab_with(entry, 2.0)
     session = lab.session
-    for name in BENCHES:
+    for name in SIDES:
         assert session.runs[name].diverged is None
         assert off_path(session, name) < 2e-4
     do(lab, c.Hold(True))
@@ -156,7 +156,7 @@ def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
     function, counts = geometry_function(robot, closed=True)
     assert function.n_out() == 1
     sizes = [int(np.prod(shape)) for shape in counts.pose_shapes]
-    assert function.nnz_out(0) == len(BENCHES) * (3 * counts.points + sum(sizes))
+    assert function.nnz_out(0) == len(SIDES) * (3 * counts.points + sum(sizes))
 
 
 def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
@@ -218,11 +218,13 @@ def test_a_drag_leads_as_far_as_the_hand_in_the_lab(entry: RobotEntry) -> None:
     for corner in (box.lower, box.upper):
         target = robot.unplace(corner)
         do(lab, c.Grab(FOLLOWER, target))
-        hand = robot.place(lab.session.grips.hands[FOLLOWER])
+        hand = robot.place(lab.session.forces.hands[FOLLOWER])
         np.testing.assert_allclose(hand, robot.place(target), atol=1e-12)
         beyond = robot.unplace(corner + 0.3 * np.sign(corner - (box.lower + box.upper) / 2))
         do(lab, c.Grab(FOLLOWER, beyond))
-        np.testing.assert_allclose(robot.place(lab.session.grips.hands[FOLLOWER]), hand, atol=1e-12)
+        np.testing.assert_allclose(
+            robot.place(lab.session.forces.hands[FOLLOWER]), hand, atol=1e-12
+        )
 
 
 BENDING = GANTRY.replace(
@@ -264,7 +266,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
         submit=given,
         scene=given,
         overlays=given,
-        desk=given,
+        context=given,
         reset_view=given,
     )
     for entry in ROBOTS.values():
@@ -276,7 +278,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
 
 def test_what_draws_and_simulates_knows_no_single_robot() -> None:
     """The study of the flexible five-bar, and the measurement of its loops, do."""
-    own = {"exports/zero_dynamics.py", "bench/tables.py"}
+    own = {"exports/zero_dynamics.py", "side/tables.py"}
     single = re.compile(r"models\.systems\.(\w*five_bar\w*|flexible\w*|two_link\w*)")
     files = {str(file.relative_to(ROOT / "app")): file for file in (ROOT / "app").rglob("*.py")}
     assert {name for name, file in files.items() if single.search(file.read_text("utf-8"))} <= own

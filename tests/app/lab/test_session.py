@@ -21,10 +21,10 @@ from onpath.models.closed_loop.loop_vectors import loop_layouts
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 from onpath.models.closed_loop.simulation import FREE, kernel_of, kind_of, settings_vector
 from onpath.models.closed_loop.start import BOUNDS
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT
 from onpath.models.control.laws.own import PATH_FOLLOWING
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import changed, specs
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
@@ -43,7 +43,7 @@ from tests.support.lab import (
 )
 from tests.support.lesson_texts import write_lesson
 
-SOME_BENCHES = st.sampled_from([*BENCHES, "", "nobody"])
+SOME_SIDES = st.sampled_from([*SIDES, "", "nobody"])
 WILD = st.one_of(
     st.floats(-0.5, 0.5),
     st.sampled_from([float("nan"), float("inf"), -1e300, 1e300, 10**400, 0, -0.0]),
@@ -131,16 +131,16 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.GoOn: st.builds(c.GoOn),
     c.UndoGoOn: st.builds(c.UndoGoOn),
     c.Hold: st.builds(
-        c.Hold, st.sampled_from([None, True, False]), st.one_of(st.none(), SOME_BENCHES)
+        c.Hold, st.sampled_from([None, True, False]), st.one_of(st.none(), SOME_SIDES)
     ),
-    c.Grab: st.builds(c.Grab, SOME_BENCHES, points(1)),
-    c.Release: st.builds(c.Release, st.one_of(st.none(), SOME_BENCHES)),
+    c.Grab: st.builds(c.Grab, SOME_SIDES, points(1)),
+    c.Release: st.builds(c.Release, st.one_of(st.none(), SOME_SIDES)),
     c.Pulse: st.builds(c.Pulse),
     c.MoveHand: st.builds(c.MoveHand, WILD, WILD),
     c.ChooseLaw: st.builds(
-        c.ChooseLaw, SOME_BENCHES, st.sampled_from([*LAWS, "", "no_law", "path following"])
+        c.ChooseLaw, SOME_SIDES, st.sampled_from([*LAWS, "", "no_law", "path following"])
     ),
-    c.TypeLaw: st.builds(c.TypeLaw, SOME_BENCHES, st.sampled_from(TYPED)),
+    c.TypeLaw: st.builds(c.TypeLaw, SOME_SIDES, st.sampled_from(TYPED)),
     c.SetCopy: st.builds(c.SetCopy, st.booleans()),
     c.SetHoldDirection: st.builds(c.SetHoldDirection, st.sampled_from([*DIRECTIONS, "", "up"])),
     c.SetWall: st.builds(c.SetWall, st.sampled_from([None, True, True, False])),
@@ -199,7 +199,7 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
             lab.advance(lab.session.rate * FRAME)
         assert_sound(lab)
     do(lab, c.ResetParameters(), c.ChoosePath("circle"), c.SetRate(1.0))
-    do(lab, *[c.ChooseLaw(bench, law) for bench, law in DEFAULT_LAWS.items()])
+    do(lab, *[c.ChooseLaw(side, law) for side, law in DEFAULT_LAWS.items()])
     do(lab, c.SetWall(False), c.StartOnPath(), c.SetRunning(True))
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
@@ -305,7 +305,7 @@ def test_a_pull_to_no_point_is_refused_by_its_command(command: c.Command) -> Non
     lab = new_lab(0.1)
     do(lab, command)
     assert "not a" in lab.message and lab.message_level == "warning"
-    assert not lab.session.grips.hands and lab.session.grips.grabbed is None
+    assert not lab.session.forces.hands and lab.session.forces.grabbed is None
 
 
 @given(st.data())
@@ -381,17 +381,17 @@ def test_both_robots_share_path_parameters_and_clock() -> None:
         assert np.array_equal(*values), name
 
 
-@pytest.mark.parametrize("bench", BENCHES)
+@pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("copy", [True, False])
-def test_hold_acts_on_both_with_copy_and_on_one_without(bench: str, copy: bool) -> None:
+def test_hold_acts_on_both_with_copy_and_on_one_without(side: str, copy: bool) -> None:
     lab = new_lab(0.5)
-    do(lab, c.SetCopy(copy), c.Hold(True, bench))
-    assert lab.session.grips.held == (set(BENCHES) if copy else {bench})
+    do(lab, c.SetCopy(copy), c.Hold(True, side))
+    assert lab.session.forces.held == (set(SIDES) if copy else {side})
     run(lab, 0.2)
     for name, run_ in lab.session.runs.items():
         force = np.linalg.norm(run_.shown()["force"])
-        assert (force > 0.1) == (name in lab.session.grips.held)
-    do(lab, c.Hold(False, bench))
+        assert (force > 0.1) == (name in lab.session.forces.held)
+    do(lab, c.Hold(False, side))
     run(lab, 0.1)
     assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
 
@@ -404,30 +404,30 @@ def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
     assert shown.held
     assert shown.robots[FOLLOWER].max_distance < 0.004 < 0.03 < shown.robots[TRACKER].max_distance
     do(lab, c.Hold())
-    assert not lab.session.grips.held
+    assert not lab.session.forces.held
 
 
-@pytest.mark.parametrize("bench", BENCHES)
+@pytest.mark.parametrize("side", SIDES)
 @pytest.mark.parametrize("copy", [True, False])
-def test_grab_pulls_both_by_the_same_or_one_alone(bench: str, copy: bool) -> None:
+def test_grab_pulls_both_by_the_same_or_one_alone(side: str, copy: bool) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetCopy(copy))
-    before = {name: lab.session.runs[name].shown()["y"].copy() for name in BENCHES}
+    before = {name: lab.session.runs[name].shown()["y"].copy() for name in SIDES}
     assert np.linalg.norm(before[FOLLOWER] - before[TRACKER]) > 0.01  # they are not in one place
     for shift in ([0.02, 0.01], [0.03, -0.02]):
-        do(lab, c.Grab(bench, before[bench] + np.array(shift)))
-        assert set(lab.session.grips.hands) == (set(BENCHES) if copy else {bench})
-        for name, hand in lab.session.grips.hands.items():
+        do(lab, c.Grab(side, before[side] + np.array(shift)))
+        assert set(lab.session.forces.hands) == (set(SIDES) if copy else {side})
+        for name, hand in lab.session.forces.hands.items():
             assert hand - before[name] == pytest.approx(shift)
     lab.session.simulate(1)
     pulled = {n for n, r in lab.session.runs.items() if np.linalg.norm(r.shown()["force"]) > 0.1}
-    assert pulled == set(lab.session.grips.hands)
-    other = next(name for name in BENCHES if name != bench)
+    assert pulled == set(lab.session.forces.hands)
+    other = next(name for name in SIDES if name != side)
     do(lab, c.Release(other))
-    assert lab.session.grips.hands  # that robot was not the one being pulled
-    do(lab, c.Release(bench))
+    assert lab.session.forces.hands  # that robot was not the one being pulled
+    do(lab, c.Release(side))
     lab.session.simulate(1)
-    assert not lab.session.grips.hands and take_snapshot(lab, 1.0).grabbed is None
+    assert not lab.session.forces.hands and take_snapshot(lab, 1.0).grabbed is None
     assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
 
 
@@ -438,7 +438,7 @@ def test_the_hand_holds_one_robot_at_a_time_unless_it_is_copied() -> None:
         do(lab, c.Grab(name, y(lab.session, name) + np.array([0.02, 0.02])))
         lab.session.simulate(1)
         pulled = {n for n, r in lab.session.runs.items() if np.any(r.shown()["force"] != 0)}
-        assert pulled == {name} == set(lab.session.grips.hands)
+        assert pulled == {name} == set(lab.session.forces.hands)
 
 
 def test_same_state_same_hand_same_force() -> None:
@@ -462,8 +462,8 @@ def test_tug_takes_hold_and_adds_up() -> None:
     do(lab, c.SetRunning(False))
     start = lab.session.runs[FOLLOWER].shown()["y"].copy()
     do(lab, c.MoveHand(0.01, 0.0), c.MoveHand(0.01, -0.01))
-    assert lab.session.grips.grabbed == FOLLOWER
-    assert lab.session.grips.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
+    assert lab.session.forces.grabbed == FOLLOWER
+    assert lab.session.forces.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
 
 
 # The path

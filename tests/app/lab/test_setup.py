@@ -74,7 +74,7 @@ def everything(lab: Lab) -> list[Any]:
         len(lab.session.history),
         lab.session.running,
     ]
-    return [*kept, dict(lab.session.earlier), lab.session.grips.held.copy(), lab.message]
+    return [*kept, dict(lab.session.earlier), lab.session.forces.held.copy(), lab.message]
 
 
 def test_a_new_lab_has_nothing_to_tell() -> None:
@@ -142,7 +142,7 @@ def test_robots_start_on_the_new_path_and_undo_brings_the_old() -> None:
     assert lab.session.editor.design.name == "circle"
 
 
-def test_every_bench_is_kept_and_those_not_named_are_as_new() -> None:
+def test_every_side_is_kept_and_those_not_named_are_as_new() -> None:
     lab = new_lab()
     do(lab, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
     do(lab, ChoosePath("segment"))
@@ -169,7 +169,7 @@ def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
 
 BAD: dict[str, tuple[Setup, str]] = {
     "robot": (Setup(robot="six_bar"), "unknown robot"),
-    "bench": (Setup(robots={"six_bar": RobotSetup()}), "unknown robot"),
+    "side": (Setup(robots={"six_bar": RobotSetup()}), "unknown robot"),
     "parameter": (Setup(robots={RIGID: RobotSetup({"K9": 1.0})}), "unknown parameter"),
     "another robot's parameter": (
         Setup(robots={RIGID: RobotSetup({"alpha": 1.0})}),

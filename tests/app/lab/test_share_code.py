@@ -67,8 +67,8 @@ def test_codes_are_short() -> None:
 def test_codes_of_version_1_stay_readable() -> None:
     """They are in people's notes: a change that breaks this one is another version."""
     old = "ONPATH1-VNDISD44OEAPFARBFBKIATVKAUAA-GZ47G5I"
-    bench = decode(old).robots["five_bar"]
-    assert bench.parameters == {
+    side = decode(old).robots["five_bar"]
+    assert side.parameters == {
         "K3": 100.0,
         "tracker_integral": "on",
         "at_limit_for": "path_following",
@@ -147,7 +147,7 @@ def test_each_mistake_has_its_message(text: str, words: str) -> None:
         decode(text)
 
 
-BENCH = {"parameters": {"K1": 1e9}}
+NOT_A_GAIN = {"parameters": {"K1": 1e9}}
 HOSTILE: dict[str, Any] = {
     "not JSON": b"hello",
     "not text": b'{"robot":"\xff\xfe"}',
@@ -161,9 +161,9 @@ HOSTILE: dict[str, Any] = {
     "unknown field": {"admin": True},
     "unknown inner field": {"benches": {"five_bar": {"code": "import os"}}},
     "unknown robot": {"robot": "six_bar"},
-    "unknown bench": {"benches": {"six_bar": {}}},
+    "unknown side": {"benches": {"six_bar": {}}},
     "script": {"benches": {"five_bar": {"parameters": {"<script>alert(1)</script>": 1}}}},
-    "out of range": {"benches": {"five_bar": BENCH}},
+    "out of range": {"benches": {"five_bar": NOT_A_GAIN}},
     "NaN": b'{"rate":NaN}',
     "infinity": b'{"rate":Infinity}',
     "1e999": b'{"rate":1e999}',
@@ -175,7 +175,7 @@ HOSTILE: dict[str, Any] = {
     "copy": {"copy": 1},
     "points": {"benches": {"five_bar": {"path": {"name": "edited", "numbers": [1e300, 0]}}}},
     "many": {"benches": {"five_bar": {"path": {"name": "drawn", "numbers": [0] * 5000}}}},
-    "many benches": {"benches": {f"r{i}": {} for i in range(1000)}},
+    "many sides": {"benches": {f"r{i}": {} for i in range(1000)}},
 }
 
 

@@ -52,8 +52,8 @@ def test_the_lab_and_the_command_line_compute_the_same() -> None:
     lab = lab_with("stop_and_go", 2.0)
     values = {"speed_profile": "stop_and_go", "profile_period": 1.3, "duration": 2.0}
     known = experiments()["obstruction"].with_values({**values, "hold_from": 0, "hold_to": 0})
-    for bench, law in ((FOLLOWER, "path_following"), (TRACKER, "trajectory_tracking")):
-        here, there = replayed(lab.session)[bench], run_experiment(known, law)
+    for side, law in ((FOLLOWER, "path_following"), (TRACKER, "trajectory_tracking")):
+        here, there = replayed(lab.session)[side], run_experiment(known, law)
         count = len(here.t)
         assert here.fields["q"] == pytest.approx(there.fields["q"][:count], abs=1e-9)
 
@@ -63,8 +63,8 @@ def test_a_profile_is_the_same_however_its_time_is_cut_into_frames() -> None:
     coarse.session.simulate(1000)
     for _ in range(500):
         fine.session.simulate(2)
-    for bench, state in states(coarse.session).items():
-        assert np.array_equal(state, states(fine.session)[bench])
+    for side, state in states(coarse.session).items():
+        assert np.array_equal(state, states(fine.session)[side])
 
 
 def test_the_history_replays_to_the_present_and_beyond_a_branch() -> None:
@@ -73,9 +73,9 @@ def test_the_history_replays_to_the_present_and_beyond_a_branch() -> None:
     do(lab, c.LookAt(1.0), c.GoOn())
     at = round(lab.session.time / 1e-3)
     run(lab, 0.5)
-    for bench, log in replayed(lab.session).items():
+    for side, log in replayed(lab.session).items():
         count = min(len(log.t), at + 400)
-        expected = before[bench].fields["theta"][:count]
+        expected = before[side].fields["theta"][:count]
         assert log.fields["theta"][:count] == pytest.approx(expected, abs=1e-9)
 
 
@@ -98,13 +98,13 @@ def test_without_a_profile_the_speed_is_that_of_the_slider_again() -> None:
 
 def test_a_profile_needs_no_other_loop() -> None:
     lab = lab_with("constant", 0.1)
-    kinds = {bench: run.kind for bench, run in lab.session.runs.items()}
-    loops = {bench: run.loop() for bench, run in lab.session.runs.items()}
+    kinds = {side: run.kind for side, run in lab.session.runs.items()}
+    loops = {side: run.loop() for side, run in lab.session.runs.items()}
     for shape in SHAPES:
         do(lab, c.SetParameter("speed_profile", shape))
         run(lab, 4 * FRAME)
-        for bench, own in lab.session.runs.items():
-            assert own.kind == kinds[bench] and own.loop() is loops[bench]
+        for side, own in lab.session.runs.items():
+            assert own.kind == kinds[side] and own.loop() is loops[side]
 
 
 @pytest.mark.parametrize("shape", SHAPES)

@@ -17,7 +17,7 @@ from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data
 from onpath.models.closed_loop.start import BOUNDS, ON_PATH, Start, nearest_start
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.experiments import experiments
 from onpath.models.studies.experiments import run as run_experiment
@@ -60,7 +60,7 @@ def test_it_starts_where_and_as_it_is_told(robot: str) -> None:
         z = frame.planar(y(session, name)) - curve.at(np.array(0.7))[:2]
         assert (z @ along, z @ left) == pytest.approx((0.0, -0.012), abs=1e-6)
         assert state.fields()["theta_ref"][0] == pytest.approx(0.7 + 0.4, abs=1e-3)
-    before = {name: frame.planar(y(session, name)) for name in BENCHES}
+    before = {name: frame.planar(y(session, name)) for name in SIDES}
     session.simulate(1)
     if session.robot.system.n == session.robot.system.m:  # a beam bends at once
         for name, z in before.items():
@@ -188,7 +188,7 @@ def test_set_ups_and_share_codes_carry_it_and_old_ones_start_as_ever() -> None:
     other = new_lab()
     restore(other.session, decode(encode(setup)))
     assert other.session.start == OFF and capture(other.session) == setup
-    for name in BENCHES:
+    for name in SIDES:
         assert y(other.session, name) == pytest.approx(y(at(OFF).session, name), abs=1e-9)
     restore(other.session, from_data({"benches": {"five_bar": {"parameters": {"K1": 300.0}}}}))
     assert other.session.start == ON_PATH

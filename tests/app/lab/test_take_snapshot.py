@@ -8,7 +8,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
-from onpath.models.control.benches import RIGHT
+from onpath.models.control.sides import RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.drawing import drawn as drawn_skeleton
 from tests.support.lab import FOLLOWER, do, new_lab, run

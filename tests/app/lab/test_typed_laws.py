@@ -30,13 +30,13 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_sn
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.lessons.action_schema import Laws, StepSetup
-from onpath.lessons.benches import bench_titles, law_label, law_text, robot_names
+from onpath.lessons.sides import law_label, law_text, robot_names, side_titles
 from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import Start
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.control.laws.own import MEANINGS, PATH_FOLLOWING, SPACE_MEANINGS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.systems.catalogue import FLEXIBLE
 from tests.support.lab import FRAME, assert_sound, do, run, states
 from tests.support.some_setups import CALM
@@ -51,7 +51,7 @@ def typed(left: str = "", right: str = "", seconds: float = 0.3) -> Lab:
     """A lab under typed laws that has run for some time."""
     lab = Lab(STORE)
     run(lab, 0.3)
-    do(lab, *[c.TypeLaw(bench, law) for bench, law in ((LEFT, left), (RIGHT, right)) if law])
+    do(lab, *[c.TypeLaw(side, law) for side, law in ((LEFT, left), (RIGHT, right)) if law])
     run(lab, seconds)
     assert not lab.law_refusals
     return lab
@@ -106,10 +106,10 @@ def test_a_wrong_text_is_told_and_changes_nothing(text: str, said: str) -> None:
     assert lab.session.laws[LEFT] == PATH_FOLLOWING
 
 
-def test_an_unknown_bench_is_refused() -> None:
+def test_an_unknown_side_is_refused() -> None:
     lab = Lab(STORE)
     do(lab, c.TypeLaw("middle", PATH_FOLLOWING))
-    assert "unknown bench" in lab.message and lab.law_refusals == {}
+    assert "unknown side" in lab.message and lab.law_refusals == {}
 
 
 def test_a_law_that_gives_no_number_stops_the_robot_and_says_so() -> None:
@@ -127,10 +127,10 @@ def test_titles_labels_and_texts() -> None:
     for words, own in ((Words("en"), "Own law"), (Words("de"), "Eigenes Gesetz")):
         assert law_label(SLOW, words) == law_label("own", words) == own
         assert law_text(SLOW, words) == SLOW
-        assert bench_titles({LEFT: SLOW, RIGHT: "path_following"}, words)[LEFT] == own
-        both = bench_titles({LEFT: SLOW, RIGHT: CHASING}, words)
+        assert side_titles({LEFT: SLOW, RIGHT: "path_following"}, words)[LEFT] == own
+        both = side_titles({LEFT: SLOW, RIGHT: CHASING}, words)
         assert len(set(both.values())) == 2 and all(own in title for title in both.values())
-        assert bench_titles({LEFT: (SLOW, CHASING, SLOW)}, words) == {LEFT: own}
+        assert side_titles({LEFT: (SLOW, CHASING, SLOW)}, words) == {LEFT: own}
         assert robot_names({LEFT: SLOW}, words)["tracker"] == own
 
 
@@ -138,16 +138,16 @@ def test_an_event_tells_that_a_law_was_typed_and_not_its_text() -> None:
     lab = typed(left=SLOW)
     event = lab.session.events.last
     assert event is not None
-    assert (event.name, event.detail, event.benches) == ("law", "own", (LEFT,))
+    assert (event.name, event.detail, event.sides) == ("law", "own", (LEFT,))
 
 
 def test_the_marker_is_what_the_law_aims_at() -> None:
     lab = typed(left=SLOW, right=CHASING)
     session, shown = lab.session, take_snapshot(lab, 1.0)
-    for bench, aim in ((LEFT, "theta"), (RIGHT, "theta_ref")):
-        at = session.runs[bench].shown()[aim]
+    for side, aim in ((LEFT, "theta"), (RIGHT, "theta_ref")):
+        at = session.runs[side].shown()[aim]
         place = session.robot.place(session.robot.frame.lift(session.editor.curve.at(at)))
-        assert shown.robots[bench].points[MARKER] == pytest.approx(place[0], abs=1e-6)
+        assert shown.robots[side].points[MARKER] == pytest.approx(place[0], abs=1e-6)
 
 
 # What carries it.
@@ -171,10 +171,8 @@ def test_a_set_up_carries_it_by_code_and_by_the_kept_lab() -> None:
 
 def test_the_code_of_the_longest_laws_can_be_pasted() -> None:
     terms = " + ".join(f"{n}.{n * n}*sin({n}*xi)" for n in range(1, 99))
-    laws = {bench: f"across = {terms}"[: LONGEST - 20] for bench in BENCHES}
-    laws = {
-        bench: law[: law.rindex(" +")] + f"; along = {len(bench)}" for bench, law in laws.items()
-    }
+    laws = {side: f"across = {terms}"[: LONGEST - 20] for side in SIDES}
+    laws = {side: law[: law.rindex(" +")] + f"; along = {len(side)}" for side, law in laws.items()}
     code = encode(Setup(laws=laws))
     assert decode(code).laws == laws and len(code) < Limits().max_text_length
 
@@ -214,7 +212,7 @@ def test_history_replay_and_files() -> None:
     for time, torque in seen:
         assert np.array_equal(u[round(time * 1e3) - 1], torque)
     rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.session.robot, history).decode())))
-    names = dict.fromkeys(row["law"] for row in rows if row["bench"] == LEFT)
+    names = dict.fromkeys(row["law"] for row in rows if row["side"] == LEFT)
     assert list(names) == [CHASING, "set_point", SLOW]
     assert draw_history(replay(lab.session.robot, history)).startswith(b"\x89PNG")
     assert record_scene(lab.session.robot, history).rstrip().endswith(b"</html>")
@@ -229,8 +227,8 @@ def test_going_on_from_before_a_typed_law_and_back() -> None:
     assert lab.session.laws[LEFT] == SLOW
     run(lab, 0.2)
     do(lab, c.UndoGoOn())
-    for bench, state in states(lab.session).items():
-        assert np.array_equal(state, end[bench])
+    for side, state in states(lab.session).items():
+        assert np.array_equal(state, end[side])
     assert_sound(lab)
 
 

@@ -19,7 +19,7 @@ from onpath.models.closed_loop import simulation
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
 from onpath.models.closed_loop.simulation import kernel_of, kind_of
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -39,7 +39,7 @@ def key(number: float) -> Key:
     return ROBOT, kind_of(law(number), FIVE_BAR.parameters(), CURVE)
 
 
-class Bench:
+class Side:
     """Typed loops with a clock and a background that go on when the test says so."""
 
     def __init__(self) -> None:
@@ -81,69 +81,69 @@ def cheap(monkeypatch: pytest.MonkeyPatch) -> list[Kernel]:
 
 
 def test_only_the_loops_used_last_are_kept(cheap: list[Kernel]) -> None:
-    bench, lab = Bench(), Owner()
+    side, lab = Side(), Owner()
     for number in range(MOST + 20):
-        bench.time += WITHIN
-        bench.loops.want(lab, [key(number)])
-        assert bench.work() == 1
-        assert bench.loops.find(key(0)) is not None  # it is used all the time
-        assert len(bench.loops) <= MOST
-    assert bench.loops.find(key(MOST + 19)) is not None
-    assert all(bench.loops.find(key(number)) is None for number in range(1, 21))
+        side.time += WITHIN
+        side.loops.want(lab, [key(number)])
+        assert side.work() == 1
+        assert side.loops.find(key(0)) is not None  # it is used all the time
+        assert len(side.loops) <= MOST
+    assert side.loops.find(key(MOST + 19)) is not None
+    assert all(side.loops.find(key(number)) is None for number in range(1, 21))
 
 
 def test_what_is_not_kept_is_freed() -> None:
-    bench, lab = Bench(), Owner()
-    bench.loops.want(lab, [key(0.5)])
-    bench.work()
-    loop = weakref.ref(bench.loops.find(key(0.5)))
+    side, lab = Side(), Owner()
+    side.loops.want(lab, [key(0.5)])
+    side.work()
+    loop = weakref.ref(side.loops.find(key(0.5)))
     assert isinstance(loop(), CompiledLoop)
     for number in range(MOST):
-        bench.loops._put(key(1000 + number), CodedError("error.law_cannot_run"))
+        side.loops._put(key(1000 + number), CodedError("error.law_cannot_run"))
     simulation._typed_kernel.cache_clear()
     gc.collect()
     assert loop() is None
 
 
 def test_a_thousand_laws_of_one_lab_leave_one_waiting(cheap: list[Kernel]) -> None:
-    bench, greedy, other = Bench(), Owner(), Owner()
+    side, greedy, other = Side(), Owner(), Owner()
     for number in range(1000):
-        bench.loops.want(greedy, [key(number)])
-    bench.loops.want(other, [key(-1)])
-    assert bench.work() == 2  # the last one, and that of the other lab
-    assert bench.loops.find(key(999)) is not None and bench.loops.find(key(-1)) is not None
+        side.loops.want(greedy, [key(number)])
+    side.loops.want(other, [key(-1)])
+    assert side.work() == 2  # the last one, and that of the other lab
+    assert side.loops.find(key(999)) is not None and side.loops.find(key(-1)) is not None
     assert len(cheap) == 2
 
 
 def test_a_lab_that_wants_many_has_to_wait_and_others_do_not(cheap: list[Kernel]) -> None:
-    bench, greedy, other = Bench(), Owner(), Owner()
+    side, greedy, other = Side(), Owner(), Owner()
     done = 0
     for number in range(200):
-        bench.time += WITHIN / 100
-        bench.loops.want(greedy, [key(number)])
-        done += bench.work()
+        side.time += WITHIN / 100
+        side.loops.want(greedy, [key(number)])
+        done += side.work()
     assert done <= 2 * (MOST_MADE + 1)  # in two times WITHIN
-    bench.loops.want(other, [key(-1)])
-    assert bench.work() == 1
-    bench.time += WITHIN
-    bench.loops.want(greedy, [key(199)])
-    bench.work()
-    assert bench.loops.find(key(199)) is not None
+    side.loops.want(other, [key(-1)])
+    assert side.work() == 1
+    side.time += WITHIN
+    side.loops.want(greedy, [key(199)])
+    side.work()
+    assert side.loops.find(key(199)) is not None
 
 
 def test_two_labs_that_want_the_same_get_one_loop(cheap: list[Kernel]) -> None:
-    bench, first, second = Bench(), Owner(), Owner()
+    side, first, second = Side(), Owner(), Owner()
     for lab in (first, second):
-        bench.loops.want(lab, [key(1)])
-    bench.loops.want(first, [])  # which withdraws what both wait for
-    bench.loops.want(second, [key(1)])
-    assert bench.work() == 1 and bench.loops.find(key(1)) is not None
+        side.loops.want(lab, [key(1)])
+    side.loops.want(first, [])  # which withdraws what both wait for
+    side.loops.want(second, [key(1)])
+    assert side.work() == 1 and side.loops.find(key(1)) is not None
 
 
 def test_what_cannot_be_made_is_an_error_and_nobody_else_is_affected(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    bench, lab, good = Bench(), Owner(), typed_loops.kernel_of
+    side, lab, good = Side(), Owner(), typed_loops.kernel_of
 
     def failing(robot: object, kind: object) -> Kernel:
         if (robot, kind) == key(1):
@@ -151,11 +151,11 @@ def test_what_cannot_be_made_is_an_error_and_nobody_else_is_affected(
         return good(*key(2))
 
     monkeypatch.setattr(typed_loops, "kernel_of", failing)
-    bench.loops.want(lab, [key(1), key(2)])
-    bench.work()
+    side.loops.want(lab, [key(1), key(2)])
+    side.work()
     with pytest.raises(CodedError, match="not possible"):
-        bench.loops.find(key(1))
-    assert isinstance(bench.loops.find(key(2)), CompiledLoop)
+        side.loops.find(key(1))
+    assert isinstance(side.loops.find(key(2)), CompiledLoop)
 
 
 def test_kernels_of_typed_laws_displace_no_others() -> None:
@@ -193,8 +193,8 @@ def test_a_lab_keeps_the_loop_that_it_uses() -> None:
         run(each, 0.3)
         assert_sound(each)
     assert [each.loop() for each in lab.session.runs.values()] == loops and len(built) == 2
-    for bench in BENCHES:
-        assert (states(lab.session)[bench] == states(same.session)[bench]).all()
+    for side in SIDES:
+        assert (states(lab.session)[side] == states(same.session)[side]).all()
     store.close()
 
 
@@ -208,14 +208,14 @@ def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
     for number in range(300):
         do(
             greedy,
-            *[c.TypeLaw(bench, law(number + each / 4)) for each, bench in enumerate(BENCHES)],
+            *[c.TypeLaw(side, law(number + each / 4)) for each, side in enumerate(SIDES)],
         )
         run(greedy, FRAME)
         if number == 150:
             do(other, c.ChooseLaw(LEFT, "waiting_clock"), c.TypeLaw(RIGHT, law(-1)))
     wanted = {LEFT: "waiting_clock", RIGHT: law(-1)}
     wait_for(lambda: (run(other, FRAME), other.session.laws == wanted)[1], PATIENCE)
-    assert len(made) <= MOST_MADE + 2 * len(BENCHES) + 1
+    assert len(made) <= MOST_MADE + 2 * len(SIDES) + 1
     assert greedy.session.chosen_laws == {LEFT: law(299), RIGHT: law(299.25)}
     for each in (greedy, other):
         run(each, 0.1)

@@ -17,8 +17,8 @@ from onpath.app.exports.standalone.figure_data import stop_texts
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
-from onpath.models.control.benches import BENCHES
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import SIDES
 from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
@@ -88,8 +88,8 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
     choose(lab, 1.0)
     do(lab, c.SetRunning(True))
     run(lab, 0.3)
-    for bench in BENCHES:
-        stopped = lab.session.runs[bench].diverged
+    for side in SIDES:
+        stopped = lab.session.runs[side].diverged
         assert stopped is not None
         assert f"Likely cause: the {SINGULAR}" in str(stopped.reason)
     assert SINGULAR in lab.message and lab.message_level == "error"

@@ -22,7 +22,7 @@ from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.obstacles import wall_then
 from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
-from onpath.models.control.benches import BENCHES
+from onpath.models.control.sides import SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import (
     FOLLOWER,
@@ -80,7 +80,7 @@ def test_a_wall_that_nobody_reaches_changes_nothing(z1: float, z2: float, angle:
     aside = np.array([-ahead[1], ahead[0]])
     z = -0.06 * ahead + (z1 + z2) * aside
     lab, free = walled(0.4, Wall(float(z[0]), float(z[1]), angle)), new_lab(0.4)
-    for name in BENCHES:
+    for name in SIDES:
         np.testing.assert_array_equal(y(lab.session, name), y(free.session, name))
 
 
@@ -124,11 +124,11 @@ def test_it_stays_from_run_to_run_and_belongs_to_its_robot() -> None:
     lab = walled(0.2, Wall(0.0, 0.04, 1.0))
     wall = lab.session.wall
     do(lab, c.Reset())
-    assert lab.session.wall == wall and all(p.wall for p in lab.session.grips.pushes.values())
+    assert lab.session.wall == wall and all(p.wall for p in lab.session.forces.pushes.values())
     do(lab, c.ChooseRobot("flexible"))
-    assert lab.session.wall is None and not any(p.acts for p in lab.session.grips.pushes.values())
+    assert lab.session.wall is None and not any(p.acts for p in lab.session.forces.pushes.values())
     do(lab, c.ChooseRobot("five_bar"))
-    assert lab.session.wall == wall and all(p.wall for p in lab.session.grips.pushes.values())
+    assert lab.session.wall == wall and all(p.wall for p in lab.session.forces.pushes.values())
 
 
 def test_hands_and_brakes_come_and_go_and_the_wall_stays() -> None:
@@ -139,10 +139,10 @@ def test_hands_and_brakes_come_and_go_and_the_wall_stays() -> None:
     ):
         do(lab, command)
         run(lab, 0.1)
-        assert all(push.wall is not None for push in lab.session.grips.pushes.values())
+        assert all(push.wall is not None for push in lab.session.forces.pushes.values())
         assert_sound(lab)
     do(lab, c.Release())
-    for push in lab.session.grips.pushes.values():
+    for push in lab.session.forces.pushes.values():
         assert push.hand is None and push.hold is None and push.hold_normal is None
 
 
@@ -198,9 +198,9 @@ def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_presen
     do(lab, c.LookAt(0.7))
     assert take_snapshot(lab, 1.0).wall[0][0] == pytest.approx(then[0][0] + 0.02)
     do(lab, c.GoOn())
-    assert lab.session.wall is None and not any(p.acts for p in lab.session.grips.pushes.values())
+    assert lab.session.wall is None and not any(p.acts for p in lab.session.forces.pushes.values())
     do(lab, c.SetWall(True), c.UndoGoOn())
-    assert all(push.wall is not None for push in lab.session.grips.pushes.values())
+    assert all(push.wall is not None for push in lab.session.forces.pushes.values())
 
 
 def test_a_film_shows_the_wall_while_it_stands() -> None:
@@ -235,7 +235,7 @@ def test_set_ups_and_share_codes_carry_wall_and_direction() -> None:
     assert astuple(other.session.wall) == pytest.approx(astuple(lab.session.wall), rel=1e-5)
     do(other, c.ChooseRobot("five_bar"))
     assert other.session.wall == Wall(0.0123456, -0.04, 2.5)
-    assert all(push.wall is not None for push in other.session.grips.pushes.values())
+    assert all(push.wall is not None for push in other.session.forces.pushes.values())
     restore(other.session, Setup())
     assert capture(other.session) == Setup()
 
@@ -259,7 +259,7 @@ def test_a_hold_acts_in_the_directions_chosen_and_is_free_in_the_others(directio
     do(lab, c.SetParameter("speed", 2.0))
     run(lab, 0.6)
     do(lab, c.SetHoldDirection(direction), c.Hold(True))
-    push = lab.session.grips.pushes[FOLLOWER]
+    push = lab.session.forces.pushes[FOLLOWER]
     assert push.hold is not None
     curve, theta = lab.session.editor.curve, lab.session.runs[FOLLOWER].shown()["theta"]
     along = curve.at(theta, 1)[0] / np.linalg.norm(curve.at(theta, 1)[0])
@@ -283,5 +283,5 @@ def test_another_direction_is_taken_at_once_by_a_hold_that_is_on() -> None:
     do(lab, c.Hold(True))
     run(lab, 0.2)
     do(lab, c.SetHoldDirection("both"))
-    assert lab.session.grips.held == set(BENCHES)
-    assert all(push.hold_normal is not None for push in lab.session.grips.pushes.values())
+    assert lab.session.forces.held == set(SIDES)
+    assert all(push.hold_normal is not None for push in lab.session.forces.pushes.values())

@@ -22,9 +22,9 @@ from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.app.notebook import figure as figures
 from onpath.app.server.new_lab import new_lab as newcomers_lab
 from onpath.lessons.course import NO_LESSONS
-from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import changed, specs
+from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.figure_runs import PythonFigure
 from tests.support.lab import do, new_lab, store
@@ -133,7 +133,7 @@ def figure_of(
 def in_a_figure(choice: FigureChoice, own: dict[str, Any]) -> np.ndarray:
     page = PythonFigure(choice)
     page.act(("advance", ticks(own)))
-    return page.benches[0].y
+    return page.sides[0].y
 
 
 @pytest.mark.parametrize("robot", ROBOTS)

@@ -1,4 +1,4 @@
-"""The comparison of laws offers those that are typed on the benches."""
+"""The comparison of laws offers those that are typed on the sides."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.compare_panel import ComparePanel, comparison_html
-from onpath.lessons.benches import law_label
+from onpath.lessons.sides import law_label
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import do, new_lab, run
 
 TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 OTHER = "across = -K1*xi - 30*dxi; along = -K5*(dtheta - speed)"
-BOXES = {bench: ENGLISH(f"laws.own_{bench}") for bench in (LEFT, RIGHT)}
+BOXES = {side: ENGLISH(f"laws.own_{side}") for side in (LEFT, RIGHT)}
 
 
 class Gui:
@@ -87,7 +87,7 @@ def test_a_typed_law_can_be_chosen_while_it_is_there() -> None:
     assert not box.visible and TYPED not in asked[-1]
 
 
-def test_the_same_law_on_both_benches_is_compared_once_and_six_are_the_most() -> None:
+def test_the_same_law_on_both_sides_is_compared_once_and_six_are_the_most() -> None:
     lab = new_lab(0.1)
     do(lab, c.TypeLaw(RIGHT, TYPED), c.TypeLaw(LEFT, TYPED))
     run(lab, 0.2)

@@ -12,12 +12,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.law_panel import LawPanel
-from onpath.lessons.benches import law_label
+from onpath.lessons.sides import law_label
 from onpath.lessons.words import ENGLISH, Words
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.expressions import FUNCTIONS
 from onpath.models.control.laws.own import PATH_FOLLOWING, SPACE, VIEW
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.lab import FRAME, do, new_lab, run
 
 SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"

@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 
 from onpath.app.page.panels.phase_plot import HEIGHT, WIDTH, phase_picture
 from onpath.lessons.words import ENGLISH
-from onpath.models.control.benches import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS
 
 values = st.floats(-0.5, 0.5) | st.just(float("nan"))
 

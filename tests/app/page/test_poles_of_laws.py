@@ -11,7 +11,7 @@ from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.gains_panel import channels_by_owner, lines_of_poles
 from onpath.lessons.words import Words
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.support.lab import FRAME, do, new_lab, run
 
 BOTH = c.ChooseLaw(LEFT, "contouring"), c.ChooseLaw(RIGHT, "virtual_constraint")
@@ -39,8 +39,8 @@ def test_each_law_has_its_own_poles_and_the_place_where_they_vary(language: str)
     words = Words(language)
     snapshot, _ = taken_after(0.0, c.SetParameter("tracker_integral", "on"))
     contour_across, contour_along, wire_across, wire_along = lines(snapshot, words)
-    for bench, line in ((LEFT, contour_across), (RIGHT, wire_along)):
-        degrees = np.degrees(snapshot.places.of[bench].theta) % 360
+    for side, line in ((LEFT, contour_across), (RIGHT, wire_along)):
+        degrees = np.degrees(snapshot.places.of[side].theta) % 360
         assert f"θ = {degrees:.0f}°" in line
     for line in (contour_along, wire_across):
         assert "θ" not in line

@@ -93,10 +93,10 @@ class Drawing:
             for module in (_gui_api, _gui_handles):
                 patch.setattr(module, "_make_uuid", lambda: f"widget {next(numbers)}")
             seat = ClassSeat(lambda *_: "", lambda: None, lambda _: "")
-            desk = PageContext("k" * 12, self.posted.append, self._course, 365, print, seat)
+            context = PageContext("k" * 12, self.posted.append, self._course, 365, print, seat)
             first, *others = snapshots
             assert isinstance(first, PageSnapshot)
-            page = Page(self._client, first, desk)
+            page = Page(self._client, first, context)
             for snapshot in others:
                 assert page.is_ready
                 page.show(snapshot)

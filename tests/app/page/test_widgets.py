@@ -16,8 +16,8 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.widgets import PRESS_ENDS, OwnGainWidgets, ParameterWidgets, on_hold
 from onpath.lessons.words import ENGLISH
-from onpath.models.control.benches import LEFT, RIGHT
 from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.sides import LEFT, RIGHT
 from tests.support.lab import store
 
 

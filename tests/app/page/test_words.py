@@ -30,11 +30,11 @@ from onpath.lessons.record import PLOTS
 from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
-from onpath.models.control.benches import DEFAULT_LAWS
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
 from onpath.models.control.settable import specs
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.errors import CodedError, Message, said_by
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
@@ -72,7 +72,7 @@ KEYS_MADE = (
         "sure.",
     ),
     *("caption.", "invite.", "spoken."),
-    *("bench.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
+    *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control."),
     *("readout.distance", "readout.now", "readout.most"),

@@ -36,7 +36,7 @@ def test_what_a_hold_does_is_said_of_the_law_that_has_a_clock_and_of_the_one_wit
     assert seen(lab, captions, 0.5) == {TRACKER: "", FOLLOWER: ""}
     do(lab, c.Hold(True))
     held = seen(lab, captions, 2.0)
-    most = {bench: round(1e3 * run.max_distance) for bench, run in lab.session.runs.items()}
+    most = {side: round(1e3 * run.max_distance) for side, run in lab.session.runs.items()}
     assert held[TRACKER] == f"torn off: {most[TRACKER]} mm" and most[TRACKER] > 40
     assert held[FOLLOWER].startswith("waits: ") and number(held[FOLLOWER]) <= 5
     do(lab, c.Hold(False))
@@ -84,14 +84,14 @@ def test_nothing_is_spoken_of_robots_that_have_no_caption() -> None:
     assert spoken({TRACKER: "", FOLLOWER: ""}, titles, ENGLISH) == ""
 
 
-@pytest.mark.parametrize("bench", [TRACKER, FOLLOWER])
-def test_a_pull_is_said_and_ends(bench: str) -> None:
+@pytest.mark.parametrize("side", [TRACKER, FOLLOWER])
+def test_a_pull_is_said_and_ends(side: str) -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
     do(lab, *[c.MoveHand(0.01, 0.0)] * 3)
     said = seen(lab, captions, 0.5)
-    assert said[bench].startswith("pulled: ")
+    assert said[side].startswith("pulled: ")
     do(lab, c.Release())
-    assert not seen(lab, captions, 3.0)[bench]
+    assert not seen(lab, captions, 3.0)[side]
 
 
 def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:

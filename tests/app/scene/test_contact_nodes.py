@@ -17,7 +17,7 @@ from onpath.app.scene import meshes
 from onpath.app.scene.contact_nodes import CLEAR
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.models.control.benches import BENCHES, LEFT
+from onpath.models.control.sides import LEFT, SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab, run, take_snapshot
 
@@ -31,9 +31,9 @@ def test_an_end_point_that_is_held_back_slides_in_its_guide(name: str) -> None:
     run(lab, 0.5)
     shown = from_bytes(to_bytes(take_snapshot(lab, 1.0)))
     assert isinstance(shown, Snapshot)
-    assert set(shown.brakes) == set(BENCHES)
-    for bench, (place, blocked, free) in shown.brakes.items():
-        moved = shown.robots[bench].end - place
+    assert set(shown.brakes) == set(SIDES)
+    for side, (place, blocked, free) in shown.brakes.items():
+        moved = shown.robots[side].end - place
         assert abs(moved @ blocked) < min(meshes.RAIL[0] / 2, np.linalg.norm(moved))
         assert np.allclose([blocked @ blocked, free @ free, blocked @ free], [1, 1, 0])
 

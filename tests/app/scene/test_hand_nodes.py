@@ -15,7 +15,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.scene import hand_nodes
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.models.control.benches import BENCHES, LEFT
+from onpath.models.control.sides import LEFT, SIDES
 from tests.support.lab import do, new_lab, run, take_snapshot
 
 
@@ -68,8 +68,8 @@ def test_a_hand_is_at_each_end_point_that_is_pulled(
             run(lab, 0.1)
             show(scene, lab)
             view = take_snapshot(lab, 1.0).robots
-            pulled = BENCHES if together else (LEFT,)
-            ends = np.stack([stage.bases[bench] + view[bench].tip for bench in pulled])
+            pulled = SIDES if together else (LEFT,)
+            ends = np.stack([stage.bases[side] + view[side].tip for side in pulled])
             assert places(node) == pytest.approx(ends, abs=1e-4)
         do(lab, c.Release(LEFT))
         show(scene, lab)

@@ -28,7 +28,7 @@ from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.models.control.benches import BENCHES, DEFAULT_LAWS, LEFT, RIGHT
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.paths.curves import TABLE_SHAPE, circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
@@ -69,7 +69,7 @@ def path(version: int = 0, n_points: int = 6) -> PathView:
 
 def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:
     """Both robots in the same pose."""
-    both = {bench: robot(q1, q2, law=DEFAULT_LAWS[bench]) for bench in BENCHES}
+    both = {side: robot(q1, q2, law=DEFAULT_LAWS[side]) for side in SIDES}
     whole = Snapshot(0.0, True, 1.0, both, path(), False, None, "", "info")
     return replace(whole, **changes)
 
@@ -116,9 +116,9 @@ def test_a_still_frame_costs_nothing(lab):
 
 
 def test_a_force_shows_and_then_hides_its_arrow(lab):
-    nodes = [lab.api.get_handle_by_name(f"/force_{i}") for i in range(len(BENCHES))]
+    nodes = [lab.api.get_handle_by_name(f"/force_{i}") for i in range(len(SIDES))]
     for newtons in (10.0, 20.0):
-        pulled = {name: robot(1.5, 3.0, force=(newtons, 0.0, 0.0)) for name in BENCHES}
+        pulled = {name: robot(1.5, 3.0, force=(newtons, 0.0, 0.0)) for name in SIDES}
         lab.scene.update(snapshot(robots=pulled).motion)
         for node in nodes:
             assert drawn_length(node) == pytest.approx(RIGID.force_scale * newtons, rel=1e-5)
@@ -127,7 +127,7 @@ def test_a_force_shows_and_then_hides_its_arrow(lab):
 
 
 def test_a_force_at_one_robot_draws_no_arrow_at_the_other(lab):
-    one, other = BENCHES
+    one, other = SIDES
     lab.scene.update(
         snapshot(
             robots={one: robot(1.5, 3.0, force=(10.0, 0.0, 0.0)), other: robot(1.5, 3.0)}
@@ -138,7 +138,7 @@ def test_a_force_at_one_robot_draws_no_arrow_at_the_other(lab):
 
 
 def test_poses_that_are_not_finite_are_not_sent(lab):
-    broken = {bench: robot(np.nan, 3.0, law=DEFAULT_LAWS[bench]) for bench in BENCHES}
+    broken = {side: robot(np.nan, 3.0, law=DEFAULT_LAWS[side]) for side in SIDES}
     lab.scene.update(snapshot(robots=broken).motion)
     lab.scene.update_traces(snapshot(robots=broken))
     assert lab.sent == []
@@ -178,7 +178,7 @@ def test_refused_places_come_and_go(lab):
 
 @pytest.mark.parametrize("instance", [0, 1])
 def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
-    name, target = BENCHES[instance], np.array([0.21, 0.0, 0.13])
+    name, target = SIDES[instance], np.array([0.21, 0.0, 0.13])
     for phase in ("start", "update", "end"):
         play(lab, "/grips", phase, instance, RIGID.bases[name], RIGID.bases[name] + target)
     assert [event[:2] for event in lab.heard] == [("grab", name)] * 2 + [("release", name)]
@@ -187,7 +187,7 @@ def test_pulling_an_end_point_tells_the_robot_and_the_place(lab, instance):
 
 @pytest.mark.parametrize("robot_index", [0, 1])
 def test_a_dragged_point_moves_by_what_the_mouse_moved(lab, robot_index):
-    base, index = RIGID.bases[BENCHES[robot_index]], 4
+    base, index = RIGID.bases[SIDES[robot_index]], 4
     point = path().control_points[index]
     pressed = base + point + [0.003, 0.0, -0.002]
     shift = np.array([0.02, 0.0, 0.01])
@@ -218,7 +218,7 @@ def test_where_an_end_point_covers_a_control_point_the_one_that_is_meant_is_take
 ):
     lab.scene.mouse.path_first = path_first
     lab.scene.update(snapshot(path=replace(path(1), selected=selected)).motion)
-    name = BENCHES[1]
+    name = SIDES[1]
     point = path().control_points[4] + [beside, 0.0, 0.0]
     pressed, shift = RIGID.bases[name] + point, np.array([0.02, 0.0, 0.01])
     for phase, way in (("start", 0.0), ("update", 1.0), ("end", 1.0)):
@@ -312,14 +312,14 @@ def test_layers_keep_links_apart():
     assert BACK_LAYER - FRONT_LAYER > meshes.LINK_THICKNESS
 
 
-def test_benches_differ_in_lightness_or_blue_for_every_eye():
-    tracker, follower = (np.array(palette.OF_BENCH[bench].rgb) for bench in BENCHES)
+def test_the_sides_differ_in_lightness_or_blue_for_every_eye():
+    tracker, follower = (np.array(palette.OF_SIDE[side].rgb) for side in SIDES)
     assert abs(int(tracker[2]) - int(follower[2])) > 120
-    assert palette.OF_BENCH[LEFT].hex == "#d55e00"
+    assert palette.OF_SIDE[LEFT].hex == "#d55e00"
 
 
 def test_drawing_is_reported_as_possible_until_it_ends(lab):
-    notes = [lab.api.get_handle_by_name(f"/notes/{bench}") for bench in BENCHES]
+    notes = [lab.api.get_handle_by_name(f"/notes/{side}") for side in SIDES]
     lab.scene.begin_freehand(lambda stroke: None)
     lab.scene.update_traces(snapshot())
     assert lab.scene.is_drawing

@@ -7,7 +7,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from onpath.app.common.palette import OF_BENCH, Colour
+from onpath.app.common.palette import OF_SIDE, Colour
 from onpath.app.scene.tones import DARK, LIGHT, Tones
 
 BEHIND = {"wall", "floor", "cells", "sections", "frame"}
@@ -29,7 +29,7 @@ def test_what_is_drawn_stands_out(tones: Tones, behind: str) -> None:
     ground: Colour = getattr(tones, behind)
     weak = {name for name in DRAWN if contrast(getattr(tones, name), ground) < 3}
     assert weak == set()
-    for colour in OF_BENCH.values():
+    for colour in OF_SIDE.values():
         assert contrast(colour, ground) >= 2.9
 
 

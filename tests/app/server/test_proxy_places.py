@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from websockets import Headers
 from websockets.http11 import Request
 
-from onpath.app.viser_adapter.places import place_of
+from onpath.app.viser_adapter.addresses import place_of
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from tests.support.checkout import ROOT
 from tests.support.lab_process import free_ports

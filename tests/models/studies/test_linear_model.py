@@ -25,7 +25,7 @@ from onpath.models.closed_loop.simulation import (
     settings_vector,
 )
 from onpath.models.closed_loop.trajectory import MEASURED, write_csv
-from onpath.models.control.benches import LEFT, RIGHT
+from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.studies.linear_model import MotionRecord, estimate, linear_model
 from onpath.models.studies.record_file import read_records
@@ -220,7 +220,7 @@ def test_the_command_prints_a_table_and_json(
     assert values["M11"] == pytest.approx(0.0246, rel=1e-3) and data["not_excited"] == []
 
 
-def test_the_file_of_a_lab_is_read_with_its_benches_and_typed_laws(
+def test_the_file_of_a_lab_is_read_with_its_sides_and_typed_laws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     typed = "across = -K1*min(xi, 1) - K2*dxi; along = -9*(theta - theta_r) - 6*(dtheta - speed)"

@@ -6,8 +6,8 @@ import pytest
 
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.app.lab.lesson_run import quantity_of
-from onpath.lessons.benches import ROLES
 from onpath.lessons.course import BUILT_IN, read_lesson
+from onpath.lessons.sides import ROLES
 from tests.support.stated_numbers import shown
 
 pytestmark = pytest.mark.thorough

@@ -40,7 +40,7 @@ PATHS = (CIRCLE, ellipse((0.06, 0.035)))
 NEAR = 1e-5  # [m], what sampling leaves of the invariance of a path
 
 
-class Bench:
+class Side:
     """The rigid five-bar under a law, at rest on the path at first."""
 
     def __init__(self, law: str, curve: Curve = CIRCLE, theta: float = 0.0, **values: Any) -> None:
@@ -89,18 +89,18 @@ def compiled(law: str, closed: bool, level_set: bool, across_first: bool) -> Loo
     return translate_loop(kernel_of(FIVE_BAR.make(FIVE_BAR.parameters()), kind))
 
 
-def moving(bench: Bench, theta: float, rate: float) -> Bench:
-    """The bench on its path, with the velocity along it."""
-    y, first = bench.curve.at(np.array(theta)), bench.curve.at(np.array(theta), 1)
-    q = bench.robot.rest(y)
+def moving(side: Side, theta: float, rate: float) -> Side:
+    """The side on its path, with the velocity along it."""
+    y, first = side.curve.at(np.array(theta)), side.curve.at(np.array(theta), 1)
+    q = side.robot.rest(y)
     v = np.linalg.solve(jacobian(q), rate * first)
-    bench.put(q=q, v=v, theta=theta, theta_rate=rate, theta_ref=theta, encoder=q, encoder_rate=v)
-    return bench
+    side.put(q=q, v=v, theta=theta, theta_rate=rate, theta_ref=theta, encoder=q, encoder_rate=v)
+    return side
 
 
-def kinetic_energy(bench: Bench, log: dict[str, Array]) -> Array:
+def kinetic_energy(side: Side, log: dict[str, Array]) -> Array:
     """½ vᵀ M v of a run, [J]."""
-    mass, plant = bench.robot.system.function("mass"), bench.robot.plant(bench.parameters)
+    mass, plant = side.robot.system.function("mass"), side.robot.plant(side.parameters)
     pairs = zip(log["q"], log["v"], strict=True)
     return np.array([0.5 * float(v @ np.array(mass(q, v, plant)) @ v) for q, v in pairs])
 
@@ -117,22 +117,22 @@ def test_every_law_says_what_it_is_and_where_it_comes_from(law: Any) -> None:
 def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
     law: str, curve: Curve
 ) -> None:
-    bench = Bench(law, curve)
-    bench.run(4.0)
-    log = bench.run(1.0)
-    assert bench.distance(log).max() < NEAR
+    side = Side(law, curve)
+    side.run(4.0)
+    log = side.run(1.0)
+    assert side.distance(log).max() < NEAR
     if LAWS[law].pace == "wanted":
-        assert log["theta_rate"].mean() == pytest.approx(bench.parameters.speed, rel=5e-3)
+        assert log["theta_rate"].mean() == pytest.approx(side.parameters.speed, rel=5e-3)
 
 
 @pytest.mark.parametrize("law", LAWS)
 def test_the_compiled_loop_is_the_interpreted_one_bit_by_bit(law: str) -> None:
-    bench = Bench(law, torque_limit=1.0)
-    for push in (FREE, bench.brake(), Push(hand=np.array([0.03, 0.02]))):
-        settings = settings_vector(bench.robot, bench.kernel, bench.parameters, CIRCLE, push)
-        arguments = bench.state, settings, CIRCLE.table(), 48
+    side = Side(law, torque_limit=1.0)
+    for push in (FREE, side.brake(), Push(hand=np.array([0.03, 0.02]))):
+        settings = settings_vector(side.robot, side.kernel, side.parameters, CIRCLE, push)
+        arguments = side.state, settings, CIRCLE.table(), 48
         for one, other in zip(
-            bench.loop.run(*arguments), InterpretedLoop(bench.kernel).run(*arguments), strict=True
+            side.loop.run(*arguments), InterpretedLoop(side.kernel).run(*arguments), strict=True
         ):
             assert np.array_equal(one, other)
 
@@ -166,10 +166,10 @@ def test_laws_that_command_torques_refuse_composite_control() -> None:
 def test_a_set_point_regulator_cuts_across_the_circle_and_path_following_does_not() -> None:
     """Experiment 1: from θ = 0 to the opposite side."""
     values = {"task": "position", "target": 3.0}
-    straight, along = Bench("set_point", **values), Bench("path_following", **values)
-    for bench, least, most in ((straight, 0.04, 0.05), (along, 0.0, NEAR)):
-        log = bench.run(4.0)
-        assert least <= bench.distance(log).max() <= most
+    straight, along = Side("set_point", **values), Side("path_following", **values)
+    for side, least, most in ((straight, 0.04, 0.05), (along, 0.0, NEAR)):
+        log = side.run(4.0)
+        assert least <= side.distance(log).max() <= most
         assert np.linalg.norm(log["y"][-1] - CIRCLE.at(np.array(3.0))) < 1e-4
 
 
@@ -177,11 +177,11 @@ def test_a_set_point_regulator_cuts_across_the_circle_and_path_following_does_no
 def test_a_waiting_clock_waits_while_the_robot_is_held(theta: float) -> None:
     advances = list[float]()
     for gain in (0.0, 50.0):
-        bench = Bench("waiting_clock", theta=theta, clock_gain=gain)
-        bench.run(1.0)
-        log = bench.run(2.0, bench.brake())
+        side = Side("waiting_clock", theta=theta, clock_gain=gain)
+        side.run(1.0)
+        log = side.run(2.0, side.brake())
         advances.append(float(log["theta_ref"][-1, 0] - log["theta_ref"][0, 0]))
-        worst = bench.distance(log).max()
+        worst = side.distance(log).max()
         assert worst > 0.04 if gain == 0 else worst < 0.006
     assert advances[0] == pytest.approx(4 * np.pi, abs=0.01)  # two seconds of an ordinary clock
     assert abs(advances[1]) < 0.5
@@ -192,15 +192,15 @@ def test_a_waiting_clock_does_not_leave_the_path_invariant() -> None:
     not: that is what the clock lacks, whatever it waits for."""
     distances = dict[str, float]()
     for law in ("path_following", "waiting_clock"):
-        bench = moving(Bench(law, speed=2.0), 0.0, 8.0)
-        distances[law] = float(bench.distance(bench.run(1.0)).max())
+        side = moving(Side(law, speed=2.0), 0.0, 8.0)
+        distances[law] = float(side.distance(side.run(1.0)).max())
     assert distances["path_following"] < NEAR
     assert distances["waiting_clock"] > 3e-4
 
 
 def test_the_event_based_reference_is_the_closest_point() -> None:
-    bench = Bench("event_based")
-    for log in (bench.run(0.5), bench.run(0.5, bench.brake())):
+    side = Side("event_based")
+    for log in (side.run(0.5), side.run(0.5, side.brake())):
         later, now = log["theta_ref"][1:, 0], log["theta"][1:, 0]
         assert np.abs(later - now).max() < 0.02
 
@@ -208,22 +208,22 @@ def test_the_event_based_reference_is_the_closest_point() -> None:
 def test_on_a_straight_path_contouring_with_equal_gains_is_tracking() -> None:
     """The frame at the reference point does not turn there."""
     line = segment((-0.05, -0.01), (0.05, 0.02))
-    one = Bench("contouring", line, theta=-2.0, contour_ratio=1.0, speed=1.5)
-    other = Bench("trajectory_tracking", line, theta=-2.0, speed=1.5)
+    one = Side("contouring", line, theta=-2.0, contour_ratio=1.0, speed=1.5)
+    other = Side("trajectory_tracking", line, theta=-2.0, speed=1.5)
     for push in (FREE, one.brake()):
         assert np.abs(one.run(0.5, push)["y"] - other.run(0.5, push)["y"]).max() < 1e-9
 
 
 @pytest.mark.parametrize("axis", (0, 1), ids=("along", "across"))
 def test_contouring_decays_along_and_across_as_its_gains_say(axis: int) -> None:
-    bench = moving(Bench("contouring", contour_ratio=0.1), 0.0, 2 * np.pi)
+    side = moving(Side("contouring", contour_ratio=0.1), 0.0, 2 * np.pi)
     turn, size = np.array([[0.0, 1.0], [-1.0, 0.0]]), 5e-4
     offset = size * np.array([[0.0, 1.0], [-1.0, 0.0]][axis])  # T and N at θ = 0
-    q = bench.robot.rest(CIRCLE.at(np.array(0.0)) + offset)
+    q = side.robot.rest(CIRCLE.at(np.array(0.0)) + offset)
     rate = 2 * np.pi * (CIRCLE.at(np.array(0.0), 1) - turn @ offset)  # turns with the frame
     v = np.linalg.solve(jacobian(q), rate)
-    bench.put(q=q, v=v, encoder=q, encoder_rate=v)
-    log = bench.run(0.4)
+    side.put(q=q, v=v, encoder=q, encoder_rate=v)
+    log = side.run(0.4)
     angle = log["theta_ref"][:, 0]
     gap = log["y"] - CIRCLE.at(angle)
     axes = np.stack([[-np.sin(angle), np.cos(angle)], [-np.cos(angle), -np.sin(angle)]])
@@ -237,13 +237,13 @@ def test_contouring_decays_along_and_across_as_its_gains_say(axis: int) -> None:
 
 
 def test_the_velocity_field_keeps_the_energy_of_robot_and_flywheel() -> None:
-    bench = Bench("velocity_field")
-    bench.run(0.001)
+    side = Side("velocity_field")
+    side.run(0.001)
     stored = list[float]()
     for _ in range(5):
-        log = bench.run(0.5)
-        stored.append(kinetic_energy(bench, log)[-1] + float(bench.fields[FLYWHEEL][0]))
-    assert stored == pytest.approx([value_of(bench.parameters, "field_energy")] * 5, rel=0.01)
+        log = side.run(0.5)
+        stored.append(kinetic_energy(side, log)[-1] + float(side.fields[FLYWHEEL][0]))
+    assert stored == pytest.approx([value_of(side.parameters, "field_energy")] * 5, rel=0.01)
 
 
 @pytest.mark.parametrize("place", [(0.09, 0.0), (0.0, 0.09), (-0.08, -0.05), (0.0, 0.0)])
@@ -251,33 +251,33 @@ def test_a_hand_gets_no_more_energy_from_the_velocity_field_than_it_stores(
     place: tuple[float, float],
 ) -> None:
     """Passivity: the work on the hand, at every instant, is at most the energy stored before."""
-    bench = Bench("velocity_field")
-    bench.run(1.0)
-    log = bench.run(2.0, Push(hand=np.array(place)))
+    side = Side("velocity_field")
+    side.run(1.0)
+    log = side.run(2.0, Push(hand=np.array(place)))
     velocity = np.diff(log["y"], axis=0)  # times dt
     work = -np.cumsum(np.einsum("ni,ni->n", log["force"][:-1], velocity))  # on the hand
-    assert work.max() < value_of(bench.parameters, "field_energy")
+    assert work.max() < value_of(side.parameters, "field_energy")
     assert work.min() < 0  # the hand has worked, too
 
 
 def test_a_bead_slides_on_the_virtual_constraint() -> None:
     """With a speed along the path it stays on it, and its kinetic energy is constant."""
     for curve in PATHS:
-        bench = moving(Bench("virtual_constraint", curve), 0.5, 4.0)
-        log = bench.run(3.0)
-        energy = kinetic_energy(bench, log)
-        assert bench.distance(log).max() < NEAR
+        side = moving(Side("virtual_constraint", curve), 0.5, 4.0)
+        log = side.run(3.0)
+        energy = kinetic_energy(side, log)
+        assert side.distance(log).max() < NEAR
         assert energy == pytest.approx(energy[0], rel=2e-3)
         speeds = log["theta_rate"][:, 0]
         assert speeds.min() > 0 and np.ptp(speeds) > 0.2  # the inertia varies along the path
 
 
 def test_a_bead_that_is_pulled_along_moves_and_one_that_is_left_alone_does_not() -> None:
-    bench = Bench("virtual_constraint")
-    assert np.abs(bench.run(0.5)["v"]).max() < 1e-9
-    log = bench.run(0.3, Push(hand=CIRCLE.at(np.array(0.5))))
+    side = Side("virtual_constraint")
+    assert np.abs(side.run(0.5)["v"]).max() < 1e-9
+    log = side.run(0.3, Push(hand=CIRCLE.at(np.array(0.5))))
     assert log["theta"][-1, 0] > 0.3
-    assert bench.distance(log).max() < 0.005
+    assert side.distance(log).max() < 0.005
 
 
 @pytest.mark.thorough
@@ -286,11 +286,11 @@ def test_across_comes_before_along_under_a_torque_limit() -> None:
     worst = dict[tuple[str, str], float]()
     for law in ("path_following", "trajectory_tracking"):
         for way in ("cut", "across_first", "slow_down"):
-            bench = Bench(law, K3=1000.0, torque_limit=0.5, speed=12.0, at_limit=way)
-            bench.run(1.0)
-            log = bench.run(7.0)
+            side = Side(law, K3=1000.0, torque_limit=0.5, speed=12.0, at_limit=way)
+            side.run(1.0)
+            log = side.run(7.0)
             assert np.abs(log["u"]).max() <= 0.5
-            worst[law, way] = 1000 * float(bench.distance(log).max())
+            worst[law, way] = 1000 * float(side.distance(log).max())
     assert worst["path_following", "across_first"] < 11
     assert worst["path_following", "slow_down"] < 9
     assert worst["path_following", "cut"] > 25
@@ -301,18 +301,18 @@ def test_across_comes_before_along_under_a_torque_limit() -> None:
 def test_what_a_law_does_not_name_as_along_the_path_is_its_component_there() -> None:
     """Path following names it; without the name its torques under a limit are the same."""
     law = LAWS["path_following"]
-    bench = Bench(law.name, ellipse((0.06, 0.035)), torque_limit=0.3, speed=12.0)
-    kind = kind_of(law.name, bench.parameters, bench.curve)
+    side = Side(law.name, ellipse((0.06, 0.035)), torque_limit=0.3, speed=12.0)
+    kind = kind_of(law.name, side.parameters, side.curve)
     unnamed = dataclasses.replace(
         law, command=lambda view: dataclasses.replace(law.command(view), along=None)
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("onpath.models.closed_loop.kernel.law_named", lambda _: unnamed)
-        kernel = build_kernel(bench.robot.system, bench.robot.frame, kind)
-    settings = settings_vector(bench.robot, kernel, bench.parameters, bench.curve, FREE)
-    arguments = bench.state, settings, bench.curve.table(), 300
-    expected = bench.log.unpack(bench.loop.run(*arguments)[1])
-    found = bench.log.unpack(translate_loop(kernel).run(*arguments)[1])
+        kernel = build_kernel(side.robot.system, side.robot.frame, kind)
+    settings = settings_vector(side.robot, kernel, side.parameters, side.curve, FREE)
+    arguments = side.state, settings, side.curve.table(), 300
+    expected = side.log.unpack(side.loop.run(*arguments)[1])
+    found = side.log.unpack(translate_loop(kernel).run(*arguments)[1])
     assert np.abs(expected["u"]).max() == 0.3
     for name in ("u", "y"):
         assert np.abs(found[name] - expected[name]).max() < 1e-6
@@ -320,7 +320,7 @@ def test_what_a_law_does_not_name_as_along_the_path_is_its_component_there() -> 
 
 def test_without_saturation_the_order_of_across_and_along_changes_nothing() -> None:
     one, other = (
-        Bench("path_following", torque_limit=3.0, at_limit=way) for way in ("cut", "across_first")
+        Side("path_following", torque_limit=3.0, at_limit=way) for way in ("cut", "across_first")
     )
     assert np.abs(one.run(1.0)["y"] - other.run(1.0)["y"]).max() < 1e-12
 

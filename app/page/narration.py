@@ -15,7 +15,7 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.panels.widgets import label_of
 from onpath.app.scene.captions import Captions, spoken
 from onpath.app.viser_adapter.frame_channel import update_gui
-from onpath.lessons.benches import bench_titles
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
@@ -23,10 +23,10 @@ from onpath.models.systems.catalogue import ROBOTS
 MOST = 2
 """Settings that are named on a button."""
 RENEWED = 1.0
-"""How often numbers that are spoken are renewed; assets/page/saying.js reads fewer aloud [s]."""
+"""How often numbers that are spoken are renewed; assets/page/narration.js reads fewer aloud [s]."""
 
 
-class Saying:
+class Narration:
     """An element that is not seen; its attributes are what the page's scripts show, say and play.
 
     It stands outside of all tabs, because viser does not update what is in a tab that is not shown.
@@ -108,7 +108,7 @@ def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, p
         plays: whether a lesson is showing something, which a replay would interrupt.
     """
     shown = {"level": level, "running": running, "held": held, "stopped": stopped}
-    return render("panel/saying.html", **shown, plays=plays, words=words)
+    return render("panel/narration.html", **shown, plays=plays, words=words)
 
 
 def _tones(snapshot: Snapshot) -> str:
@@ -119,7 +119,7 @@ def _tones(snapshot: Snapshot) -> str:
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     """What a sighted user sees: the state of the lab, and what each robot is doing."""
     state = "held" if snapshot.held else "running"
-    said = spoken(captions, bench_titles(snapshot.laws, words), words) or words("spoken.on_path")
+    said = spoken(captions, side_titles(snapshot.laws, words), words) or words("spoken.on_path")
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {said}"
 
 
@@ -146,8 +146,8 @@ def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> s
         _spoken(snapshot, captions, words),
         words("summary.clock", time=f"{snapshot.time:.1f}", path=path),
     ]
-    for bench, title in bench_titles(snapshot.laws, words).items():
-        view = snapshot.robots[bench]
+    for side, title in side_titles(snapshot.laws, words).items():
+        view = snapshot.robots[side]
         numbers = {
             "now": f"{1e3 * view.distance:.1f}",
             "most": f"{1e3 * view.max_distance:.1f}",

@@ -10,7 +10,7 @@ from onpath.models.closed_loop.start import ON_PATH, Start
 from onpath.models.systems.parameters import Parameters
 
 
-class Belongings(NamedTuple):
+class RobotSettings(NamedTuple):
     """What a robot keeps while another one is used; see `app.lab.session`."""
 
     parameters: Parameters

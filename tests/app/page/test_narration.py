@@ -12,7 +12,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page import saying
+from onpath.app.page import narration
 from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.lessons.words import ENGLISH
@@ -28,8 +28,8 @@ class Said:
         self.sent = list[tuple[float, str]]()
         self._lab, self._captions = lab, Captions(ENGLISH)
         gui: Any = SimpleNamespace(add_html=lambda _: None)
-        self._saying = saying.Saying(gui, ENGLISH, DEFAULTS, self._captions)
-        monkeypatch.setattr(saying, "update_gui", self._keep)
+        self._narration = narration.Narration(gui, ENGLISH, DEFAULTS, self._captions)
+        monkeypatch.setattr(narration, "update_gui", self._keep)
 
     def _keep(self, _: object, name: str, content: str) -> None:
         found = SPOKEN.search(content)
@@ -42,7 +42,7 @@ class Said:
             run(self._lab, 0.1 if seconds else 0.0)
             snapshot = take_page_snapshot(self._lab, 1.0)
             self._captions.follow(snapshot)
-            self._saying.follow(snapshot)
+            self._narration.follow(snapshot)
 
 
 def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once(
@@ -61,7 +61,7 @@ def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once(
         said.follow(4.0)
     sentences = [(time, re.sub(r"\d+", "", text)) for time, text in said.sent]
     alike = [later - time for (time, text), (later, other) in pairwise(sentences) if text == other]
-    assert len(alike) >= 2 and min(alike) > saying.RENEWED - 1e-9
+    assert len(alike) >= 2 and min(alike) > narration.RENEWED - 1e-9
     do(lab, c.SetRunning(False))
     said.follow()
     assert said.sent[-1][1].startswith("Paused.")

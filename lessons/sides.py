@@ -1,4 +1,4 @@
-"""What the benches of a lab and their control laws are called, and their roles in the lessons."""
+"""What the sides of a lab and their control laws are called, and their roles in the lessons."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from functools import lru_cache
 
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.words import Words
-from onpath.models.control.benches import DEFAULT_LAWS, LEFT, RIGHT
 from onpath.models.control.laws.own import LABEL, OWN, is_text
 from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 
 ROLES: dict[str, RobotName] = {LEFT: "tracker", RIGHT: "follower"}
-"""Bench -> name of its robot in the lessons."""
-BENCH_OF: dict[RobotName, str] = {role: bench for bench, role in ROLES.items()}
+"""Side -> name of its robot in the lessons."""
+SIDE_OF: dict[RobotName, str] = {role: side for side, role in ROLES.items()}
 
 
 def law_label(law: str, words: Words) -> str:
@@ -38,44 +38,44 @@ def law_titles(laws: Iterable[str], words: Words) -> dict[str, str]:
     return {law: law_label(law, words) + number.get(law, "") for law in names}
 
 
-def bench_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dict[str, str]:
-    """Displayed name of each bench: that of its law, and its side if both would be named alike.
+def side_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dict[str, str]:
+    """Displayed name of each side: that of its law, and its side if both would be named alike.
 
     Args:
-        laws: control law of each bench, or several, one after the other.
+        laws: control law of each side, or several, one after the other.
     """
-    return dict(_bench_titles(tuple(laws.items()), words))
+    return dict(_side_titles(tuple(laws.items()), words))
 
 
 @lru_cache(maxsize=64)
-def _bench_titles(
+def _side_titles(
     laws: tuple[tuple[str, str | tuple[str, ...]], ...], words: Words
 ) -> dict[str, str]:
     labels = {
-        bench: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(own)))
-        for bench, own in laws
+        side: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(own)))
+        for side, own in laws
     }
     if len(set(labels.values())) == len(labels):
         return labels
     return {
-        bench: words("bench.title", law=label, side=words(f"bench.{bench}"))
-        for bench, label in labels.items()
+        side: words("side.title", law=label, side=words(f"side.{side}"))
+        for side, label in labels.items()
     }
 
 
 def robot_names(laws: Mapping[str, str], words: Words) -> dict[RobotName, str]:
     """Displayed names of the robots of the lessons.
 
-    A robot under the law of a new lab has the name of its role, another that of its bench.
+    A robot under the law of a new lab has the name of its role, another that of its side.
 
     Args:
-        laws: control law of each bench; a bench without one has that of a new lab.
+        laws: control law of each side; a side without one has that of a new lab.
     """
     every = {**DEFAULT_LAWS, **laws}
-    titles = bench_titles(every, words)
+    titles = side_titles(every, words)
     return {
-        role: words(f"robot.{role}") if every[bench] == DEFAULT_LAWS[bench] else titles[bench]
-        for bench, role in ROLES.items()
+        role: words(f"robot.{role}") if every[side] == DEFAULT_LAWS[side] else titles[side]
+        for side, role in ROLES.items()
     }
 
 

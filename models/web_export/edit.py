@@ -13,7 +13,6 @@ import numpy as np
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import GRID, lift_of, placed, view_of
 from onpath.models.closed_loop.wasm_loop import Scan
-from onpath.models.page.fit import mix_function, scan_of
 from onpath.models.paths.path_checks import (
     POINT_CHECKS,
     PathPoint,
@@ -25,6 +24,7 @@ from onpath.models.paths.path_checks import (
 from onpath.models.paths.path_design import REACH
 from onpath.models.paths.projection import basis
 from onpath.models.systems.robots import Robot, margin_of
+from onpath.models.web_export.fit import mix_function, scan_of
 
 CHECKS = (*POINT_CHECKS, "narrow")
 """The last numbers of a row of `check`; "crosses" is found apart."""

@@ -13,7 +13,7 @@ from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.widgets import Post, add_buttons, on_press
 
 
-def add_ways(gui: viser.GuiApi, run: LessonView, post: Post) -> list[Any]:
+def add_navigation(gui: viser.GuiApi, run: LessonView, post: Post) -> list[Any]:
     """The buttons that lead from the open step to others; returns their handles."""
     handles: list[Any] = []
     if run.is_test:

@@ -15,7 +15,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.http11 import Request
 from websockets.sync.client import connect
 
-from onpath.app.viser_adapter.places import class_code_in, place_of, storage_key, without_place
+from onpath.app.viser_adapter.addresses import class_code_in, place_of, storage_key, without_place
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 

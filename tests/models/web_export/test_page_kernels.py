@@ -20,15 +20,6 @@ from onpath.models.control.poles import channels
 from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError, Message
 from onpath.models.evaluated import evaluated
-from onpath.models.page.edit import CHECKS, ROW, edit_scans
-from onpath.models.page.fit import (
-    PIECE,
-    arc_scan,
-    resample_scan,
-    spline_function,
-    table_function,
-)
-from onpath.models.page.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
 from onpath.models.paths.curve_blend import blend
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import closed_through, open_through
@@ -37,6 +28,15 @@ from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import REACH, presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
+from onpath.models.web_export.edit import CHECKS, ROW, edit_scans
+from onpath.models.web_export.fit import (
+    PIECE,
+    arc_scan,
+    resample_scan,
+    spline_function,
+    table_function,
+)
+from onpath.models.web_export.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
 
 
 def scanned(

@@ -1,12 +1,12 @@
 // One robot under a law: its state, what acts on it, and what is seen of it.
 
-import type { BenchData, FigureData, LawData, Point } from "./data"
+import type { SideData, FigureData, LawData, Point } from "./data"
 import type { Kernels } from "./kernels"
 import type { Path } from "./path"
 
 export const MOST_TICKS = 128 // in one call of a loop
 
-export class Bench {
+export class Side {
     held = false
     pulled = false
     /** Why it has stopped, counted from 1: see `stops` of its law. */
@@ -28,7 +28,7 @@ export class Bench {
     private row = this.log // the last one
 
     constructor(
-        readonly data: BenchData,
+        readonly data: SideData,
         private readonly figure: FigureData,
         private readonly kernels: Kernels,
         private path: Path,
