@@ -291,7 +291,7 @@ OLD_PLANT = {"robot": "flexible", "benches": {"flexible": {"parameters": {"plant
 
 def plant(lab: Lab) -> str:
     assert isinstance(lab.session.parameters, FlexibleParameters)
-    assert lab.session.robot.system.name == "flexible_five_bar"
+    assert lab.session.robot.system.name == "flexible"
     return lab.session.parameters.plant
 
 

@@ -240,10 +240,10 @@ def test_points_may_be_as_dense_as_they_like(fit: Callable[[Array], Curve], coun
 
 def polygon_distance(z: Array, corners: Array) -> Array:
     """Distances of points from a closed polygon, (n, 2) and (k, 2) -> (n,)."""
-    lines = [
-        np.linspace(a, b, 3001) for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True)
-    ]
-    return np.linalg.norm(z[:, None] - np.concatenate(lines), axis=2).min(1)
+    way = np.roll(corners, -1, axis=0) - corners
+    share = np.einsum("nki,ki->nk", z[:, None] - corners, way) / (way**2).sum(1)
+    nearest = corners + np.clip(share, 0, 1)[..., None] * way
+    return np.linalg.norm(z[:, None] - nearest, axis=2).min(1)
 
 
 @given(st.integers(0, 10_000))

@@ -12,7 +12,7 @@ import pytest
 
 from onpath.models.closed_loop.trajectory import Trajectory, header, write_csv
 from onpath.models.control.laws.registry import NAMES
-from onpath.models.control.settable import specs
+from onpath.models.control.settable import specs, value_of
 from onpath.models.studies.experiments import experiments, run, summary
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.csv_columns import read_csv
@@ -247,7 +247,7 @@ def test_every_parameter_can_be_set_and_matters_or_is_checked(name: str) -> None
     spec, chosen = specs(FiveBarParameters)[name], experiments()["obstruction"]
     values = spec.options or (spec.low, spec.high)
     for value in values:
-        assert getattr(chosen.with_values({name: str(value)}).parameters, name) == value
+        assert value_of(chosen.with_values({name: str(value)}).parameters, name) == value
     step = (spec.high - spec.low) or 1.0
     bad = ("nan", "inf", "-inf", "", "1,5", str(spec.high + step), str(spec.low - step))
     for text in bad:
