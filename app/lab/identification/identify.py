@@ -35,7 +35,7 @@ from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use
 MEASURED = RIGHT  # the side whose record is used; any would do, under any law
-# the robot is the same while these are unchanged
+# settings of the plant and its sensors; while they are unchanged, the robot is the same
 PLANT = ("plant", "coulomb", "stiction", "encoder_step", "sensor_noise")
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
 POOR = 0.05  # unexplained share of the torque above which the report warns
@@ -43,10 +43,10 @@ POOR = 0.05  # unexplained share of the torque above which the report warns
 
 @dataclass(frozen=True, slots=True)
 class Learned:
-    """What was learned of a robot.
+    """What was learned about a robot.
 
     Attributes:
-        robot: as it was then.
+        robot: the robot at that time.
         model: the estimates.
         seconds: duration of the data, [s].
     """
@@ -153,7 +153,7 @@ def _rows(robot: Robot, segments: list[Segment]) -> Array:
 
 @lru_cache(maxsize=4)
 def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
-    """A loop for one thread alone: that of `identification`."""
+    """A loop for the identification thread only."""
     return InterpretedLoop(kernel_of(robot, kind))
 
 
