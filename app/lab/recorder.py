@@ -27,7 +27,7 @@ class Recorder:
     def record(
         self, ticks: Ticks, runs: Sequence[ClosedLoopRun], begun: list[Place]
     ) -> HistoryFrame:
-        """What the history keeps of ticks that have been simulated.
+        """The history's record of ticks that have been simulated.
 
         Args:
             begun: `ClosedLoopRun.place` of the runs at their beginning.
@@ -36,7 +36,9 @@ class Recorder:
         if self._inputs is None or not self._inputs.are(ticks.curve, ticks.dt, inputs):
             self._inputs = Inputs(ticks.curve, ticks.dt, inputs)
         values = b"".join([run.values for run in runs])
-        return HistoryFrame(ticks.time, ticks.count, self._inputs, begun, values)
+        return HistoryFrame(
+            time=ticks.time, ticks=ticks.count, inputs=self._inputs, places=begun, values=values
+        )
 
 
 class CurrentInstant:
@@ -58,9 +60,13 @@ class CurrentInstant:
         now, made_of = self._now, [curve, parameters, *[run.place for run in runs]]
         if now is None or now.time != time or not all(map(is_, made_of, self._made_of)):
             laws = tuple(run.law for run in runs)
-            states, most = [run.state for run in runs], [run.max_distance for run in runs]
-            sample = sample_of(robot, parameters, runs)
-            now = self._now = Instant(time, laws, states, most, sample)
+            now = self._now = Instant(
+                time=time,
+                laws=laws,
+                states=[run.state for run in runs],
+                max_distances=[run.max_distance for run in runs],
+                sample=sample_of(robot, parameters, runs),
+            )
             self._made_of = made_of
         return now
 
