@@ -112,8 +112,8 @@ def on_scale(shares: np.ndarray) -> np.ndarray:
 
 
 def of_law(law: str) -> Colour:
-    """Colour of a control law in figures of several laws; those of a new lab have their side's."""
-    sides = {own: side for side, own in DEFAULT_LAWS.items()}
+    """Colour of a control law in figures of several laws; the default laws have their sides'."""
+    sides = {default: side for side, default in DEFAULT_LAWS.items()}
     if law in sides:
         return OF_SIDE[sides[law]]
     if law not in LAWS:
