@@ -66,10 +66,10 @@ def normalised(text: str) -> str:
     plain = as_meant(text[:LONGEST_TYPED]).lower()
     code = _letters(plain)
     if len(code) != LENGTH:
-        found = {_letters(each) for each in _SHOWN.findall(plain)}
-        if len(found) != 1:
+        codes = {_letters(each) for each in _SHOWN.findall(plain)}
+        if len(codes) != 1:
             raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
-        (code,) = found
+        (code,) = codes
     strange = sorted(set(code) - set(ALPHABET))
     if strange:
         raise CodedError("error.session_code_letters", example=shown(_EXAMPLE))
@@ -87,8 +87,8 @@ def short_code(text: str, length: int) -> str:
     words = {word for word in re.findall(r"[A-Za-z0-9]+", plain) if len(word) == length}
     fit = {word for word in words if set(word.lower()) <= set(ALPHABET)}
     clear = {word.lower() for word in fit if word.isupper() or not word.isalpha()}
-    found = {word.lower() for word in fit}
-    for each in (found, clear):
+    candidates = {word.lower() for word in fit}
+    for each in (candidates, clear):
         if len(whole) != length and len(each) == 1:
             return each.pop()
     return whole

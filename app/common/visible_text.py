@@ -79,13 +79,13 @@ def _joins(character: str, before: str, after: str) -> bool:
 
 def clusters(text: str) -> list[str]:
     """What readers see as single characters: a letter with its marks, a conjunct, one emoji."""
-    found = list[str]()
+    result = list[str]()
     for character in text:
-        if found and _continues(found[-1], character):
-            found[-1] += character
+        if result and _continues(result[-1], character):
+            result[-1] += character
         else:
-            found.append(character)
-    return found
+            result.append(character)
+    return result
 
 
 def _continues(before: str, character: str) -> bool:

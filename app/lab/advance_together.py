@@ -158,12 +158,12 @@ def _faults(
     flat = (-1, q.shape[-1])
     if finite.all() and robot.fault(q.reshape(flat), v.reshape(flat), ticks.parameters) is None:
         return [None] * len(members)
-    found = [robot.fault(q[i], v[i], each.parameters) for i, (_, each) in enumerate(members)]
+    faults = [robot.fault(q[i], v[i], each.parameters) for i, (_, each) in enumerate(members)]
     return [
         (ticks.count, not_finite(run.kind.controller))
         if fault is None and not numbers.all()
         else fault
-        for fault, numbers, (run, _) in zip(found, finite, members, strict=True)
+        for fault, numbers, (run, _) in zip(faults, finite, members, strict=True)
     ]
 
 

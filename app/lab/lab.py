@@ -293,8 +293,8 @@ class Lab:
         inputs = robot, laws, session.parameters, path
         if self._forecast is None or self._forecast[0] != inputs:
             q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
-            found = forecasts(robot, laws, session.parameters, q)
-            self._forecast = inputs, next(iter(found), None)
+            messages = forecasts(robot, laws, session.parameters, q)
+            self._forecast = inputs, next(iter(messages), None)
         return self._forecast[1]
 
     def fault_words(self, key: str, **more: str) -> str:

@@ -88,10 +88,10 @@ def lengths(name: str, *values: Any) -> tuple[float, ...]:
     Raises:
         ValueError: one is not positive and finite.
     """
-    found = numbers(name, values, len(values), POSITIVE)
-    if found.min() <= 0:
+    array = numbers(name, values, len(values), POSITIVE)
+    if array.min() <= 0:
         raise ValueError(f"{name}: expected {POSITIVE}, got {values}")
-    return tuple(found.tolist())
+    return tuple(array.tolist())
 
 
 def plane_point(name: str, values: Any) -> tuple[float, float]:
@@ -110,10 +110,10 @@ def numbers(name: str, values: Any, count: int, form: str) -> Array:
     Raises:
         ValueError: they are not finite, or of another number; the message states the form.
     """
-    found = array_of(name, values, form)
-    if found.shape != (count,) or not np.isfinite(found).all():
+    array = array_of(name, values, form)
+    if array.shape != (count,) or not np.isfinite(array).all():
         raise ValueError(f"{name}: expected {form}, got {values!r}")
-    return found
+    return array
 
 
 def array_of(name: str, values: Any, form: str) -> Array:

@@ -138,10 +138,10 @@ def file_of(url: sa.URL) -> Path | None:
 def identity(file: Path | None) -> Identity | None:
     """Identity of the file that now has this name; None if there is none."""
     try:
-        found = None if file is None else file.stat()
+        status = None if file is None else file.stat()
     except OSError:
         return None
-    return None if found is None else (found.st_dev, found.st_ino)
+    return None if status is None else (status.st_dev, status.st_ino)
 
 
 def journals_of(file: Path | None, known: Identity | None) -> dict[Path, Identity | None]:
@@ -261,9 +261,9 @@ def _prepared(url: sa.URL, patience: float = PATIENCE) -> sa.Engine:
     try:
         with engine.begin() as connection:
             if engine.dialect.name == "sqlite":
-                found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
-                if found != "ok":
-                    raise _Broken(found)
+                report = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
+                if report != "ok":
+                    raise _Broken(report)
             elif engine.dialect.name == "postgresql":
                 lift_statement_limit(connection)  # a migration of many labs may take minutes
             _migrate(connection)

@@ -48,12 +48,12 @@ class LeaseKeeper:
         """Renew all leases of what is open; if the database is unavailable, try again next time."""
         now = self._clock()
         try:
-            found = self._records.renew(self._held(), self._watched)
+            renewal = self._records.renew(self._held(), self._watched)
         except NotKept as error:
             log.debug("leases are not renewed: %s", error)
             return
-        self._elsewhere = {code: now + left for code, left in found.elsewhere.items()}
-        for code in found.lost:
+        self._elsewhere = {code: now + left for code, left in renewal.elsewhere.items()}
+        for code in renewal.lost:
             self._lost(code)
 
     def stop(self) -> None:

@@ -168,11 +168,11 @@ class Records:
             NotKept: the database cannot be used.
         """
         with self.transaction() as connection:
-            found = renew(connection, codes, watched, self.owner, self._now(connection))
-        for code in found.missing:
+            renewal = renew(connection, codes, watched, self.owner, self._now(connection))
+        for code in renewal.missing:
             with suppress(exc.IntegrityError), self.transaction() as connection:
                 take(connection, code, self.owner, self._now(connection))
-        return found
+        return renewal
 
     def give_up(self, code: str | None = None) -> None:
         """Give up the lease of a state, or all leases of this process.

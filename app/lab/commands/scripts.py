@@ -58,8 +58,8 @@ class ScriptPull(Command):
     def apply(self, lab: Lab) -> None:
         session, name = lab.session, SIDE_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
-        there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
-        session.forces.grab(name, there, _sides(self.only))
+        target = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
+        session.forces.grab(name, target, _sides(self.only))
 
 
 @dataclass(frozen=True, slots=True)

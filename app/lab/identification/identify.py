@@ -159,22 +159,22 @@ def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
 
 def _sentence(learned: Learned, before: Parameters, after: Parameters, words: Words) -> str:
     """Report of what was identified, applied and left out."""
-    robot, found, duration = learned.robot, learned.model, learned.seconds
+    robot, model, duration = learned.robot, learned.model, learned.seconds
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
     values = "; ".join(
-        words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")
+        words("identified.value", value=_value(model, name), before=f"{believed[name]:.4f}")
         for name in INERTIA
     )
     text = words("identified.found", seconds=f"{duration:.1f}", values=values)
     limited = [name for name in INERTIA if _at_end(after, name)]
     if limited:
         text += words("identified.limited", names=words("identified.and").join(limited))
-    further = [name for name in (*DRY, *BALANCE) if _matters(found, name)]
+    further = [name for name in (*DRY, *BALANCE) if _matters(model, name)]
     if further:
-        values = ", ".join(_value(found, name) for name in further)
+        values = ", ".join(_value(model, name) for name in further)
         text += words("identified.also", values=values)
-    if found.unexplained > POOR:
-        text += words("identified.unexplained", percent=f"{100 * found.unexplained:.0f}")
+    if model.unexplained > POOR:
+        text += words("identified.unexplained", percent=f"{100 * model.unexplained:.0f}")
     return text
 
 

@@ -50,6 +50,6 @@ class CompileQueue(Generic[K]):
             if not self._asked:
                 return None
             latest = max(self._asked.values())
-            found = next(key for key, at in self._asked.items() if at >= latest - LATELY)
-            del self._asked[found]
-            return found
+            chosen = next(key for key, at in self._asked.items() if at >= latest - LATELY)
+            del self._asked[chosen]
+            return chosen

@@ -58,12 +58,12 @@ RENAMED: Mapping[tuple[str, Any], str] = {("plant", "as_printed"): "unit_modes"}
 
 def former_defaults(robot: str, version: int) -> dict[str, Any]:
     """A robot's parameters whose defaults were different in a version, with their values then."""
-    found = dict[str, Any]()
+    former = dict[str, Any]()
     for change in CHANGES:
         concerned = robot in change.robots if change.robots else _has(robot, change.name)
         if change.since > version and concerned:
-            found.setdefault(change.name, change.former)
-    return found
+            former.setdefault(change.name, change.former)
+    return former
 
 
 def _has(robot: str, name: str) -> bool:
@@ -76,7 +76,7 @@ def brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, Robo
     Args:
         version: of the defaults that they differ from.
     """
-    found = dict(robots)
+    current = dict(robots)
     for name in dict.fromkeys([*ROBOTS, *robots]):
         former = former_defaults(name, version) if name in ROBOTS else {}
         robot = robots.get(name, RobotSetup())
@@ -85,8 +85,8 @@ def brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, Robo
             for parameter, value in {**former, **robot.parameters}.items()
         }
         if parameters != robot.parameters:
-            found[name] = msgspec.structs.replace(robot, parameters=parameters)
-    return found
+            current[name] = msgspec.structs.replace(robot, parameters=parameters)
+    return current
 
 
 def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:

@@ -67,8 +67,8 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
         for name, robot in stored.robots.items()
     }
     laws = _without(stored.laws, absent)
-    found = msgspec.structs.replace(stored, robots=robots, laws=laws)
-    return msgspec.to_builtins(found), (*sorted({*absent.values()}), *sorted(gains))
+    remaining = msgspec.structs.replace(stored, robots=robots, laws=laws)
+    return msgspec.to_builtins(remaining), (*sorted({*absent.values()}), *sorted(gains))
 
 
 def _without(values: Mapping[str, T], names: Collection[str]) -> dict[str, T]:

@@ -147,12 +147,12 @@ def _logged(robot: Robot, law: str) -> np.ndarray:
 def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
     """Indices of both robots' end-points, forces and aims in a flat sample."""
     layout = sample_layout(robot)
-    found = list[int]()
+    indices = list[int]()
     for i, law in enumerate(laws):
         for field in ("y", "force", law_named(law).aim):
             place = layout.slices[field]
-            found.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
-    return np.array(found)
+            indices.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
+    return np.array(indices)
 
 
 class _Points(NamedTuple):
