@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.loop_states import Place, joined
+from onpath.app.lab.loop_states import Slot, joined
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
@@ -114,7 +114,7 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
     """Advance closed loops of one robot and kind by equally many ticks, all or none."""
     first, ticks = members[0]
     log = loop.layouts.log
-    before, largest = _gathered([run.place for run, _ in members])
+    before, largest = _gathered([run.slot for run, _ in members])
     states, rows = loop.run_many(
         before,
         [run.settings for run, _ in members],
@@ -131,20 +131,20 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         distances = _distances(first.robot, first.kind, curves, moved, log)
         most = np.fmax(largest, np.fmax.reduce(distances, axis=1))
         after = joined(states, moved[:, -1], distances[:, -1], most)
-        for place, i in enumerate(good):
-            members[i][0].place = after, place
+        for row, i in enumerate(good):
+            members[i][0].slot = after, row
     for (run, wanted), log_rows, fault in zip(members, rows, faults, strict=True):
         if fault is not None:
             run.stop(fault, log_rows, wanted.curve, wanted.time + fault[0] * wanted.dt)
 
 
-def _gathered(places: Sequence[Place]) -> tuple[Array | Sequence[Array], Array]:
+def _gathered(slots: Sequence[Slot]) -> tuple[Array | Sequence[Array], Array]:
     """States and largest distances of closed loops of one kind, one row for each."""
-    first = places[0][0]
-    same = len(first.records) == len(places)
-    if same and all(states is first and row == i for i, (states, row) in enumerate(places)):
+    first = slots[0][0]
+    same = len(first.records) == len(slots)
+    if same and all(states is first and row == i for i, (states, row) in enumerate(slots)):
         return first.states, first.largest  # the same loops as in the last frame
-    records = [(states.records[i], states.size) for states, i in places]
+    records = [(states.records[i], states.size) for states, i in slots]
     return [record[:size] for record, size in records], np.array([r[-1] for r, _ in records])
 
 

@@ -8,7 +8,7 @@ from operator import is_
 
 import numpy as np
 
-from onpath.app.lab.loop_states import Place, single
+from onpath.app.lab.loop_states import Slot, single
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
@@ -54,11 +54,11 @@ class ClosedLoopRun:
         side: name of the side.
         law: name of its control law.
         is_typed: whether that is a typed law.
-        place: its state, log row and distances; another object as soon as anything changes.
+        slot: its state, log row and distances; another object as soon as anything changes.
         values: the settings that the last `input` leaves out, as float64.
     """
 
-    place: Place
+    slot: Slot
 
     def __init__(
         self,
@@ -84,7 +84,7 @@ class ClosedLoopRun:
         assert self._inputs is not None
         layouts = self._layouts
         state = start_state(self.robot, layouts, curve, self._inputs[0], start)
-        self.place = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
+        self.slot = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
         self._fill_row(curve)
         self.diverged = None
         self._change(largest=self.distance)
@@ -155,25 +155,25 @@ class ClosedLoopRun:
     @property
     def state(self) -> Array:
         """State of the loop."""
-        states, i = self.place
+        states, i = self.slot
         return states.states[i]
 
     @property
     def row(self) -> Array:
         """Last log row."""
-        states, i = self.place
+        states, i = self.slot
         return states.rows[i]
 
     @property
     def distance(self) -> float:
         """Distance of the actual end-point from the path, [m]."""
-        states, i = self.place
+        states, i = self.slot
         return float(states.distances[i])
 
     @property
     def max_distance(self) -> float:
         """Largest distance since reset, [m]."""
-        states, i = self.place
+        states, i = self.slot
         return float(states.largest[i])
 
     def _change(
@@ -184,7 +184,7 @@ class ClosedLoopRun:
         largest: float | None = None,
     ) -> None:
         """Replace some values and copy the others; the copies may then be modified."""
-        self.place = single(
+        self.slot = single(
             self.state if state is None else state,
             self.row if row is None else row,
             self.distance if distance is None else distance,
@@ -208,7 +208,7 @@ class ClosedLoopRun:
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
             self._input = self._made_input(frozen).like(self._input)
-            self.values = self.settings.take(self._input.places).tobytes()
+            self.values = self.settings.take(self._input.varying).tobytes()
         return self._input
 
     def _made_input(self, frozen: bool) -> Input:
@@ -324,7 +324,7 @@ class ClosedLoopRun:
         row["force"][:] = 0.0
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
         distance = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
-        self.place[0].distances[:] = distance
+        self.slot[0].distances[:] = distance
 
 
 def project(runs: Sequence[ClosedLoopRun], curve: Curve) -> None:

@@ -257,7 +257,7 @@ def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:
     """For each loop, sizes of the recorded part of its state, of its state and of its record."""
     return [
         (recorded.size, states.size, states.records.shape[1])
-        for (states, _), recorded in zip(frame.places, frame.inputs.of, strict=True)
+        for (states, _), recorded in zip(frame.slots, frame.inputs.of, strict=True)
     ]
 
 
@@ -267,7 +267,7 @@ def _columns_of(frames: Sequence[HistoryFrame]) -> tuple[Array, Array, Array, Ar
     Returns:
         Shapes (frames, size), (frames, robots, row size), and twice (frames, robots).
     """
-    flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.places])
+    flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.slots])
     records, begin = flat.reshape(len(frames), -1), 0
     states, rows, numbers = list[Array](), list[Array](), list[Array]()
     for recorded, size, width in _sizes_of(frames[0]):

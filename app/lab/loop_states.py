@@ -41,7 +41,7 @@ class LoopStates(Struct, frozen=True, eq=False):
         return self.records[:, -1]
 
 
-Place = tuple[LoopStates, int]
+Slot = tuple[LoopStates, int]
 """One closed loop: the states, and its row in them."""
 
 
@@ -51,6 +51,6 @@ def joined(states: Array, rows: Array, distances: Array, largest: Array) -> Loop
     return LoopStates(np.concatenate(columns, axis=1), states.shape[1])
 
 
-def single(state: Array, row: Array, distance: float, largest: float) -> Place:
+def single(state: Array, row: Array, distance: float, largest: float) -> Slot:
     """A single closed loop."""
     return joined(state[None], row[None], np.array([distance]), np.array([largest])), 0

@@ -10,14 +10,14 @@ import numpy as np
 from msgspec import Struct
 from msgspec.structs import replace
 
-from onpath.app.lab.loop_states import Place
+from onpath.app.lab.loop_states import Slot
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
 FEW = 8  # maximum number of settings whose values are stored separately
-NO_PLACES = np.zeros(0, np.uint16)
+NONE_VARYING = np.zeros(0, np.uint16)
 
 
 class Input(Struct, frozen=True, eq=False, gc=False):
@@ -30,12 +30,12 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     Attributes:
         side: the robot's side.
         kind: of the loop.
-        base: settings, except for those at `places`.
+        base: settings, except for those at `varying`.
         frozen: whether the robot has diverged and stands still.
         size: length of the part of the loop's state that it changes, which is recorded.
         rest: length of the rest, which a loop of another kind changes; restored as 0.
         parameters: with which the robot was made, None if that does not matter.
-        places: indices of at most `FEW` settings whose values are stored separately.
+        varying: indices of at most `FEW` settings whose values are stored separately.
     """
 
     side: str
@@ -45,35 +45,35 @@ class Input(Struct, frozen=True, eq=False, gc=False):
     size: int
     rest: int = 0
     parameters: Parameters | None = None
-    places: np.ndarray = NO_PLACES
+    varying: np.ndarray = NONE_VARYING
 
     def settings(self, values: Array) -> Array:
         """Settings of the loop.
 
         Args:
-            values: of the settings at `places`, shape (places,).
+            values: of the settings at `varying`, shape (varying,).
         """
-        if not len(self.places):
+        if not len(self.varying):
             return self.base
         settings = self.base.copy()
-        settings[self.places] = values
+        settings[self.varying] = values
         return settings
 
     def like(self, earlier: Input) -> Input:
         """This input expressed with the base of an earlier one; the earlier one if both are equal.
 
-        This input has no `places` yet. If its settings differ from that base in more than `FEW`
-        places, it stays as it is.
+        Nothing in this input is `varying` yet. If more than `FEW` of its settings differ from that
+        base, it stays as it is.
         """
         if earlier.base.shape != self.base.shape:
             return self
         differs = (earlier.base.view(np.int64) != self.base.view(np.int64)).nonzero()[0].tolist()
-        places, known = earlier.places, earlier.places.tolist()
+        varying, known = earlier.varying, earlier.varying.tolist()
         if not set(differs).issubset(known):
-            places = np.array(sorted({*differs, *known}), np.uint16)
+            varying = np.array(sorted({*differs, *known}), np.uint16)
         elif self._is_like(earlier):
             return earlier
-        return self if len(places) > FEW else replace(self, base=earlier.base, places=places)
+        return self if len(varying) > FEW else replace(self, base=earlier.base, varying=varying)
 
     def _is_like(self, other: Input) -> bool:
         """Whether they are equal except for their settings."""
@@ -150,14 +150,14 @@ class HistoryFrame(Struct, frozen=True, eq=False):
         time: at the beginning, [s].
         ticks: number of ticks.
         inputs: the same object until something other than `values` changes.
-        places: of each robot's closed loop, at the beginning.
+        slots: of each robot's closed loop, at the beginning.
         values: the settings of all robots that `inputs` leaves out, as float64.
     """
 
     time: float
     ticks: int
     inputs: Inputs
-    places: Sequence[Place]
+    slots: Sequence[Slot]
     values: bytes = b""
 
     def has_inputs_of(self, other: HistoryFrame) -> bool:
@@ -229,7 +229,7 @@ def segment_at(columns: dict[str, np.ndarray], row: int) -> Segment:
     states, values, drives = columns["state"][row], columns["values"][row], dict[str, Drive]()
     for one, most in zip(inputs.of, columns["most"][row].tolist(), strict=True):
         recorded, states = states[: one.size], states[one.size :]
-        separate, values = values[: len(one.places)], values[len(one.places) :]
+        separate, values = values[: len(one.varying)], values[len(one.varying) :]
         drives[one.side] = Drive(
             kind=one.kind,
             state=np.concatenate([recorded, np.zeros(one.rest)]),

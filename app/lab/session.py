@@ -223,11 +223,11 @@ class Session:
                 curve=curve,
                 table=table,
             )
-            begun = [run.place for run in runs]
+            begun = [run.slot for run in runs]
             yield part
             for i, run in enumerate(runs):
                 if run.diverged is not None:
-                    begun[i] = run.place  # it stands still
+                    begun[i] = run.slot  # it stands still
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
                 if run.diverged is not None:

@@ -151,7 +151,8 @@ class SimulationThread:
         """
         labs, begun = self._labs, self._clock()
         if self._calls:
-            _answer(*self._calls.popleft())
+            function, answer = self._calls.popleft()
+            _answer(function, answer)
         spare = FRAME - late - self._advancing - self._drawing
         apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
         applied = self._clock()

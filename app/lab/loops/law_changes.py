@@ -114,7 +114,8 @@ class LawChanges:
 
     def _goes_on(self, side: str, run: ClosedLoopRun, key: Key) -> bool:
         """Whether a typed law can go on; if it never can, the side gets a new lab's law."""
-        if run.kind == key[1] or run.law != key[1].controller:  # it has just been changed
+        _, kind = key
+        if run.kind == kind or run.law != kind.controller:  # it has just been changed
             return True
         ready = self._is_ready(key)
         if ready is None:
@@ -123,15 +124,16 @@ class LawChanges:
 
     def _ask(self, keys: Sequence[Key]) -> None:
         """Ask for the loops of typed laws among these, and cancel this lab's other requests."""
-        typed = [key for key in keys if is_text(key[1].controller)]
+        typed = [(robot, kind) for robot, kind in keys if is_text(kind.controller)]
         if typed or self._asked:
             self._store.want(self, typed)
         self._asked = bool(typed)
 
     def _is_ready(self, key: Key) -> bool | None:
         """Whether a loop is ready; None if it cannot be made, of which the user is told."""
+        robot, kind = key
         try:
-            return self._store.is_ready(*key)
+            return self._store.is_ready(robot, kind)
         except ValueError as error:
             self.refusals.append(error)
             return None

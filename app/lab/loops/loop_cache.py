@@ -57,9 +57,9 @@ class LoopCache:
         key = (robot.core, kind)
         if is_text(kind.controller):
             return self._typed.find(key) or known or InterpretedLoop(kernel_of(robot, kind))
-        found = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
+        loop = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
-        return found
+        return loop
 
     def is_ready(self, robot: Robot, kind: Kind) -> bool:
         """Whether `get` returns a loop at once.
@@ -139,14 +139,15 @@ class LoopCache:
             if key is None:  # dropped
                 return
             self._making.add(key)
+        robot, kind = key
         try:
-            kernel = kernel_of(*key)
+            kernel = kernel_of(robot, kind)
             meanwhile = self._find(key) or self._share(key, InterpretedLoop(kernel))
             self._share(key, translate_loop(kernel))
             del meanwhile  # nothing else refers to it, unless a lab uses it
-            prepare_speed_limit(key[0])
+            prepare_speed_limit(robot)
         except Exception as error:  # labs continue with the interpreted loop
-            log.warning("%s is not compiled, it is interpreted: %s", key[1].controller, error)
+            log.warning("%s is not compiled, it is interpreted: %s", kind.controller, error)
             self._refused[key] = None
             if len(self._refused) > MOST_REFUSED:
                 del self._refused[next(iter(self._refused))]

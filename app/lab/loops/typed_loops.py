@@ -102,8 +102,9 @@ class TypedLoops:
 
     def make(self, key: Key) -> None:
         """Make a loop: an interpreted one first, and then the compiled one in its place."""
+        robot, kind = key
         try:
-            kernel = kernel_of(*key)
+            kernel = kernel_of(robot, kind)
             self._put(key, InterpretedLoop(kernel))
         except CodedError as refused:
             self._put(key, refused)

@@ -32,9 +32,9 @@ def law_places(session: Session, time: float, before: PageSnapshot | None) -> La
     instant = session.instant() if past is None else past.instant()
     curve = session.editor.curve if past is None else past.curve
     fields = session.sample_layout.unpack(instant.sample)
-    found = dict[str, Place]()
+    places = dict[str, Place]()
     for row, side in enumerate(session.runs):
         if side in aims:
             theta, rate = (float(fields[name][row, 0]) for name in (aims[side].aim, "theta_rate"))
-            found[side] = place_at(robot, parameters, curve, theta, rate)
-    return LawPlaces(time, version, found)
+            places[side] = place_at(robot, parameters, curve, theta, rate)
+    return LawPlaces(time, version, places)

@@ -117,7 +117,7 @@ class RobotGeometry:
         """`Motion.drawn` of the present states of two runs; see `drawn_now`."""
         q, seen = list[Array](), list[Array]()
         for run in runs:
-            states, i = run.place
+            states, i = run.slot
             record = states.records[i]
             q.append(record[: self._joints])
             seen.append(record[states.size :].take(_logged(self._robot, run.law)))
