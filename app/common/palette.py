@@ -45,8 +45,9 @@ class Colour:
 
     def toward(self, other: Colour, share: float) -> Colour:
         """This colour mixed with another: (1 - share) self + share other, share from 0 to 1."""
-        mixed = (round(a + (b - a) * share) for a, b in zip(self.rgb, other.rgb, strict=True))
-        return Colour(*mixed)
+        channels = zip(self.rgb, other.rgb, strict=True)
+        red, green, blue = (round(a + (b - a) * share) for a, b in channels)
+        return Colour(red, green, blue)
 
 
 WHITE = Colour(255, 255, 255)

@@ -160,5 +160,9 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
             states[i] = state
             samples[i] = samples_of(session.robot, session.parameters, rows[-1:], [distance])[0]
     return Instant(
-        first.time + ticks * segment.dt, first.laws, states, first.max_distances, samples
+        time=first.time + ticks * segment.dt,
+        laws=first.laws,
+        states=states,
+        max_distances=first.max_distances,
+        sample=samples,
     )

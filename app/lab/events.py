@@ -87,4 +87,5 @@ class EventLog:
         self._count += 1
 
     def _event(self, number: int) -> LabEvent:
-        return LabEvent(*self._rows.item(number % MOST))
+        run, time, name, detail, sides = self._rows.item(number % MOST)
+        return LabEvent(run=run, time=time, name=name, detail=detail, sides=sides)

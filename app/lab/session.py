@@ -176,7 +176,8 @@ class Session:
 
     def note(self, name: str, detail: str = "", sides: tuple[str, ...] = SIDES) -> None:
         """Record an event; what a drag of a slider repeats within a second is recorded once."""
-        self.events.append(LabEvent(self.run_number, self.time, name, detail, sides))
+        event = LabEvent(run=self.run_number, time=self.time, name=name, detail=detail, sides=sides)
+        self.events.append(event)
 
     # Time
 

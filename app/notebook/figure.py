@@ -87,7 +87,15 @@ def figure(
     curves = {name: curve_of("paths", each) for name, each in named.items()}
     given = by_declared_names(parameters, entry_named(robot), figure)
     values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
-    choice = chosen(robot, laws, curves, values, sliders, controls, choices)
+    choice = chosen(
+        robot,
+        laws,
+        paths=curves,
+        values=values,
+        sliders=sliders,
+        controls=controls,
+        choices=choices,
+    )
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
     laws = choice.every_law
     for text in (unused_text(first, laws, given), forecast_text(first, laws)):

@@ -66,7 +66,7 @@ def _attempts(course: Course, folder: Path) -> Iterator[Attempt]:
         for index, step in enumerate(lesson.steps):
             for task in step.tasks():
                 for cheat in cheats(lesson, index, task, references[task.id]):
-                    yield Attempt(lesson, step, task, cheat, file)
+                    yield Attempt(lesson=lesson, step=step, task=task, cheat=cheat, file=file)
 
 
 def _passed(attempts: Iterable[Attempt], store: LoopCache) -> Iterator[Attempt]:

@@ -99,7 +99,10 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
         raise unknown_name(min(unknown), list(asdict(ON_PATH)), "start")
     if len(robot.wall) not in (0, 3):
         raise CodedError("error.half_a_wall")
-    start, wall = Start(**robot.start), Wall(*robot.wall) if robot.wall else None
+    start, wall = Start(**robot.start), None
+    if robot.wall:
+        z1, z2, angle = robot.wall
+        wall = Wall(z1, z2, angle)
     return Wanted(
         entry=ROBOTS[name],
         parameters=parameters,
