@@ -72,7 +72,7 @@ def parsed(url: str | sa.URL) -> sa.URL:
         return sa.make_url(url)
     except exc.ArgumentError:
         raise ValueError(
-            "not a database URL, such as postgresql+psycopg://user@host/name"
+            "not a database URL such as postgresql+psycopg://user@host/name"
         ) from None
 
 
