@@ -71,9 +71,7 @@ def parsed(url: str | sa.URL) -> sa.URL:
     try:
         return sa.make_url(url)
     except exc.ArgumentError:
-        raise ValueError(
-            "not a database URL such as postgresql+psycopg://user@host/name"
-        ) from None
+        raise ValueError("not a database URL such as postgresql+psycopg://user@host/name") from None
 
 
 def opened_server(url: sa.URL) -> sa.Engine:
