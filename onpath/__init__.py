@@ -7,8 +7,8 @@ In Python, without a browser:
 >>> run.distance.shape  # [m], one row per millisecond
 (3000,)
 
-`run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` says what can be
-set. Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
+`run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
+arguments. Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
 in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
 """

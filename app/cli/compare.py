@@ -59,14 +59,18 @@ class CompareCommand:
         contest = self._contest()
         laws = _laws(self.law, contest)
         plain = on_path(contest.entry, contest.parameters, contest.curve)
-        told = assignments(self.set)
-        for text in (unused_text(plain, laws, told), forecast_text(plain, laws)):
+        given = assignments(self.set)
+        for text in (unused_text(plain, laws, given), forecast_text(plain, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
         results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
-                rows = [dataclasses.asdict(o) for each in results.values() for o in each]
+                rows = [
+                    dataclasses.asdict(outcome)
+                    for outcomes in results.values()
+                    for outcome in outcomes
+                ]
                 writer = csv.DictWriter(file, list(rows[0]))
                 writer.writeheader()
                 writer.writerows(rows)
@@ -122,7 +126,7 @@ class CompareCommand:
 
 
 def _laws(asked: tuple[str, ...], contest: Contest) -> list[str]:
-    """The laws asked for, or all; typed laws on one line.
+    """The laws asked for, or all; each typed law on one line.
 
     Raises:
         ValueError: one of them does not exist, or cannot be compared.
@@ -153,7 +157,7 @@ def _known(names: tuple[str, ...], known: list[str], what: str) -> list[str]:
 
 
 def law_columns(laws: Iterable[str]) -> dict[str, str]:
-    """What the table calls the laws: by their names, typed ones `own`, or `own 1`, `own 2`."""
+    """The laws' names in the table: typed laws are called `own`, or `own 1`, `own 2` and so on."""
     from onpath.models.control.laws.own import OWN, is_text
 
     names = list(laws)
@@ -184,13 +188,13 @@ def table(results: Results) -> str:
 
 
 def _distance(outcomes: list[Outcome]) -> str:
-    return _worst(outcomes, lambda o: 1000 * o.max_distance_m, ".2f")
+    return _worst(outcomes, lambda outcome: 1000 * outcome.max_distance_m, ".2f")
 
 
 def _delay(outcomes: list[Outcome]) -> str:
-    return _worst(outcomes, lambda o: o.delay_s, ".2f")
+    return _worst(outcomes, lambda outcome: outcome.delay_s, ".2f")
 
 
 def _worst(outcomes: list[Outcome], value: Callable[[Outcome], float], form: str) -> str:
-    found = max(map(value, outcomes), key=abs) + 0.0
-    return STOPPED if math.isinf(found) else f"{found:{form}}"
+    worst = max(map(value, outcomes), key=abs) + 0.0
+    return STOPPED if math.isinf(worst) else f"{worst:{form}}"

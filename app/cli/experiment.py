@@ -82,7 +82,7 @@ class ExperimentCommand:
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
-        reasons = {r.controller: r.reason or never_held(chosen, r) for r in runs}
+        reasons = {each.controller: each.reason or never_held(chosen, each) for each in runs}
         print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 
 
@@ -116,7 +116,7 @@ def laws_named(text: str) -> list[str]:
     """The laws that a text asks for: names with commas between, "all", "both", or a typed law.
 
     Raises:
-        ValueError: an unknown name, or not a law.
+        ValueError: an unknown name, or a text that is not a law.
     """
     from onpath.models.control.laws.own import is_text
     from onpath.models.control.laws.registry import LAWS, NAMES, law_name
@@ -137,7 +137,7 @@ def read_path(text: str) -> Curve:
     """The path that `--path` describes, or the file that it names; a remark goes to stderr.
 
     Raises:
-        ValueError: not a path, or the file cannot be read.
+        ValueError: the text is not a path, or the file cannot be read.
     """
     from onpath.models.paths.curve_fit import deviation_remark
     from onpath.models.studies.path_text import curve_from_text
@@ -160,8 +160,8 @@ def _path_in(file: Path) -> Curve:
     try:
         return curve_from_text(text)
     except ValueError as error:
-        use = "this is a table of points: in Python, onpath.through(points) makes a path of them"
-        raise ValueError(f"--path @{file}: {use if is_table(text) else error}") from None
+        hint = "this is a table of points: in Python, onpath.through(points) makes a path of them"
+        raise ValueError(f"--path @{file}: {hint if is_table(text) else error}") from None
 
 
 def assignments(pairs: tuple[str, ...]) -> dict[str, str]:

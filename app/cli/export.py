@@ -46,23 +46,25 @@ class ExportFigure:
         from onpath.app.notebook.figure import PATHS, figure
         from onpath.models.control.sides import DEFAULT_LAWS
 
+        given = assignments(self.set)
+        parameters = {"output" if name == "law" else name: given[name] for name in given}
         written = figure(
             self.file,
-            self.robot,
-            self.law or tuple(DEFAULT_LAWS.values()),
-            {_name(each): read_path(each) for each in self.path} or PATHS,
+            robot=self.robot,
+            laws=self.law or tuple(DEFAULT_LAWS.values()),
+            paths={_name(each): read_path(each) for each in self.path} or PATHS,
             sliders=self.slider or None,
             controls=self.control or None,
             choices=self.choice,
             title=self.title,
             language=self.language,
-            **{"output" if n == "law" else n: v for n, v in assignments(self.set).items()},
+            **parameters,
         )
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
 
 
 def _name(path: str) -> str:
-    """What readers see in the list of paths."""
+    """The name of a path in the list that readers see."""
     return Path(path[1:]).stem if path.startswith("@") else path
 
 

@@ -18,7 +18,7 @@ class ExportLesson:
     scorm: Path
     """The .zip file to write."""
     version: Literal["1.2", "2004"] = "1.2"
-    """Of SCORM. Version 1.2 keeps 4,096 characters: there, curves are left out if need be."""
+    """Version of SCORM. 1.2 stores only 4,096 characters: there, curves are left out if need be."""
     language: str = "en"
     """Language of the lesson."""
     folder: Path | None = None

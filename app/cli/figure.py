@@ -1,4 +1,4 @@
-"""`onpath figure`: a figure of the paper with the paper's settings, or the rank test as a map."""
+"""`onpath figure`: a figure of the paper, with the paper's settings, or a map of the rank test."""
 
 from __future__ import annotations
 

@@ -97,7 +97,7 @@ def _table(robot: str, laws: list[str], seconds: float, result: Estimate, angles
         lines.append("  the motion does not tell the parameters of a sum apart")
     if result.unexcited:
         lines.append(f"  not excited: {', '.join(result.unexcited)}")
-    lines.append(f"  {100 * result.unexplained:.2g} % of the torque are not explained")
+    lines.append(f"  {100 * result.unexplained:.2g} % of the torque is not explained")
     lines.append(
         "  ± is one standard error from what is not explained. It leaves out what all rows share:"
         " wrong geometry, scale or time of torques and forces, the filter of measured rates, and"

@@ -9,8 +9,8 @@ from typing import Any
 def server() -> dict[str, Any]:
     """Return the configuration for jupyter-server-proxy.
 
-    The lab listens on a Unix socket that only its user can open: through a port, other users
-    of the same machine would bypass Jupyter's login.
+    The lab listens on a Unix socket that only its user can open: through a port, other users of the
+    same machine could bypass Jupyter's login.
     """
     return {
         "command": [sys.executable, "-P", "-m", "onpath", "serve", "--socket", "{unix_socket}"],

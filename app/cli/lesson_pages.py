@@ -1,4 +1,4 @@
-"""`onpath lessons guide` and `onpath lessons worksheet`: pages to print for a teacher."""
+"""`onpath lessons guide` and `onpath lessons worksheet`: pages for teachers to print."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def _check(files: dict[str, Path | None], wanted: str) -> None:
 
 
 def _course(folder: Path | None, language: str) -> tuple[Course, Path, Words]:
-    """The lessons of a folder, which must be right, and the words of a language.
+    """The lessons of a folder, which must have no problems, and the words of a language.
 
     Raises:
         ValueError: a lesson has problems, or there is no such language.

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from onpath.lessons.step_numbers import ScriptPart
 
 PLOTTED = {"torques": ("torque",), "phase": ("across", "across_rate")}
-"""Quantities of the plots that are not called like them."""
+"""Quantities of the plots that have other names than they."""
 ALWAYS = ("distance", "torque")  # quantities that are printed for every step
 
 
@@ -96,7 +96,7 @@ def _runs(lesson: Lesson, step: Step, folder: Path) -> Iterator[PlayedScript]:
 
 
 def _setup(lesson: Lesson, index: int) -> dict[str, Any]:
-    """The lab as the step begins."""
+    """The lab at the beginning of the step."""
     from onpath.models.control.sides import DEFAULT_LAWS
 
     scene = lesson.scene_at(index)
@@ -113,9 +113,9 @@ def _setup(lesson: Lesson, index: int) -> dict[str, Any]:
 
 
 def _drawn(scene: StepSetup) -> dict[str, Any]:
-    """What differs from a new lab's start and drawing."""
-    told = {"start": scene.start, "show": scene.show, "marks": scene.marks}
-    plain = {name: msgspec.to_builtins(value) for name, value in told.items()}
+    """The start and the drawings, where they differ from a new lab's."""
+    fields = {"start": scene.start, "show": scene.show, "marks": scene.marks}
+    plain = {name: msgspec.to_builtins(value) for name, value in fields.items()}
     plain["start"] = {name: value for name, value in plain["start"].items() if value}
     return {name: value for name, value in plain.items() if value}
 
@@ -148,7 +148,9 @@ def _part_as_json(part: ScriptPart) -> dict[str, Any]:
     return plain | {"actions": [action_text(action) for action in part.actions]}
 
 
-def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) -> Iterator[str]:
+def _lines(
+    lesson: Lesson, index: int, runs: list[PlayedScript], all_quantities: bool
+) -> Iterator[str]:
     from onpath.lessons.record import QUANTITIES
 
     step, setup = lesson.steps[index], _setup(lesson, index)
@@ -159,25 +161,26 @@ def _lines(lesson: Lesson, index: int, runs: list[PlayedScript], every: bool) ->
     yield f"  set: {values or 'nothing'}; all others as in a new lab"
     for name in ("plot", "start", "show", "marks"):
         if setup.get(name):
-            yield f"  {name}: {_told(setup[name])}"
+            yield f"  {name}: {_in_a_line(setup[name])}"
     if not runs:
         yield "  no script and no task"
-    shown = QUANTITIES if every else [q for q in QUANTITIES if q in _mentioned(lesson, index)]
+    mentioned = _mentioned(lesson, index)
+    shown = [name for name in QUANTITIES if all_quantities or name in mentioned]
     for run in runs:
         yield f"\n{run.title}, {run.script.until:g} s"
         for part in run.parts:
-            yield from _part_lines(part, list(shown))
+            yield from _part_lines(part, shown)
         if run.verdicts:
             yield f"  task {'passed' if run.passed else 'not passed'}; at the end:"
         for verdict in run.verdicts:
             yield f"    {'✓' if verdict.passed else '○'} {verdict.words}"
 
 
-def _told(value: Any) -> str:
-    """Plots, a start, drawings or marks in a line."""
+def _in_a_line(value: Any) -> str:
+    """Plots, a start, drawings or marks as text."""
     if isinstance(value, dict):
         return ", ".join(f"{name} = {each}" for name, each in cast(dict[str, Any], value).items())
-    return ", ".join(each if isinstance(each, str) else f"[{_told(each)}]" for each in value)
+    return ", ".join(each if isinstance(each, str) else f"[{_in_a_line(each)}]" for each in value)
 
 
 def _part_lines(part: ScriptPart, quantities: list[str]) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""`onpath lessons`: the lessons as files."""
+"""`onpath lessons`: lists, checks, plays and prints lessons."""
 
 from __future__ import annotations
 
@@ -99,9 +99,9 @@ class LessonsCommand:
 
 
 def minutes_table(course: Course, steps: bool) -> str:
-    """A line per lesson, and if wanted per step, with the minutes and what takes them.
+    """One line per lesson and, if wanted, per step, with its minutes by activity.
 
-    Those of optional steps are not in the lesson's minutes; they stand in a column of their own.
+    A lesson's minutes do not include optional steps, which have a column of their own.
     """
     from onpath.lessons.minutes import Minutes, optional_minutes, required_minutes, step_minutes
 
@@ -113,13 +113,13 @@ def minutes_table(course: Course, steps: bool) -> str:
     lines = [" ".join([f"{'':32s}", *(f"{head:>7s}" for head in heads)])]
     for name, versions in course.lessons.items():
         lesson = course.lesson(name, "en")
-        more, tongues = optional_minutes(lesson).total, ",".join(versions)
-        optional = f"{more:8.1f}" if more else f"{'':8s}"
-        rest = f"{optional} {tongues:8s} {lesson.front.title}"
+        minutes, languages = optional_minutes(lesson).total, ",".join(versions)
+        optional = f"{minutes:8.1f}" if minutes else f"{'':8s}"
+        rest = f"{optional} {languages:8s} {lesson.front.title}"
         lines.append(row(name, required_minutes(lesson), rest))
         for number, step in enumerate(lesson.steps if steps else (), 1):
-            marked = [" optional"] if step.optional else []
-            lines.append(row(f"  {number} {step.kind}: {step.title}", step_minutes(step), *marked))
+            labels = [" optional"] if step.optional else []
+            lines.append(row(f"  {number} {step.kind}: {step.title}", step_minutes(step), *labels))
     for name, route in course.routes.items():
         lines.append(f"{name:32.32s} {route.minutes:7.1f} route: {route.text(route.title, 'en')}")
     return "\n".join(lines)

@@ -68,7 +68,7 @@ def main() -> None:
 
 
 def _print_any_text() -> None:
-    """Let the output have all letters; a file into which Windows redirects it would have 256."""
+    """Allow any character in the output; Windows would limit a redirected file to 256."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             chosen = stream.isatty() or "PYTHONIOENCODING" in os.environ
@@ -106,8 +106,9 @@ def unknown_command(name: str) -> str:
 
 
 def _parse(arguments: list[str]) -> Subcommand:
-    """Parse a command line. Only the options of its subcommand are set up, so it starts sooner."""
-    complaint, (name, *options) = io.StringIO(), arguments
+    """Parse a command line; only its subcommand's options are built, which starts sooner."""
+    name, *options = arguments
+    complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
             if name in COMMANDS:

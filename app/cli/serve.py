@@ -56,7 +56,7 @@ class Serve:
     """A process whose simulation or network hangs for this time answers 503 at /health, and ends
     after twice this time, so that whatever supervises it starts another; 0 for never."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
-    """Least level of log messages."""
+    """Lowest level of log messages."""
 
     def run(self) -> int | None:
         """Serve until Ctrl-C; return exit code 1 if the database cannot be used."""
@@ -107,7 +107,7 @@ class Serve:
         return None
 
     def _classrooms(self) -> list[Classroom]:
-        """Open the classes, if there are to be any, and print how to come in."""
+        """Open the classes, if any are wanted, and print how to join them."""
         from onpath.app.classroom.class_opening import given_keys, open_classes
 
         keys = given_keys()
@@ -120,7 +120,7 @@ class Serve:
 
 
 def _is_web_address(text: str) -> bool:
-    """Whether a text is an address that a link may have: no script, and with a host."""
+    """Whether a text is a web address with a host, which is safe in a link."""
     try:
         parts = urlsplit(text)
     except ValueError:
@@ -130,7 +130,7 @@ def _is_web_address(text: str) -> bool:
 
 
 def _print_class(room: Classroom, site: str) -> None:
-    """Print the class code with its address if it has one; else the teacher's key, too."""
+    """Print the class code, with the class's address or else with the teacher's key."""
     from onpath.app.common.access_codes import shown
     from onpath.app.viser_adapter.addresses import class_address
 

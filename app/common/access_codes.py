@@ -16,7 +16,7 @@ from onpath.models.errors import CodedError
 
 ALPHABET = "23456789abcdefghjkmnpqrstuvwxyz"  # no characters that are easily confused
 LENGTH, GROUP = 12, 4  # 59 bits, which cannot be guessed
-LONGEST_TYPED = 1000  # of the text around a code that is read, [characters]
+LONGEST_TYPED = 1000  # part of a text that is searched for a code, [characters]
 _DASHES = frozenset("\u2212\u2043\u02d7\u30fc\u2500")  # besides those of category Pd
 _EXAMPLE = "k7mf2xqa9tzr"
 _GAP = r"[^a-z0-9-]*"
@@ -40,8 +40,8 @@ def shown(code: str) -> str:
 def as_meant(text: str) -> str:
     """A text in which all dashes, widths and blanks are plain, and nothing is invisible.
 
-    What is no letter or digit of ASCII, dash or blank, such as a quote or a bracket, becomes "|".
-    Surplus marks go first: the time of a normalisation grows with the square of their number.
+    Anything but an ASCII letter or digit, a dash or a blank, such as a quote or a bracket, becomes
+    "|". Surplus marks are removed first: normalisation takes time quadratic in their number.
     """
     return "".join(map(_plain, unicodedata.normalize("NFKC", without_surplus_marks(text))))
 
@@ -58,7 +58,7 @@ def _plain(character: str) -> str:
 
 
 def normalised(text: str) -> str:
-    """The stored form of a code that a user typed or pasted, also with words around it.
+    """The stored form of a code that a user typed or pasted, possibly with words around it.
 
     Raises:
         ValueError: it is not a code, or there are several.
@@ -66,10 +66,10 @@ def normalised(text: str) -> str:
     plain = as_meant(text[:LONGEST_TYPED]).lower()
     code = _letters(plain)
     if len(code) != LENGTH:
-        found = {_letters(each) for each in _SHOWN.findall(plain)}
-        if len(found) != 1:
+        codes = {_letters(each) for each in _SHOWN.findall(plain)}
+        if len(codes) != 1:
             raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
-        (code,) = found
+        (code,) = codes
     strange = sorted(set(code) - set(ALPHABET))
     if strange:
         raise CodedError("error.session_code_letters", example=shown(_EXAMPLE))
@@ -79,16 +79,16 @@ def normalised(text: str) -> str:
 def short_code(text: str, length: int) -> str:
     """The stored form of a code of `length` characters without groups; see `normalised`.
 
-    Of several words that might be one, it is the one with a digit or in capitals; if that does not
-    decide, the result is everything that was typed, which is no code.
+    If several words might be the code, it is the one in capitals or with a digit; if that does not
+    decide, the result is all letters and digits of the text, which are no code.
     """
     plain = as_meant(text[:LONGEST_TYPED])
     whole = _letters(plain.lower())
     words = {word for word in re.findall(r"[A-Za-z0-9]+", plain) if len(word) == length}
     fit = {word for word in words if set(word.lower()) <= set(ALPHABET)}
     clear = {word.lower() for word in fit if word.isupper() or not word.isalpha()}
-    found = {word.lower() for word in fit}
-    for each in (found, clear):
+    candidates = {word.lower() for word in fit}
+    for each in (candidates, clear):
         if len(whole) != length and len(each) == 1:
             return each.pop()
     return whole

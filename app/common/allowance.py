@@ -1,4 +1,4 @@
-"""A limit on how often something may happen: some times at once, and some times per second."""
+"""A limit on how often something may happen: a number of times at once, and a rate."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ class Allowance:
     """How often something may happen now. Use it in one thread, or under a lock.
 
     Args:
-        burst: times at once.
-        per_second: times per second, in the long run.
+        burst: number of times at once.
+        per_second: number of times per second, in the long run.
         clock: monotonic time, [s].
     """
 
@@ -29,7 +29,7 @@ class Allowance:
         return self._left >= times
 
     def take(self, times: float = 1.0) -> bool:
-        """Count it, if it may happen now; returns whether it may."""
+        """Whether it may happen now; if so, it is counted."""
         if not self.covers(times):
             return False
         self._left -= times

@@ -55,7 +55,7 @@ def whole_file(path: Path) -> Iterator[Path]:
         os.replace(scratch, path)
     except OSError as error:
         if error.errno is None or (scratch and error.filename not in (None, scratch)):
-            raise  # of another file
+            raise  # the error concerns another file
         raise OSError(error.errno, error.strerror, str(path)) from None
     finally:
         if scratch:

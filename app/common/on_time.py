@@ -1,6 +1,6 @@
 """Whether the frames of the simulation are on time; long work in other threads waits for them.
 
-An interpreter runs one thread at a time, so that work in other threads makes frames late.
+The interpreter runs one thread at a time, so work in other threads makes frames late.
 """
 
 from __future__ import annotations
@@ -20,5 +20,5 @@ def note_lateness(late: bool) -> None:
 
 
 def wait_until_on_time(most: float) -> bool:
-    """Wait until frames are on time, for at most so many seconds; returns whether they are."""
+    """Wait for at most `most` seconds until frames are on time; returns whether they are."""
     return _on_time.wait(most)

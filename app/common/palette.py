@@ -45,8 +45,9 @@ class Colour:
 
     def toward(self, other: Colour, share: float) -> Colour:
         """This colour mixed with another: (1 - share) self + share other, share from 0 to 1."""
-        mixed = (round(a + (b - a) * share) for a, b in zip(self.rgb, other.rgb, strict=True))
-        return Colour(*mixed)
+        channels = zip(self.rgb, other.rgb, strict=True)
+        red, green, blue = (round(a + (b - a) * share) for a, b in channels)
+        return Colour(red, green, blue)
 
 
 WHITE = Colour(255, 255, 255)
@@ -112,8 +113,8 @@ def on_scale(shares: np.ndarray) -> np.ndarray:
 
 
 def of_law(law: str) -> Colour:
-    """Colour of a control law in figures of several laws; those of a new lab have their side's."""
-    sides = {own: side for side, own in DEFAULT_LAWS.items()}
+    """Colour of a control law in figures of several laws; the default laws have their sides'."""
+    sides = {default: side for side, default in DEFAULT_LAWS.items()}
     if law in sides:
         return OF_SIDE[sides[law]]
     if law not in LAWS:

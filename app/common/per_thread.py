@@ -7,18 +7,18 @@ from collections.abc import Callable
 from functools import cache, wraps
 from typing import ParamSpec, TypeVar
 
-Asked = ParamSpec("Asked")
-Made = TypeVar("Made")
+P = ParamSpec("P")
+T = TypeVar("T")
 
 
-def per_thread(make: Callable[Asked, Made]) -> Callable[Asked, Made]:
+def per_thread(make: Callable[P, T]) -> Callable[P, T]:
     """Like `functools.cache`, but every thread has its own results."""
-    own = threading.local()
+    local = threading.local()
 
     @wraps(make)
-    def made(*args: Asked.args, **options: Asked.kwargs) -> Made:
-        if not hasattr(own, "made"):
-            own.made = cache(make)
-        return own.made(*args, **options)
+    def cached(*args: P.args, **kwargs: P.kwargs) -> T:
+        if not hasattr(local, "cached"):
+            local.cached = cache(make)
+        return local.cached(*args, **kwargs)
 
-    return made
+    return cached

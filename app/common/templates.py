@@ -1,9 +1,9 @@
 """HTML from the templates in assets/templates: every value is escaped unless it is `Markup`.
 
-Colours are those of the palette, but for where a page in the dark has others: see
+Colours are those of the palette; a dark page replaces some of them, see
 assets/page/dark_colours.css.
 
-`Markup` is only made in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
+`Markup` is made only in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
 words, by `lessons.safe_html.safe`.
 """
 
@@ -62,22 +62,22 @@ def phrase(words: Words, key: str, /, **values: object) -> Markup:
     """
     marks = {f"\ue000{name}\ue001": v for name, v in values.items() if isinstance(v, Markup)}
     plain = {name: v for name, v in values.items() if not isinstance(v, Markup)}
-    said = words(key, **plain, **{mark[1:-1]: mark for mark in marks})
-    pieces = re.split("(" + "|".join(marks) + ")", said) if marks else [said]
+    text = words(key, **plain, **{mark[1:-1]: mark for mark in marks})
+    pieces = re.split("(" + "|".join(marks) + ")", text) if marks else [text]
     return Markup().join(marks.get(piece, escape(piece)) for piece in pieces)
 
 
 def inlined(asset: str) -> Markup:
-    """A script or style of ours, to stand in a page as it is."""
+    """One of our scripts or styles, to be put into a page verbatim."""
     return Markup(asset_path(asset).read_text("utf-8"))
 
 
 def styled(template: str, /, **values: object) -> Markup:
-    """A template of a style, rendered to stand in a page as it is."""
+    """A style template, rendered to be put into a page verbatim."""
     return Markup(render(template, **values))
 
 
 def json_block(data: object) -> Markup:
-    """Data for a block of a page that is read as JSON; no text in it can end the block."""
+    """Data for a JSON block of a page; no text in it can end the block."""
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return Markup(text.replace("<", "\\u003c"))

@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 
 from onpath.models.errors import CodedError
 
-TRIES, WITHIN = 5, 60.0  # number of wrong codes per tab, in this many seconds
+TRIES, WITHIN = 5, 60.0  # maximum number of wrong codes per tab, within this time, [s]
 
 
 class Throttle:
@@ -26,7 +26,7 @@ class Throttle:
 
     @contextmanager
     def attempt(self, who: str) -> Iterator[None]:
-        """Make an attempt, which fails by raising ValueError; until it ends it counts as failed.
+        """Make an attempt, which fails by raising ValueError and counts as failed until it ends.
 
         Raises:
             ValueError: too many failures; the attempt is not made.

@@ -1,4 +1,4 @@
-"""Which characters of a text a reader can see, and what names look alike."""
+"""Which characters of a text a reader can see, and which names look alike."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Callable
 
 MOST_MARKS = 3  # combining marks on one letter; Vietnamese has two, Thai and Hebrew up to three
-JOINERS = "\u200d", "\u200c"  # zero width joiner, and non-joiner
+JOINERS = "\u200d", "\u200c"  # zero-width joiner and non-joiner
 SELECTOR = "\ufe0f"  # asks for a symbol in colours
 VIRAMA = 9  # canonical combining class of the sign that joins consonants
 _KEYCAPS = frozenset("0123456789#*")
@@ -43,15 +43,15 @@ def without_surplus_marks(text: str) -> str:
 
 
 def readable(text: str, space: Callable[[str], str]) -> str:
-    """What can be seen of a text, in NFC, with the joiners by which scripts and emoji are spelt.
+    """The visible part of a text, in NFC, with the joiners that scripts and emoji are spelt with.
 
     A joiner is kept where it has an effect: between two letters or symbols that are not ASCII, and
     after a virama; a variation selector after a symbol or the base of a keycap.
 
     Args:
-        space: what takes the place of a character that cannot be seen; " ", or nothing.
+        space: returns what replaces an invisible character, such as " " or nothing.
     """
-    while (seen := _seen(text, space)) != text:  # what is left out changes what stands together
+    while (seen := _seen(text, space)) != text:  # omissions change which characters are adjacent
         text = seen
     return text
 
@@ -79,13 +79,13 @@ def _joins(character: str, before: str, after: str) -> bool:
 
 def clusters(text: str) -> list[str]:
     """What readers see as single characters: a letter with its marks, a conjunct, one emoji."""
-    found = list[str]()
+    result = list[str]()
     for character in text:
-        if found and _continues(found[-1], character):
-            found[-1] += character
+        if result and _continues(result[-1], character):
+            result[-1] += character
         else:
-            found.append(character)
-    return found
+            result.append(character)
+    return result
 
 
 def _continues(before: str, character: str) -> bool:
@@ -109,6 +109,6 @@ def shortened(text: str, most: int) -> str:
 
 
 def comparison_key(name: str) -> str:
-    """A form in which names are equal that differ in width, ligatures, joiners or case alone."""
+    """A form in which names that differ only in width, ligatures, joiners or case are equal."""
     plain = "".join(c for c in name if c not in JOINERS and c != SELECTOR)
     return unicodedata.normalize("NFKC", plain).casefold()

@@ -1,7 +1,7 @@
-"""Advances the closed loops of many labs together: those of one kind are rows of arrays.
+"""Advances the closed loops of many labs together; loops of one kind are rows of the same arrays.
 
-A lab's frame is a generator. It pauses with the ticks that it needs, and is resumed when they have
-been simulated, together with those of all other labs.
+A lab's frame is a generator: it yields the ticks that it needs, and is resumed once they have been
+simulated together with those of all other labs.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.loop_states import Place, joined
+from onpath.app.lab.loop_states import Slot, joined
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import not_finite
 from onpath.models.closed_loop.loop_kind import Kind
@@ -33,9 +33,11 @@ class Ticks(Struct, frozen=True, eq=False):
     Attributes:
         runs: the closed loops to advance, and the loop that computes each.
         count: number of ticks.
-        time, dt: at the beginning, and length of a tick, [s].
+        time: at the beginning of the ticks, [s].
+        dt: length of a tick, [s].
         parameters: of the robots.
-        curve, table: the path, and its coefficients for the loops.
+        curve: the path.
+        table: the path's coefficients for the loops.
     """
 
     runs: Sequence[tuple[ClosedLoopRun, Loop]]
@@ -56,7 +58,7 @@ Row = tuple[ClosedLoopRun, Ticks]
 
 
 def raise_error(error: Exception) -> None:
-    """Raise it."""
+    """Raise an error."""
     raise error
 
 
@@ -99,7 +101,7 @@ def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
     for (loop, _, _), rows in kinds.items():
         try:
             _advance(loop, rows)
-        except Exception:  # of one row: find out which
+        except Exception:  # one row caused it: find out which
             for row in rows:
                 try:
                     _advance(loop, [row])
@@ -110,12 +112,13 @@ def _simulate(wanted: Iterable[Ticks]) -> dict[int, Exception]:
 
 def _advance(loop: Loop, members: Sequence[Row]) -> None:
     """Advance closed loops of one robot and kind by equally many ticks, all or none."""
-    (first, ticks), log = members[0], loop.layouts.log
-    before, largest = _gathered([run.place for run, _ in members])
+    first, ticks = members[0]
+    log = loop.layouts.log
+    before, largest = _gathered([run.slot for run, _ in members])
     states, rows = loop.run_many(
         before,
         [run.settings for run, _ in members],
-        [own.table for _, own in members],
+        [each.table for _, each in members],
         ticks.count,
     )
     faults = _faults(members, states, rows[..., log.slices["q"]], rows[..., log.slices["v"]])
@@ -128,52 +131,49 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         distances = _distances(first.robot, first.kind, curves, moved, log)
         most = np.fmax(largest, np.fmax.reduce(distances, axis=1))
         after = joined(states, moved[:, -1], distances[:, -1], most)
-        for place, i in enumerate(good):
-            members[i][0].place = after, place
-    for i in set(range(len(members))).difference(good):
-        (run, own), each, fault = members[i], rows[i], faults[i]
+        for row, i in enumerate(good):
+            members[i][0].slot = after, row
+    for (run, wanted), log_rows, fault in zip(members, rows, faults, strict=True):
         if fault is not None:
-            run.stop(fault, each, own.curve, own.time + fault[0] * own.dt)
+            run.stop(fault, log_rows, wanted.curve, wanted.time + fault[0] * wanted.dt)
 
 
-def _gathered(places: Sequence[Place]) -> tuple[Array | Sequence[Array], Array]:
+def _gathered(slots: Sequence[Slot]) -> tuple[Array | Sequence[Array], Array]:
     """States and largest distances of closed loops of one kind, one row for each."""
-    first = places[0][0]
-    same = len(first.records) == len(places)
-    if same and all(states is first and row == i for i, (states, row) in enumerate(places)):
+    first = slots[0][0]
+    same = len(first.records) == len(slots)
+    if same and all(states is first and row == i for i, (states, row) in enumerate(slots)):
         return first.states, first.largest  # the same loops as in the last frame
-    records = [(states.records[i], states.size) for states, i in places]
+    records = [(states.records[i], states.size) for states, i in slots]
     return [record[:size] for record, size in records], np.array([r[-1] for r, _ in records])
 
 
 def _faults(
     members: Sequence[Row], states: Array, q: Array, v: Array
 ) -> list[tuple[int, Message] | None]:
-    """The first bad tick of each, and why; None if there is none."""
+    """The first invalid tick of each closed loop and the reason; None if all are valid."""
     first, ticks = members[0]
     robot = first.robot
     finite = np.isfinite(states)
-    joined = (-1, q.shape[-1])
-    if finite.all() and (
-        robot.fault(q.reshape(joined), v.reshape(joined), ticks.parameters) is None
-    ):
+    flat = (-1, q.shape[-1])
+    if finite.all() and robot.fault(q.reshape(flat), v.reshape(flat), ticks.parameters) is None:
         return [None] * len(members)
-    found = [robot.fault(q[i], v[i], own.parameters) for i, (_, own) in enumerate(members)]
+    faults = [robot.fault(q[i], v[i], each.parameters) for i, (_, each) in enumerate(members)]
     return [
         (ticks.count, not_finite(run.kind.controller))
         if fault is None and not numbers.all()
         else fault
-        for fault, numbers, (run, _) in zip(found, finite, members, strict=True)
+        for fault, numbers, (run, _) in zip(faults, finite, members, strict=True)
     ]
 
 
 def _distances(
     robot: Robot, kind: Kind, curves: Sequence[Curve], rows: Array, log: Layout
 ) -> Array:
-    """Distances of end-points to their paths, with that of the last row, (runs, some rows), [m]."""
+    """Distances of the end-points from their paths in some rows and the last, (runs, rows), [m]."""
     system, slices = robot.system, log.slices
-    seen = system.controlled_output is system.output and not kind.encoder
-    if seen and not kind.level_set and system.p == 2:
+    exact = system.controlled_output is system.output and not kind.encoder
+    if exact and not kind.level_set and system.p == 2:
         return np.abs(rows[..., slices["xi"].start])
     some = rows[:, (rows.shape[1] - 1) % DISTANCE_INTERVAL :: DISTANCE_INTERVAL]
     return near_distances(

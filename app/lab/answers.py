@@ -1,4 +1,4 @@
-"""Converts what a student answers to the form that is stored."""
+"""Converts a student's answers to the form in which they are stored."""
 
 from __future__ import annotations
 
@@ -46,12 +46,12 @@ def kept_number(given: object) -> float:
 
 
 def kept_text(typed: object) -> str:
-    """An answer in own words: at most MOST_TEXT characters that can be seen, and spaces."""
+    """An answer in the student's own words: at most MOST_TEXT visible characters and spaces."""
     return readable(str(typed)[: 4 * MOST_TEXT], _space)[:MOST_TEXT].strip()
 
 
 def _space(character: str) -> str:
-    """A space or a new line for one that cannot be seen, or nothing."""
+    """What replaces an invisible character: a line break, a space or nothing."""
     if character == "\n":
         return character
     return " " if character.isspace() else ""

@@ -1,4 +1,4 @@
-"""A robot that has stopped: its last moments once more, slowly, and the settings that did well."""
+"""Help when a robot has stopped: a slow replay of its last moments, and the last good settings."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
 SPAN, LASTS = 0.3, 6.0
-"""Simulated time that is shown again, at most, and how long that takes, [s]."""
+"""Maximum simulated time that is replayed, and duration of the replay, [s]."""
 RESTS = 1.5
-"""How long its end is shown [s]."""
+"""How long the end of the replay is shown, [s]."""
 LARGER = 5.0
-"""Magnification of the bending meanwhile, at least, of a robot that bends."""
+"""Minimum magnification of the deflection of a flexible robot during a replay."""
 WELL = 1.0
-"""Simulated time after which settings under which no robot has stopped have done well [s]."""
+"""Simulated time without a stop after which settings count as good, [s]."""
 
 
 @dataclass
@@ -29,14 +29,14 @@ class _Replay:
     """A replay from `begin` to `end`, [s].
 
     Attributes:
-        larger: the magnification to go back to.
-        running: whether time goes on afterwards.
-        elapsed: how long it has been shown [s].
+        exaggeration: the magnification to restore afterwards.
+        running: whether simulated time runs afterwards.
+        elapsed: how long the replay has been shown, [s].
     """
 
     begin: float
     end: float
-    larger: float
+    exaggeration: float
     running: bool
     elapsed: float = 0.0
 
@@ -61,7 +61,7 @@ class Breakdown:
         return self._replay is not None
 
     def follow(self, session: Session, seconds: float) -> bool:
-        """Called once a frame of this duration; returns whether a replay has just ended."""
+        """Called once per frame, of this duration; returns whether a replay has just ended."""
         if self._replay is not None:
             return self._go_on(session, self._replay, seconds)
         now, before = session.parameters, self._under
@@ -73,7 +73,7 @@ class Breakdown:
         return False
 
     def remedy(self, session: Session) -> dict[str, float | int | str]:
-        """What has been changed since all went well, with the values of then; empty: nothing."""
+        """Parameters changed since the last good settings, with their earlier values, if any."""
         if self._well is None or self._well[0] != session.entry.name or not _stopped(session):
             return {}
         well, now = self._well[1], session.parameters
@@ -81,10 +81,10 @@ class Breakdown:
         return {name: value for name, value in before.items() if value != present[name]}
 
     def use_earlier_settings(self, session: Session) -> None:
-        """Reset, with the settings that did well.
+        """Reset with the last good settings.
 
         Raises:
-            CodedError: there are none.
+            CodedError: there are none, or nothing has changed since.
         """
         if not self.remedy(session):
             raise CodedError("error.no_earlier_settings")
@@ -120,7 +120,7 @@ class Breakdown:
         return True
 
     def _go_on(self, session: Session, replay: _Replay, seconds: float) -> bool:
-        left = session.viewing != replay.time or session.running  # somebody looks at another time
+        left = session.viewing != replay.time or session.running  # the user looks at another time
         replay.elapsed += seconds
         session.viewing = session.viewing if left else replay.time
         if left:
@@ -130,10 +130,10 @@ class Breakdown:
         return self._replay is None
 
     def _end(self, session: Session, replay: _Replay) -> None:
-        self._replay, session.exaggeration = None, replay.larger
+        self._replay, session.exaggeration = None, replay.exaggeration
 
     def instant(self, session: Session) -> tuple[Instant, Curve] | None:
-        """What is shown of a replay, to the tick, and its path; None if there is none."""
+        """The instant shown in a replay, exact to the tick, and its path; None without a replay."""
         if self._replay is None or (segment := session.history.at(self._replay.time)) is None:
             return None
         ticks = round((self._replay.time - segment.time) / segment.dt)
@@ -160,5 +160,9 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
             states[i] = state
             samples[i] = samples_of(session.robot, session.parameters, rows[-1:], [distance])[0]
     return Instant(
-        first.time + ticks * segment.dt, first.laws, states, first.max_distances, samples
+        time=first.time + ticks * segment.dt,
+        laws=first.laws,
+        states=states,
+        max_distances=first.max_distances,
+        sample=samples,
     )

@@ -8,7 +8,7 @@ from operator import is_
 
 import numpy as np
 
-from onpath.app.lab.loop_states import Place, single
+from onpath.app.lab.loop_states import Slot, single
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import Drive, Input
 from onpath.models.arrays import Array
@@ -54,11 +54,11 @@ class ClosedLoopRun:
         side: name of the side.
         law: name of its control law.
         is_typed: whether that is a typed law.
-        place: its state, log row and distances; another object as soon as anything changes.
-        values: of the settings that the last `input` lacks, float64.
+        slot: its state, log row and distances; another object as soon as anything changes.
+        values: the settings that the last `input` leaves out, as float64.
     """
 
-    place: Place
+    slot: Slot
 
     def __init__(
         self,
@@ -80,17 +80,17 @@ class ClosedLoopRun:
         self.reset(curve, start)
 
     def reset(self, curve: Curve, start: Start) -> None:
-        """Begin anew at a start, which must be within reach."""
+        """Restart at a start, which must be within reach."""
         assert self._inputs is not None
         layouts = self._layouts
         state = start_state(self.robot, layouts, curve, self._inputs[0], start)
-        self.place = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
+        self.slot = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
         self._fill_row(curve)
         self.diverged = None
         self._change(largest=self.distance)
 
     def restore(self, drive: Drive, curve: Curve) -> None:
-        """Restore the state of a checkpoint, with the path of that time and the law of now."""
+        """Restore the state and path of a checkpoint; the law stays the present one."""
         self._go_on_from(drive.state, drive.kind)
         self._change(largest=drive.max_distance)
         if not drive.frozen:
@@ -98,7 +98,7 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def lacks(self, parameters: Parameters, curve: Curve, push: Push) -> Kind | None:
-        """The kind of loop that these inputs need, if it is another one or not compiled."""
+        """The kind of loop that these inputs need; None if the run has it, compiled."""
         kind = kind_of(self.law, parameters, curve, push)
         return None if kind == self.kind and isinstance(self._loop, CompiledLoop) else kind
 
@@ -112,26 +112,27 @@ class ClosedLoopRun:
         self.shown()["theta_ref"][:] = self.fields()["theta_ref"]
 
     def change_robot(self, robot: Robot, parameters: Parameters, curve: Curve, push: Push) -> None:
-        """Go on as another robot with the same states, from the present one, with these inputs."""
+        """Go on from the present state as another robot with the same states and these inputs."""
         self.robot, self._made_with, self._inputs = robot, parameters, None
         self.configure(parameters, curve, push)
 
     def _go_on_from(self, state: Array, kind: Kind) -> None:
         """Go on from the state of a loop of some kind.
 
-        If that was under another law, the reference point starts at the closest point, and the
-        integral and the memory of the present law at 0.
+        If it was under another law, the reference point starts at the closest point, and the
+        present law's integral and memory start at 0.
         """
         self._change(state if kind.controller == self.law else self._under_law(state, kind))
         self._prime(kind)
 
     def _under_law(self, state: Array, kind: Kind) -> Array:
-        """The state of a loop under another law, as the loop of the present one begins with it."""
+        """Convert a state under another law to an initial state under the present one."""
         memory, layout = law_named(kind.controller).memory, self._layouts.state
         before = state_layout(self.robot.system, memory)
         values = {name: np.zeros(size) for name, size in layout.fields}
-        own = {name for name, _ in law_named(self.law).memory}
-        values |= {n: v for n, v in before.unpack(state).items() if n in values and n not in own}
+        remembered = {name for name, _ in law_named(self.law).memory}
+        kept = values.keys() - remembered
+        values |= {name: value for name, value in before.unpack(state).items() if name in kept}
         values |= {"theta_ref": values["theta"], "integral": np.zeros_like(values["integral"])}
         return layout.pack(values)
 
@@ -154,25 +155,25 @@ class ClosedLoopRun:
     @property
     def state(self) -> Array:
         """State of the loop."""
-        states, i = self.place
+        states, i = self.slot
         return states.states[i]
 
     @property
     def row(self) -> Array:
         """Last log row."""
-        states, i = self.place
+        states, i = self.slot
         return states.rows[i]
 
     @property
     def distance(self) -> float:
-        """Of the actual end-point from the path, [m]."""
-        states, i = self.place
+        """Distance of the actual end-point from the path, [m]."""
+        states, i = self.slot
         return float(states.distances[i])
 
     @property
     def max_distance(self) -> float:
         """Largest distance since reset, [m]."""
-        states, i = self.place
+        states, i = self.slot
         return float(states.largest[i])
 
     def _change(
@@ -182,8 +183,8 @@ class ClosedLoopRun:
         distance: float | None = None,
         largest: float | None = None,
     ) -> None:
-        """Go on with other values, and copies of the present ones, which may then be modified."""
-        self.place = single(
+        """Replace some values and copy the others; the copies may then be modified."""
+        self.slot = single(
             self.state if state is None else state,
             self.row if row is None else row,
             self.distance if distance is None else distance,
@@ -207,13 +208,21 @@ class ClosedLoopRun:
         frozen = self.diverged is not None
         if self._recorded is not self.settings or self._input.frozen != frozen:
             self._input = self._made_input(frozen).like(self._input)
-            self.values = self.settings.take(self._input.places).tobytes()
+            self.values = self.settings.take(self._input.varying).tobytes()
         return self._input
 
     def _made_input(self, frozen: bool) -> Input:
-        self._recorded = self.settings  # those of the input
+        self._recorded = self.settings  # the settings of the input
         size, rest = self._layouts.changed, self._layouts.state.size - self._layouts.changed
-        return Input(self.side, self.kind, self.settings, frozen, size, rest, self._made_with)
+        return Input(
+            side=self.side,
+            kind=self.kind,
+            base=self.settings,
+            frozen=frozen,
+            size=size,
+            rest=rest,
+            parameters=self._made_with,
+        )
 
     def loop(self) -> Loop:
         """The fastest loop of its kind available now."""
@@ -237,9 +246,9 @@ class ClosedLoopRun:
         good = np.flatnonzero(np.isfinite(rows[: fault[0]]).all(axis=1))
         if good.size:
             row = rows[good[-1]]
-            own = self.log.unpack(row)
-            found = float(near_distance(self.robot.frame, curve, own["y"][None], own["theta"])[0])
-            self._change(row=row, distance=found, largest=max(self.max_distance, found))
+            y, theta = (self.log.unpack(row)[name] for name in ("y", "theta"))
+            distance = float(near_distance(self.robot.frame, curve, y[None], theta)[0])
+            self._change(row=row, distance=distance, largest=max(self.max_distance, distance))
 
     def configure(
         self,
@@ -254,8 +263,8 @@ class ClosedLoopRun:
         The run keeps its loop as long as it needs one of this kind, whatever the store keeps.
 
         Args:
-            leg: a part of a speed profile, which replaces speed and ramp of the parameters.
-            tick: of the lab, in this part.
+            leg: a part of a speed profile; it replaces the speed and ramp of the parameters.
+            tick: the lab's present tick, in this part.
         """
         before, self._inputs = self._inputs, (parameters, curve, push)
         unpaced = leg is None and self._leg is None
@@ -280,7 +289,7 @@ class ClosedLoopRun:
         """Take the kind of loop that these inputs need, and pack its settings.
 
         Args:
-            before: kind until now, or None at first.
+            before: the kind until now, or None at first.
             same: whether only the push has changed.
         """
         parameters, curve, push = inputs
@@ -314,8 +323,8 @@ class ClosedLoopRun:
         row["y"][:] = self.robot.endpoint(state["q"])
         row["force"][:] = 0.0
         row["speed"][:] = state["theta_rate"] * np.linalg.norm(curve.at(state["theta"], 1), axis=1)
-        found = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
-        self.place[0].distances[:] = found
+        distance = near_distance(self.robot.frame, curve, row["y"][None], row["theta"])
+        self.slot[0].distances[:] = distance
 
 
 def project(runs: Sequence[ClosedLoopRun], curve: Curve) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-MOST, FIRST = 500, 16  # events that are kept, and for which there is room at first
+MOST, FIRST = 500, 16  # maximum and initial capacity, in events
 _ROW = np.dtype([("run", "i4"), ("time", "f8"), ("name", "O"), ("detail", "O"), ("sides", "O")])
 
 
@@ -43,11 +43,11 @@ class LabEvent(Struct, frozen=True):
 class EventLog:
     """The latest events, oldest first.
 
-    They are rows of one array, because small objects that are replaced one by one after minutes
-    keep the memory around them from being given back.
+    They are rows of one array. Small objects that are replaced one by one over minutes would
+    fragment the memory, so that little of it could be returned to the system.
 
     Args:
-        events: the first ones.
+        events: the initial ones.
     """
 
     def __init__(self, events: Iterable[LabEvent] = ()) -> None:
@@ -82,9 +82,10 @@ class EventLog:
             longer = np.zeros(min(2 * self._count, MOST), _ROW)
             longer[: self._count] = self._rows
             self._rows = longer
-        own = event.run, event.time, event.name, event.detail, event.sides
-        self._rows[self._count % MOST] = own
+        row = event.run, event.time, event.name, event.detail, event.sides
+        self._rows[self._count % MOST] = row
         self._count += 1
 
     def _event(self, number: int) -> LabEvent:
-        return LabEvent(*self._rows.item(number % MOST))
+        run, time, name, detail, sides = self._rows.item(number % MOST)
+        return LabEvent(run=run, time=time, name=name, detail=detail, sides=sides)

@@ -65,7 +65,7 @@ class ExternalForces:
             self.set_wall(wall)
 
     def set_wall(self, wall: Wall | None) -> None:
-        """Place, move or take away the wall of both sides."""
+        """Place, move or remove the wall of both sides."""
         lifted = None if wall is None else wall.lifted(self._robot.frame)
         for name, push in self.pushes.items():
             self.pushes[name] = replace(push, wall=lifted)
@@ -81,12 +81,12 @@ class ExternalForces:
             self._note("hold" if on else "let_go", sides=changed)
         for name in changed:
             (self.held.add if on else self.held.discard)(name)
-            brake, second = None, None
+            brake, brake_normal = None, None
             if on:
                 row = self._runs[name].shown()
                 theta = float(row["theta"][0])
-                brake, second = brake_in(self._robot, curve, row["y"], theta, direction)
-            self.pushes[name] = replace(self.pushes[name], hold=brake, hold_normal=second)
+                brake, brake_normal = brake_in(self._robot, curve, row["y"], theta, direction)
+            self.pushes[name] = replace(self.pushes[name], hold=brake, hold_normal=brake_normal)
 
     def grab(self, side: str, target: Array, together: Sequence[str]) -> None:
         """Pull an end-point towards a target, and others by the same displacement.
@@ -97,9 +97,9 @@ class ExternalForces:
         """
         if self.grabbed != side:
             self.release()
-            own = self._runs[side].shown()["y"].copy()
+            origin = self._runs[side].shown()["y"].copy()
             self.grabbed = side
-            self._offsets = {name: self._runs[name].shown()["y"] - own for name in together}
+            self._offsets = {name: self._runs[name].shown()["y"] - origin for name in together}
             self._note("pull", sides=tuple(self._offsets))
         self.pull({name: target + offset for name, offset in self._offsets.items()})
 

@@ -100,16 +100,16 @@ class History:
         room = len(self._columns["time"]) - self._end if self._columns else 0
         if len(frames) > room or any(map(gt, widths, self._widths())):
             self._make_room(len(frames), widths, samples.shape[1:])
-        columns, place = self._columns, slice(self._end, self._end + len(frames))
-        columns["time"][place] = [frame.time for frame in frames]
-        columns["ticks"][place] = [frame.ticks for frame in frames]
-        columns["inputs"][place] = [frame.inputs for frame in frames]
-        columns["values"][place, : widths[1]] = values
-        columns["values"][place, widths[1] :] = 0.0
-        columns["state"][place, : widths[0]] = states
-        columns["most"][place] = most
-        columns["sample"][place] = samples
-        self._end = place.stop
+        columns, new = self._columns, slice(self._end, self._end + len(frames))
+        columns["time"][new] = [frame.time for frame in frames]
+        columns["ticks"][new] = [frame.ticks for frame in frames]
+        columns["inputs"][new] = [frame.inputs for frame in frames]
+        columns["values"][new, : widths[1]] = values
+        columns["values"][new, widths[1] :] = 0.0
+        columns["state"][new, : widths[0]] = states
+        columns["most"][new] = most
+        columns["sample"][new] = samples
+        self._end = new.stop
 
     def all(self) -> list[Segment]:
         """All segments, oldest first; the same objects until something changes."""
@@ -222,8 +222,8 @@ def _empty_columns(
 ) -> dict[str, np.ndarray]:
     """Columns for some segments, filled with zeros.
 
-    The numbers are in memory of their own, not in the heap: what is not used takes none, and the
-    system takes it back at once when it is free.
+    The numbers are in a mapping of their own, not on the heap: unused rows take no memory, and all
+    of it returns to the system as soon as it is freed.
 
     Args:
         widths: lengths of the states and of the values.
@@ -254,10 +254,10 @@ def _values_of(frames: Sequence[HistoryFrame]) -> Array:
 
 
 def _sizes_of(frame: HistoryFrame) -> list[tuple[int, int, int]]:
-    """Of each loop: sizes of the recorded part of its state, of its state, and of its record."""
+    """For each loop, sizes of the recorded part of its state, of its state and of its record."""
     return [
-        (own.size, states.size, states.records.shape[1])
-        for (states, _), own in zip(frame.places, frame.inputs.of, strict=True)
+        (recorded.size, states.size, states.records.shape[1])
+        for (states, _), recorded in zip(frame.slots, frame.inputs.of, strict=True)
     ]
 
 
@@ -267,7 +267,7 @@ def _columns_of(frames: Sequence[HistoryFrame]) -> tuple[Array, Array, Array, Ar
     Returns:
         Shapes (frames, size), (frames, robots, row size), and twice (frames, robots).
     """
-    flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.places])
+    flat = np.concatenate([states.records[i] for frame in frames for states, i in frame.slots])
     records, begin = flat.reshape(len(frames), -1), 0
     states, rows, numbers = list[Array](), list[Array](), list[Array]()
     for recorded, size, width in _sizes_of(frames[0]):

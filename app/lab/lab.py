@@ -45,7 +45,7 @@ class Command:
     Attributes:
         from_teacher: whether it comes from a teacher; such commands are applied even while the lab
             is frozen.
-        lets_time_run: whether it is refused while a prediction is pending.
+        lets_time_run: whether it lets time run, and so is refused while a prediction is pending.
     """
 
     __slots__ = ()
@@ -73,8 +73,9 @@ class Lab:
         session: the simulated lab.
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
-        message, message_level: message to the user, and "info", "warning", "error", "replay": why
-            a robot has stopped is being shown, or "stop": the teacher has stopped the lab.
+        message: message to the user.
+        message_level: "info", "warning", "error", "replay" while it is shown why a robot has
+            stopped, or "stop" while the teacher has stopped the lab.
         law_refusals: why the law that was last typed for a side was refused, by side.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
@@ -175,7 +176,7 @@ class Lab:
         self.show_faults()
 
     def _adopt_identified(self) -> None:
-        """Give the controllers the model that was asked for, if it has been identified."""
+        """Give the controllers the requested model as soon as it has been identified."""
         session = self.session
         try:
             learned = self.identification.take()
@@ -188,7 +189,7 @@ class Lab:
             self.show_message(self.words.sentence(error), "warning")
 
     def _end_level_set(self) -> None:
-        """Measure the distance again, and say so, if the path has no level set any more."""
+        """Return to the distance, and say so, if the path no longer has a level set."""
         session = self.session
         now, path = session.parameters, session.editor.blend.target
         if now.across == LEVEL_SET and not has_level_set(path):
@@ -197,7 +198,7 @@ class Lab:
             self.remark(self.words("say.level_set_ends"))
 
     def _play(self) -> None:
-        """Queue the commands of the running script."""
+        """Apply the commands of the running script that are due."""
         if self.script is None:
             return
         try:
@@ -240,12 +241,12 @@ class Lab:
 
     @property
     def notice(self) -> tuple[str, str]:
-        """What the page says, and its level: the message, and before it that nothing is saved."""
+        """The message on the page, preceded by a warning while nothing is saved, and its level."""
         if not self.unsaved:
             return self.message, self.message_level
         is_error = bool(self.message) and self.message_level == "error"
-        said = f"{self.words('keep.failed')} {self.message}".strip()
-        return said, "error" if is_error else "warning"
+        text = f"{self.words('keep.failed')} {self.message}".strip()
+        return text, "error" if is_error else "warning"
 
     def show_message(self, message: str, level: str = "info") -> None:
         """Show a message to the user."""
@@ -254,8 +255,8 @@ class Lab:
     def clear_message(self) -> None:
         """Clear the message, or show again why robots are stopped."""
         self.show_message("")
-        if said := self.fault_words("say.stopped"):
-            self.show_message(said, "error")
+        if text := self.fault_words("say.stopped"):
+            self.show_message(text, "error")
         elif self._caution is not None:
             self.show_message(self.words.sentence(self._caution), "warning")
 
@@ -279,33 +280,34 @@ class Lab:
             self.show_message(self.fault_words("say.stopped"), "error")
 
     def _foreseen(self) -> Message | None:
-        """What is known against the settings before the robots run.
+        """A problem with the settings that is foreseen before the robots run, or None.
 
-        The panel of a flexible link tells its zero dynamics itself. While a prediction is pending,
-        only what its robot's entry says is told.
+        The panel of a flexible link shows its zero dynamics itself. While a prediction is pending,
+        only the caution of the robot's catalogue entry is given.
         """
         session, robot = self.session, self.session.robot
         caution = session.entry.caution(session.parameters)
         if caution or robot.system.n == robot.system.m or robot.system.modes or self.locked:
             return caution
         path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
-        asked = robot, laws, session.parameters, path
-        if self._forecast is None or self._forecast[0] != asked:
+        inputs = robot, laws, session.parameters, path
+        if self._forecast is None or self._forecast[0] != inputs:
             q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
-            found = forecasts(robot, laws, session.parameters, q)
-            self._forecast = asked, next(iter(found), None)
+            messages = forecasts(robot, laws, session.parameters, q)
+            self._forecast = inputs, next(iter(messages), None)
         return self._forecast[1]
 
     def fault_words(self, key: str, **more: str) -> str:
-        """Which robot has stopped last, when and why, in the words of a key; empty if none has."""
-        found = {n: r.diverged for n, r in self.session.runs.items() if r.diverged is not None}
-        if not found:
+        """The message of a key about the robot that stopped last; empty if none has stopped."""
+        runs = self.session.runs.items()
+        faults = {side: run.diverged for side, run in runs if run.diverged is not None}
+        if not faults:
             return ""
-        name, fault = max(found.items(), key=lambda each: each[1].time)
+        side, fault = max(faults.items(), key=lambda each: each[1].time)
         titles = side_titles(self.session.laws, self.words)
         return self.words(
             key,
-            robot=titles[name],
+            robot=titles[side],
             time=f"{fault.time:.2f}",
             reason=self.words.sentence(fault.reason),
             **more,

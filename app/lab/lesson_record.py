@@ -30,7 +30,7 @@ class Beginning:
 
     Attributes:
         run, time: the run, and its simulated time, [s].
-        given: the lab's settings, see `settings_of`; empty if nobody compares them.
+        given: the lab's settings, see `settings_of`; empty if they are not compared.
     """
 
     run: int
@@ -113,12 +113,20 @@ class Trace:
         """The recorded curves so far."""
         times, *curves = self._rows.T
         kept = peaks(curves, MOST_POINTS)
-        columns = [tuple(np.round(column[kept], 4).tolist()) for column in (times, *curves)]
-        return Truth(self._quantity, *columns)
+        points = {
+            robot: tuple(np.round(curve[kept], 4).tolist())
+            for robot, curve in zip(ROBOTS, curves, strict=True)
+        }
+        return Truth(
+            quantity=self._quantity,
+            times=tuple(np.round(times[kept], 4).tolist()),
+            tracker=points["tracker"],
+            follower=points["follower"],
+        )
 
 
 def _changed(session: Session, given: Mapping[str, object]) -> tuple[str, ...]:
-    """Names of the settings that are not as they were given, if anything was."""
+    """Names of the settings that differ from the given ones."""
     now = settings_of(session)
     return tuple(name for name, value in given.items() if now.get(name) != value)
 
@@ -126,7 +134,9 @@ def _changed(session: Session, given: Mapping[str, object]) -> tuple[str, ...]:
 def _happening(event: LabEvent) -> Happening:
     """Convert an event to the form used by the checks."""
     robots = tuple[RobotName, ...](ROLES[name] for name in event.sides)
-    return Happening(event.run, event.time, event.name, event.detail, robots)
+    return Happening(
+        run=event.run, time=event.time, name=event.name, detail=event.detail, robots=robots
+    )
 
 
 def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:
@@ -142,8 +152,8 @@ def _values(session: Session, samples: Array) -> dict[RobotName, dict[str, Array
     values: dict[RobotName, dict[str, Array]]
     values = {ROLES[name]: _of(layout, samples[:, i], point) for i, name in enumerate(names)}
     if session.parameters.across == LEVEL_SET or session.across_since > 0:  # not in mm throughout
-        for own in values.values():
-            del own["across"], own["across_rate"]
+        for quantities in values.values():
+            del quantities["across"], quantities["across_rate"]
     return values
 
 

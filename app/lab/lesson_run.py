@@ -100,15 +100,15 @@ class LessonRun(LessonState):
         """
         if name not in self.course.routes:
             raise unknown_name(name, list(self.course.routes), "route")
-        first = first_step(self.course.routes[name], self.course, self.progress)
-        self.check_within(*first)
-        self.open_at(*first, lab, name)
+        lesson, index = first_step(self.course.routes[name], self.course, self.progress)
+        self.check_within(lesson, index)
+        self.open_at(lesson, index, lab, route=name)
 
     def open_at(self, name: str, index: int, lab: LessonLab, route: str = "") -> None:
         """Open a step of a lesson, and set the lab up for it.
 
         Args:
-            route: to follow from now on; empty for that which is followed.
+            route: the route to follow from now on; if empty, the present one stays.
 
         Raises:
             ValueError: there is no such lesson or step.
@@ -144,14 +144,18 @@ class LessonRun(LessonState):
         self.version += 1
 
     def close(self, lab: LessonLab) -> None:
-        """Close the lesson and restore the lab as it was before; ValueError if the class waits."""
+        """Close the lesson and restore the lab as it was before.
+
+        Raises:
+            ValueError: the teacher keeps the student within some steps.
+        """
         self.check_within("", 0)
         self.progress = replace(self.progress, lesson="", route="", ended=False)
         self.plots = ()
         self._begin_again(lab, running=lab.session.running)
         if self.before is not None:
             lab.set_up(self.before)
-            lab.session.editor.forget_edits()  # those of the lesson
+            lab.session.editor.forget_edits()  # of the lesson
             lab.session.running = True
         self.version += 1
 
@@ -235,7 +239,7 @@ class LessonRun(LessonState):
     # Updates
 
     def follow(self, lab: LessonLab) -> None:
-        """Evaluate the tasks periodically and detect the end of a demonstration; every frame."""
+        """Evaluate the tasks periodically and detect a demonstration's end; call in every frame."""
         self._frames += 1
         session = lab.session
         if self._player is not None and lab.script is not self._player:

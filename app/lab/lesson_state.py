@@ -83,7 +83,7 @@ class LessonState:
 
     @property
     def route(self) -> Route | None:
-        """The route that is followed, or None; a test is on none."""
+        """The route that the student follows, or None; a test is on no route."""
         if self.is_test:
             return None
         return self.course.routes.get(self.progress.route)
@@ -99,7 +99,7 @@ class LessonState:
             return "", 0
         here = lesson.name, self.index
         at = self._moved(here, by)
-        while not self._is_open(*at):
+        while not self._is_open(at):
             further = self._moved(at, 1 if by > 0 else -1)
             if further == at:
                 return here
@@ -107,13 +107,18 @@ class LessonState:
         return at
 
     def _moved(self, at: tuple[str, int], by: int) -> tuple[str, int]:
-        """As `beside`, from another step, and whatever the answers are."""
-        name, index = (self.route.beside(*at, by) or at) if self.route else (at[0], at[1] + by)
+        """Like `beside`, but from any step, and regardless of the answers."""
+        name, index = at
+        if self.route is None:
+            index += by
+        else:
+            name, index = self.route.beside(name, index, by) or at
         steps = self.course.lesson(name, self.progress.language).steps
         return name, min(max(index, 0), len(steps) - 1)
 
-    def _is_open(self, name: str, index: int) -> bool:
-        """Whether a step is one for the student's answers."""
+    def _is_open(self, at: tuple[str, int]) -> bool:
+        """Whether a step is meant for the student's answers."""
+        name, index = at
         steps = self.course.lesson(name, self.progress.language).steps
         notes = self.progress.notes.get(name, Notes())
         return is_shown(steps[index].when, steps, notes, index)
@@ -129,13 +134,14 @@ class LessonState:
         return self.progress.ended and self.lesson is not None
 
     def set_pace(self, pace: Pace | None) -> None:
-        """Let the student go within some steps only, or anywhere."""
+        """Restrict the student to some steps; None lifts the restriction."""
         self.pace = pace
         self.version += 1
 
     def may_go(self, by: int) -> bool:
         """Whether the teacher lets the student go `by` steps from the open one."""
-        return self.pace is None or self.pace.holds(*self.beside(by))
+        name, index = self.beside(by)
+        return self.pace is None or self.pace.holds(name, index)
 
     def check_within(self, name: str, index: int) -> None:
         """Raise ValueError if the teacher does not let the student go to a step."""
@@ -186,7 +192,7 @@ class LessonState:
         return notes.answers.get(found[0]) if found is not None and again else None
 
     def ask_again(self) -> None:
-        """Ask the open step's prediction a second time, also of those who were not there before."""
+        """Ask for the open step's prediction again, even if it was never answered."""
         if (found := self.prediction()) is None:
             return
         key, notes = found[0], self.notes
@@ -248,7 +254,7 @@ class LessonState:
         """Answer a question with a number; `block` is its index among the open step's blocks.
 
         Raises:
-            ValueError: there is no such question, or it is no number.
+            ValueError: there is no such question, or the answer is not a number.
         """
         if not isinstance(self._block(block), NumberQuestion):
             raise CodedError("lesson.no_such_option")
@@ -292,24 +298,24 @@ class LessonState:
         self._note_chosen(key, marks, "second" if again else "answers", answer)
 
     def is_unknown(self, key: str = "") -> bool:
-        """Whether something was chosen that cannot be known, since the lesson has changed.
+        """Whether a stored choice can no longer be identified, because the lesson has changed.
 
         Args:
             key: of a quiz in the notes; without one, the open step's prediction is meant.
         """
         notes, found = self.notes, self.prediction()
         key = key or (found[0] if found else "")
-        own = second_key(key) if key in notes.asked_again else key
-        return own in notes.unknown
+        noted = second_key(key) if key in notes.asked_again else key
+        return noted in notes.unknown
 
     def _note_chosen(self, key: str, marks: dict[str, str], kind: str, chosen: object) -> None:
-        """Store a choice in the notes of a kind, with the key by which it is found again."""
+        """Store a choice in a field of the notes, with the marks that identify it later."""
         notes = self.notes
-        own = second_key(key) if kind == "second" else key
+        noted = second_key(key) if kind == "second" else key
         self.note(
             **{kind: {**getattr(notes, kind), key: chosen}},
             marks={**notes.marks, **marks},
-            unknown=tuple(each for each in notes.unknown if each != own),
+            unknown=tuple(each for each in notes.unknown if each != noted),
         )
 
     def note(self, **changes: Any) -> None:

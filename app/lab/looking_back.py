@@ -1,8 +1,8 @@
 """Viewing the past of a lab, continuing from it, and undoing that.
 
 Only continuing discards history. What it discards can be restored until the next continuation,
-a reset, or a change of the robot. It continues with the path, the parameters and the control laws
-of now; a law that was not in force at that instant begins there as after any change of law.
+a reset, or a change of the robot. Time continues with the present path, parameters and control
+laws; a law that was not in force at that instant begins there as after any change of law.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from onpath.models.control.laws.own import short_name
 
 
 def look_back(session: Session, ago: float) -> None:
-    """Pause and view the state [s] before now, or the oldest one stored."""
+    """Pause and view the state `ago` seconds before now, or the oldest one stored."""
     session.running = False
     session.forces.release()
     session.viewing = session.time - min(ago, session.history.span())
@@ -29,7 +29,7 @@ def forget_history(session: Session) -> None:
     session.history.clear()
     for run in session.runs.values():
         run.unshare()
-    session.instant()  # otherwise the session would keep the previous one, made of those arrays
+    session.instant()  # otherwise the session would keep the previous instant, with those arrays
 
 
 def go_on(session: Session) -> tuple[float, float] | None:
@@ -39,18 +39,18 @@ def go_on(session: Session) -> tuple[float, float] | None:
         The instant and the duration discarded, [s]; None if the present was being viewed.
     """
     segment = None if session.viewing is None else session.history.at(session.viewing)
-    left = None
+    replaced = None
     if segment is not None:
-        left = _timeline(session)
+        replaced = _timeline(session)
         _take(session, _branch(session, segment))
         session.note("let_go")
         session.note("release")
         for side, drive in segment.drives.items():
             if (law := session.laws[side]) != drive.kind.controller:
                 session.note("law", short_name(law), (side,))
-        session.undo_timeline = left
+        session.undo_timeline = replaced
     session.viewing, session.running = None, True
-    return None if left is None else (session.time, left.time - session.time)
+    return None if replaced is None else (session.time, replaced.time - session.time)
 
 
 def undo_going_on(session: Session) -> bool:
@@ -59,26 +59,26 @@ def undo_going_on(session: Session) -> bool:
     Returns:
         Whether there was a history to restore.
     """
-    back = session.undo_timeline
-    if back is None:
+    discarded = session.undo_timeline
+    if discarded is None:
         return False
     session.forces.release()
     session.viewing = None
     session.running = False
     session.undo_timeline = _timeline(session)
-    _take(session, back)
+    _take(session, discarded)
     return True
 
 
 def _timeline(session: Session) -> Timeline:
     session.history.settle()  # its samples depend on the current parameters
     return Timeline(
-        session.time,
-        session.editor.curve,
-        session.history,
-        session.runs,
-        session.forces,
-        session.events,
+        time=session.time,
+        curve=session.editor.curve,
+        history=session.history,
+        runs=session.runs,
+        forces=session.forces,
+        events=session.events,
     )
 
 
@@ -104,10 +104,10 @@ def _branch(session: Session, segment: Segment) -> Timeline:
         run.restore(segment.drives[name], segment.curve)
     kept = [e for e in session.events if e.run != session.run_number or e.time <= segment.time]
     return Timeline(
-        segment.time,
-        segment.curve,
-        session.history.before(segment),
-        runs,
-        ExternalForces(session.robot, runs, session.note),
-        EventLog(kept),
+        time=segment.time,
+        curve=segment.curve,
+        history=session.history.before(segment),
+        runs=runs,
+        forces=ExternalForces(session.robot, runs, session.note),
+        events=EventLog(kept),
     )

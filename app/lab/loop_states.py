@@ -9,7 +9,7 @@ from onpath.models.arrays import Array
 
 
 class LoopStates(Struct, frozen=True, eq=False):
-    """Closed loops of one kind at one instant; not modified after they have been taken over.
+    """Closed loops of one kind at one instant; not modified once a run refers to them.
 
     Attributes:
         records: a row for each loop: its state, its last log row, the distance of the actual
@@ -41,16 +41,16 @@ class LoopStates(Struct, frozen=True, eq=False):
         return self.records[:, -1]
 
 
-Place = tuple[LoopStates, int]
+Slot = tuple[LoopStates, int]
 """One closed loop: the states, and its row in them."""
 
 
 def joined(states: Array, rows: Array, distances: Array, largest: Array) -> LoopStates:
     """Closed loops from their parts, which are copied; see `LoopStates`."""
-    numbers = distances[:, None], largest[:, None]
-    return LoopStates(np.concatenate([states, rows, *numbers], axis=1), states.shape[1])
+    columns = [states, rows, distances[:, None], largest[:, None]]
+    return LoopStates(np.concatenate(columns, axis=1), states.shape[1])
 
 
-def single(state: Array, row: Array, distance: float, largest: float) -> Place:
-    """A closed loop alone."""
+def single(state: Array, row: Array, distance: float, largest: float) -> Slot:
+    """A single closed loop."""
     return joined(state[None], row[None], np.array([distance]), np.array([largest])), 0

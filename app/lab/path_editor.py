@@ -106,10 +106,10 @@ class PathEditor:
         return not self.faults
 
     def drag(self, index: int, target: Array) -> bool:
-        """Move a control point from its place in `design` towards a target, as far as is valid.
+        """Move a control point from its position in `design` towards a target, as far as is valid.
 
-        Where the path would become invalid before the target, the place is found by bisection of
-        the straight line from the one to the other, and `faults` tells what is beyond it.
+        If the path would become invalid on the way, the last valid position is found by bisection
+        of the straight line to the target, and `faults` says what is wrong beyond it.
 
         Args:
             index: of the control point.
@@ -141,7 +141,7 @@ class PathEditor:
         return False
 
     def finish(self) -> None:
-        """End an edit, and keep what is proposed."""
+        """End an edit, and keep the proposed design."""
         design, self.proposed = self.proposed, None
         self.version += 1
         if design is not None and design is not self.design:
@@ -202,7 +202,7 @@ class PathEditor:
 
     def _swap(self, source: list[PathDesign], sink: list[PathDesign]) -> bool:
         dragged, self.proposed, self.faults = self.proposed, None, []
-        if source and self.rise:  # the design may be of a time when the path was flat
+        if source and self.rise:  # the design may date from when the path was flat
             self.faults = self._faults(source[-1])
         if not source or self.faults:
             if dragged is not None:

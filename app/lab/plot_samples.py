@@ -38,13 +38,13 @@ def sample_layout(robot: Robot) -> Layout:
 
 
 @lru_cache(maxsize=8)
-def places(robot: Robot) -> np.ndarray:
+def log_indices(robot: Robot) -> np.ndarray:
     """Indices of a sample's entries in a log row; 0 for those that are not in it."""
-    log, found = log_layout(robot.system), list[int]()
+    log, indices = log_layout(robot.system), list[int]()
     for name, size in sample_layout(robot).fields:
-        where = log.slices.get(name)
-        found.extend([0] * size if where is None else range(where.start, where.stop))
-    return np.array(found)
+        columns = log.slices.get(name)
+        indices.extend([0] * size if columns is None else range(columns.start, columns.stop))
+    return np.array(indices)
 
 
 def samples_of(
@@ -52,9 +52,9 @@ def samples_of(
 ) -> Array:
     """Samples of log rows, (n, row size), and their distances, (n,): shape (n, fields)."""
     layout = sample_layout(robot)
-    samples = rows.take(places(robot), axis=1)
+    samples = rows.take(log_indices(robot), axis=1)
     samples[:, layout.slices["distance"].start] = distances
-    there = log_layout(robot.system).unpack(rows)
-    for name, values in robot.measured(there["q"], there["v"], parameters).items():
+    log = log_layout(robot.system).unpack(rows)
+    for name, values in robot.measured(log["q"], log["v"], parameters).items():
         samples[:, layout.slices[name]] = values
     return samples

@@ -9,7 +9,7 @@ import numpy as np
 
 from onpath.app.lab.advance_together import Ticks
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
-from onpath.app.lab.loop_states import Place
+from onpath.app.lab.loop_states import Slot
 from onpath.app.lab.plot_samples import samples_of
 from onpath.app.lab.segments import HistoryFrame, Inputs, Instant
 from onpath.models.arrays import Array
@@ -25,18 +25,20 @@ class Recorder:
         self._inputs: Inputs | None = None
 
     def record(
-        self, ticks: Ticks, runs: Sequence[ClosedLoopRun], begun: list[Place]
+        self, ticks: Ticks, runs: Sequence[ClosedLoopRun], begun: list[Slot]
     ) -> HistoryFrame:
-        """What the history keeps of ticks that have been simulated.
+        """The history's record of ticks that have been simulated.
 
         Args:
-            begun: `ClosedLoopRun.place` of the runs at their beginning.
+            begun: `ClosedLoopRun.slot` of the runs at their beginning.
         """
         inputs = tuple(run.input() for run in runs)
         if self._inputs is None or not self._inputs.are(ticks.curve, ticks.dt, inputs):
             self._inputs = Inputs(ticks.curve, ticks.dt, inputs)
         values = b"".join([run.values for run in runs])
-        return HistoryFrame(ticks.time, ticks.count, self._inputs, begun, values)
+        return HistoryFrame(
+            time=ticks.time, ticks=ticks.count, inputs=self._inputs, slots=begun, values=values
+        )
 
 
 class CurrentInstant:
@@ -55,12 +57,16 @@ class CurrentInstant:
         runs: Sequence[ClosedLoopRun],
     ) -> Instant:
         """The instant; the same object until something changes."""
-        now, made_of = self._now, [curve, parameters, *[run.place for run in runs]]
+        now, made_of = self._now, [curve, parameters, *[run.slot for run in runs]]
         if now is None or now.time != time or not all(map(is_, made_of, self._made_of)):
             laws = tuple(run.law for run in runs)
-            states, most = [run.state for run in runs], [run.max_distance for run in runs]
-            sample = sample_of(robot, parameters, runs)
-            now = self._now = Instant(time, laws, states, most, sample)
+            now = self._now = Instant(
+                time=time,
+                laws=laws,
+                states=[run.state for run in runs],
+                max_distances=[run.max_distance for run in runs],
+                sample=sample_of(robot, parameters, runs),
+            )
             self._made_of = made_of
         return now
 

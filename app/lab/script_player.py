@@ -8,23 +8,23 @@ from typing import Generic, TypeVar
 
 from onpath.app.lab.session import Session
 
-Asked = TypeVar("Asked")
+Request = TypeVar("Request")
 
 
-class ScriptPlayer(Generic[Asked]):
+class ScriptPlayer(Generic[Request]):
     """A script that is being played; its times count from the session's time zero.
 
     Args:
         script: commands and their times, [s].
         until: end of the script, [s].
-        stop: pause the session at the end of the script.
+        stop: whether to pause the session at the end of the script.
 
     Attributes:
         finished: whether the script was played to its end, not cancelled.
     """
 
     def __init__(
-        self, script: Iterable[tuple[float, Asked]], until: float, stop: bool = True
+        self, script: Iterable[tuple[float, Request]], until: float, stop: bool = True
     ) -> None:
         self._until = until
         self._waiting = deque(sorted(script, key=lambda timed: timed[0]))
@@ -33,7 +33,7 @@ class ScriptPlayer(Generic[Asked]):
         self._run: int | None = None
         self.finished = False
 
-    def play(self, session: Session, ask: Callable[[Asked], None]) -> bool:
+    def play(self, session: Session, ask: Callable[[Request], None]) -> bool:
         """Post the commands that are due; call before every frame.
 
         Returns:

@@ -49,7 +49,7 @@ class Session:
         entry, robot, parameters: catalogue entry, model and parameters of the current robot.
         runs: the two closed loops, by side.
         editor: the path.
-        law_changes: laws that come as soon as their loops are made.
+        law_changes: pending changes of law.
         start: where and how the next run starts.
         wall: in the way of both end-points, or None; it stays from run to run.
         hold_direction: in which the next brake acts, one of `DIRECTIONS`.
@@ -99,7 +99,7 @@ class Session:
     def set_parameters(self, parameters: Parameters) -> None:
         """Set the parameters; a structural change makes a new robot.
 
-        If that has the same states, both go on from the present one; otherwise they start anew.
+        If it has the same states, both go on from the present one; otherwise they restart.
         """
         robot = self.entry.make(parameters)  # may take long, and another thread may read the lab
         if self.robot.extras:
@@ -146,7 +146,7 @@ class Session:
 
     @property
     def chosen_laws(self) -> dict[str, str]:
-        """Control law of each side as soon as its loop can run."""
+        """Control law of each side, in force as soon as its loop can run."""
         return self.laws | self.law_changes.coming
 
     def suits(self, law: str) -> bool:
@@ -176,7 +176,8 @@ class Session:
 
     def note(self, name: str, detail: str = "", sides: tuple[str, ...] = SIDES) -> None:
         """Record an event; what a drag of a slider repeats within a second is recorded once."""
-        self.events.append(LabEvent(self.run_number, self.time, name, detail, sides))
+        event = LabEvent(run=self.run_number, time=self.time, name=name, detail=detail, sides=sides)
+        self.events.append(event)
 
     # Time
 
@@ -214,12 +215,20 @@ class Session:
             for run in runs:
                 run.configure(parameters, curve, pushes[run.side], leg, now)
             moving = [(run, run.loop()) for run in runs if run.diverged is None]
-            part = Ticks(moving, count, self.time, dt, parameters, curve, table)
-            begun = [run.place for run in runs]
+            part = Ticks(
+                runs=moving,
+                count=count,
+                time=self.time,
+                dt=dt,
+                parameters=parameters,
+                curve=curve,
+                table=table,
+            )
+            begun = [run.slot for run in runs]
             yield part
             for i, run in enumerate(runs):
                 if run.diverged is not None:
-                    begun[i] = run.place  # it stands still
+                    begun[i] = run.slot  # it stands still
             self.history.append(self._recorder.record(part, runs, begun))
             for run, _ in moving:
                 if run.diverged is not None:
@@ -249,7 +258,7 @@ class Session:
         """Put both robots at the start. Clears the history; keeps path, parameters and wall.
 
         Args:
-            laws: control laws from now on, the defaults where there is none; None: those of now.
+            laws: control laws from now on, defaults for missing sides; None keeps the present ones.
 
         Raises:
             ValueError: the start is not possible on the present path; nothing has changed.
@@ -272,7 +281,15 @@ class Session:
         self.faults.clear()
         start, store = self._beginning(), self._store
         self.runs = {
-            side: ClosedLoopRun(store, self.robot, side, law, self.parameters, curve, start)
+            side: ClosedLoopRun(
+                store,
+                robot=self.robot,
+                side=side,
+                law=law,
+                parameters=self.parameters,
+                curve=curve,
+                start=start,
+            )
             for side, law in laws.items()
         }
         self.forces = ExternalForces(self.robot, self.runs, self.note, self.wall)
@@ -285,7 +302,7 @@ class Session:
             check_start(self.robot, self.editor.curve, self.parameters, start)
 
     def _beginning(self) -> Start:
-        """The start, or if it is not possible that of a new lab."""
+        """The start, or a new lab's if it is not possible."""
         try:
             self.check_start(self.start)
         except ValueError:
@@ -293,7 +310,7 @@ class Session:
         return self.start
 
     def set_wall(self, wall: Wall | None) -> None:
-        """Place, move or take away the wall."""
+        """Place, move or remove the wall."""
         if wall != self.wall:
             self.wall = wall
             self.forces.set_wall(wall)
@@ -306,7 +323,7 @@ class Session:
 
     @property
     def sample_layout(self) -> Layout:
-        """See `app.lab.plot_samples`."""
+        """Fields of a sample; see `app.lab.plot_samples`."""
         return sample_layout(self.robot)
 
     def instant(self) -> Instant:

@@ -1,4 +1,4 @@
-"""Judges the tasks of an open step, again and again while a student works on them."""
+"""Judges the tasks of an open step repeatedly while a student works on them."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from onpath.lessons.words import Words
 
 
 class TaskJudge:
-    """What is found of the tasks of one step since it began.
+    """Verdicts on the tasks of one step since it began.
 
     Attributes:
-        begin: what happened before it does not count.
+        begin: beginning of the step; nothing before it counts.
         verdicts: on the checks of each task; those of a task that was passed stay until a reset.
     """
 

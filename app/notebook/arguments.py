@@ -16,13 +16,13 @@ POSITIVE = "positive finite numbers, [m]"
 
 
 def schedule_of(velocity: Any, hold: Any, push: Any, wall: Any) -> dict[str, float]:
-    """Schedule entries for the velocity at the start and the forces on the end-point.
+    """Schedule entries for the initial velocity and the forces on the end-point.
 
     Args:
-        velocity, hold, push, wall: as `onpath.simulate` takes them.
+        velocity, hold, push, wall: as for `onpath.simulate`.
 
     Raises:
-        ValueError: not of that form.
+        ValueError: one of them has another form.
     """
     form = "(along, across), [m/s]"
     values = dict[str, float]()
@@ -40,7 +40,7 @@ def schedule_of(velocity: Any, hold: Any, push: Any, wall: Any) -> dict[str, flo
 
 
 def _at_place(what: str, value: Any, others: tuple[str, ...], form: str) -> dict[str, float]:
-    """Schedule entries of something that acts in an interval at a place."""
+    """Schedule entries of a force that acts at a place for an interval of time."""
     try:
         begin, end, place, *rest = value
         flat = (begin, end, *place, *rest)
@@ -54,10 +54,10 @@ def start_point(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
     """Initial position of the end-point, shape (p,), [m].
 
     Args:
-        start: as `onpath.simulate` takes it.
+        start: as for `onpath.simulate`.
 
     Raises:
-        ValueError: not of that form.
+        ValueError: it has another form.
     """
     if start is None:
         return robot.frame.lift(curve.at(np.array(0.0)))
@@ -70,10 +70,10 @@ def start_point(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
 
 
 def curve_of(name: str, path: Any) -> Curve:
-    """A path: a curve itself, or that which a text describes.
+    """A path, given as a curve or as a text that describes one.
 
     Raises:
-        ValueError: neither; or the text describes no path.
+        ValueError: it is neither, or the text does not describe a path.
     """
     if isinstance(path, Curve):
         return path
@@ -86,19 +86,19 @@ def lengths(name: str, *values: Any) -> tuple[float, ...]:
     """Positive lengths, [m].
 
     Raises:
-        ValueError: there are others.
+        ValueError: one is not positive and finite.
     """
-    found = numbers(name, values, len(values), POSITIVE)
-    if found.min() <= 0:
+    array = numbers(name, values, len(values), POSITIVE)
+    if array.min() <= 0:
         raise ValueError(f"{name}: expected {POSITIVE}, got {values}")
-    return tuple(found.tolist())
+    return tuple(array.tolist())
 
 
 def plane_point(name: str, values: Any) -> tuple[float, float]:
     """A point of the path's plane, [m].
 
     Raises:
-        ValueError: it is none.
+        ValueError: the values are not a point.
     """
     first, second = numbers(name, values, 2, "a point of the plane, shape (2,), [m]").tolist()
     return first, second
@@ -108,19 +108,19 @@ def numbers(name: str, values: Any, count: int, form: str) -> Array:
     """Finite numbers, shape (count,).
 
     Raises:
-        ValueError: not finite, or not so many; the message says the form.
+        ValueError: they are not finite, or of another number; the message states the form.
     """
-    found = array_of(name, values, form)
-    if found.shape != (count,) or not np.isfinite(found).all():
+    array = array_of(name, values, form)
+    if array.shape != (count,) or not np.isfinite(array).all():
         raise ValueError(f"{name}: expected {form}, got {values!r}")
-    return found
+    return array
 
 
 def array_of(name: str, values: Any, form: str) -> Array:
     """Numbers as an array of any shape.
 
     Raises:
-        ValueError: they are none; the message says the form.
+        ValueError: they are not numbers; the message states the form.
     """
     try:
         return np.asarray(values, dtype=float)

@@ -42,18 +42,19 @@ def figure(
     web server, an iframe. Its loops are those of `onpath.simulate`, as WebAssembly.
 
     Args:
-        file: to write, such as "figure.html".
+        file: the file to write, such as "figure.html".
         robot: one of `onpath.robots()`.
         laws: one or two of `onpath.laws()`, or laws of one's own.
-        paths: to choose from, the first one at the beginning: names of `onpath.paths()`, texts or
-            curves as `onpath.simulate` takes them, or a name for each path.
+        paths: paths to choose from, beginning with the first: names of `onpath.paths()`, texts or
+            curves as for `onpath.simulate`, or a mapping from names to them.
         sliders: names of `onpath.parameters(robot)` that readers may change; None: the speed and
             the gains of the laws.
-        controls: what else they may do or see: some of hold, pull, drag (points of the path), run,
-            step, reset, path, plot, poles; None: all that are possible with this robot and laws.
+        controls: what else readers may do or see: some of hold, pull, drag (points of the path),
+            run, step, reset, path, plot, poles; None: all that are possible with this robot and
+            laws.
         choices: further laws, which readers may choose for each robot.
-        title: above the figure.
-        language: of the page.
+        title: title above the figure.
+        language: language of the page.
         parameters: as in `onpath.simulate`. If neither `speed` nor `ramp` is among them, the robots
             move as slowly as in a new lab, with **onpath.NEWCOMER.
 
@@ -84,12 +85,20 @@ def figure(
         choices = [choices]
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
-    own = by_declared_names(parameters, entry_named(robot), figure)
-    values = own if own.keys() & NEWCOMER.keys() else {**NEWCOMER, **own}
-    choice = chosen(robot, laws, curves, values, sliders, controls, choices)
+    given = by_declared_names(parameters, entry_named(robot), figure)
+    values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
+    choice = chosen(
+        robot,
+        laws,
+        paths=curves,
+        values=values,
+        sliders=sliders,
+        controls=controls,
+        choices=choices,
+    )
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
     laws = choice.every_law
-    for text in (unused_text(first, laws, own), forecast_text(first, laws)):
+    for text in (unused_text(first, laws, given), forecast_text(first, laws)):
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:

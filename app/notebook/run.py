@@ -51,7 +51,7 @@ class Run:
 
     @property
     def v(self) -> Array:
-        """Their rates, shape (n, k), [rad/s] for angles."""
+        """Rates of the coordinates, shape (n, k), [rad/s] for angles."""
         return self.trajectory.fields["v"]
 
     @property
@@ -66,7 +66,7 @@ class Run:
 
     @property
     def theta_rate(self) -> Array:
-        """Its rate, shape (n,), [rad/s]."""
+        """Rate of theta, shape (n,), [rad/s]."""
         return self.trajectory.fields["theta_rate"][:, 0]
 
     @property
@@ -86,7 +86,7 @@ class Run:
 
     @property
     def xi_rate(self) -> Array:
-        """Its rate, shape (n, p - 1), the units of xi per second."""
+        """Rate of xi, shape (n, p - 1), in units of xi per second."""
         return self.trajectory.fields["xi_rate"]
 
     @property
@@ -96,7 +96,7 @@ class Run:
 
     @property
     def max_distance(self) -> float:
-        """The largest distance, [m]; infinity if the run was stopped, so that it is never best."""
+        """The largest distance, [m]; infinity if the run was stopped, so that it never wins."""
         return float(self.distance.max()) if self.stopped_at is None else np.inf
 
     @property
@@ -111,7 +111,7 @@ class Run:
 
     @property
     def force(self) -> Array:
-        """External force on the end-point, by brake and hand, shape (n, p), [N]."""
+        """External force of brake, hand and wall on the end-point, shape (n, p), [N]."""
         return self.trajectory.fields["force"]
 
     @property
@@ -175,9 +175,10 @@ class Run:
         """The trajectories of this run and others."""
         robot, series = self.experiment.robot(), self.experiment.curve().series
         for other in others:
-            own = other.experiment
-            if own.robot() is not robot or not np.array_equal(own.curve().series, series):
-                raise ValueError("runs of one robot on one path can be shown together")
+            experiment = other.experiment
+            same_path = np.array_equal(experiment.curve().series, series)
+            if experiment.robot() is not robot or not same_path:
+                raise ValueError("only runs of one robot on one path can be shown together")
         return [self.trajectory, *(other.trajectory for other in others)]
 
     def __repr__(self) -> str:

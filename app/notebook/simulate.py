@@ -68,12 +68,12 @@ def simulate(
             in the output space, [m]; None: the point of the path at theta = 0.
         velocity: initial velocity of the end-point (along, across) the path at its closest point,
             [m/s].
-        clock_offset: how far the reference point of a law with a clock is ahead of the closest
-            point at the start, [rad].
+        clock_offset: how far the reference point of a law with a clock is initially ahead of the
+            closest point, [rad].
         hold: (from, to): interval in which a brake acts, [s].
-        hold_at: theta at which the brake acts, for to - from, when the end-point passes there for
-            the first time after from, [rad]; None: at once, wherever it is.
-        hold_direction: "along" the path's tangent, as without it, "across" it, or "both".
+        hold_at: theta at which the brake begins to act, for to - from seconds, when the end-point
+            first passes there after from, [rad]; None: at once, wherever the end-point is.
+        hold_direction: "along" the path's tangent, the default, "across" it, or "both".
         push: (from, to, place): interval, [s], in which a hand, modelled as a spring and a damper,
             pulls the end-point towards a place in the path's plane, shape (2,), [m]; see
             models/systems/forces.py.
@@ -97,8 +97,8 @@ def simulate(
 
     Warns:
         UserWarning: a parameter that is given, but has no effect in this run, such as K4 with
-            task="speed"; or what is foreseen of a robot with coordinates without a motor, such as
-            unstable zero dynamics.
+            task="speed"; or what is foreseen for a robot with fewer motors than coordinates, such
+            as unstable zero dynamics.
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -127,9 +127,9 @@ def simulate(
     """
     entry, law = entry_named(robot), _law(law)
     given = by_declared_names(parameters, entry, simulate)
-    given |= _those({"profile": profile, "clock_offset": clock_offset or None})
+    given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
-    given |= _those({"hold_at": hold_at, "hold_direction": hold_direction})
+    given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
     curve = curve_of("path", path)
     chosen = Experiment(
         name="simulate",
@@ -175,7 +175,7 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the preset paths with the length of each, and why no robot can follow it, if so.
+    """Names of the preset paths with the length of each, and why it is refused, if it is.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
@@ -203,8 +203,9 @@ def parameters(robot: str = "five_bar") -> dict[str, str]:
     '400, 0 to 2500 1/s²: spring that pulls back onto the path'
     """
     entry = entry_named(robot)
-    defaults, own = values_of(entry.parameters()), specs(entry.parameters)
-    return {public: _described(own[name], defaults[name]) for public, name in _names(entry).items()}
+    defaults, known = values_of(entry.parameters()), specs(entry.parameters)
+    names = _names(entry).items()
+    return {public: _described(known[name], defaults[name]) for public, name in names}
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
@@ -249,8 +250,9 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
 def through(points: ArrayLike, closed: bool = True) -> Curve:
     """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
 
-    It rounds corners and swings out between points that are far apart: its `deviation` is how far
-    it is from the straight lines between the points, [m]. A warning says so beyond 4 mm.
+    It rounds corners and swings out between points that are far apart: its `deviation` is its
+    largest distance from the straight lines between the points, [m]; beyond 4 mm there is a
+    warning.
 
     Raises:
         ValueError: too few points, non-finite numbers, or all points coincide.
@@ -284,12 +286,12 @@ def _check_name(name: Any, known: Iterable[str], what: str) -> None:
 
 
 def _names(entry: RobotEntry) -> dict[str, str]:
-    """Parameter names here -> declared names; they differ because `law` is the control law here."""
+    """Public parameter names -> declared names; they differ where `law` is the control law."""
     return {"output" if name == "law" else name: name for name in specs(entry.parameters)}
 
 
-def _those(values: Mapping[str, Any]) -> dict[str, Any]:
-    """The values that are given."""
+def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The values that are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
@@ -299,7 +301,7 @@ def by_declared_names(
     """Parameters by the names that they are declared with.
 
     Args:
-        function: whose arguments they are.
+        function: the function whose arguments they are.
 
     Raises:
         ValueError: an unknown name; the message lists the nearest ones.

@@ -83,9 +83,9 @@ class LabFeed:
     def _has_news(self, lab: Lab) -> bool:
         """Whether anything in the scene has changed since it was last shown."""
         session, shown = lab.session, self._shown
-        places = [run.place for run in session.runs.values()]
+        slots = [run.slot for run in session.runs.values()]
         self._shown = now = (
-            *(*places, session.viewing, session.editor.version),
+            *(*slots, session.viewing, session.editor.version),
             *(session.exaggeration, lab.lessons.progress),
         )
         return len(now) != len(shown) or not all(map(is_, now, shown))

@@ -9,11 +9,11 @@ from __future__ import annotations
 from math import inf
 
 STRIDES = (2.0, 2.5, 2.75)  # frames of simulation per frame of display
-AT_EASE = STRIDES[0]  # of a thread that is not busy; labs are then simulated in every frame
+AT_EASE = STRIDES[0]  # stride of a thread that is not busy; labs are then simulated in every frame
 ENOUGH = (0.35, 0.65)  # load below which the first, second stride is chosen again
-BUSY = (0.5, 0.8)  # load that is too much for the first, second
+BUSY = (0.5, 0.8)  # load above which the first, second stride is left
 FADING = 1 / 60  # low-pass gain of the measured load, per frame
-LATE = {1 / 20: 8.0, 1 / 30: 4.0}  # least stride from such a lateness on, [s]
+LATE = {1 / 20: 8.0, 1 / 30: 4.0}  # lateness, [s] -> minimum stride above it
 WORTH = 0.1  # share of time spent on drawing above which drawing less helps
 PATIENCE, CAUTION = 60, 300  # minimum frames between changes, to slower and to faster
 
@@ -41,8 +41,9 @@ class DisplayRate:
         """Record the time spent on a frame.
 
         Args:
-            busy, drawing, frame: time spent on all but slow updates, of that on drawing, and
-                length of the frame, [s].
+            busy: time spent on everything but slow updates, [s].
+            drawing: part of that time spent on drawing, [s].
+            frame: length of the frame, [s].
         """
         frame = max(frame, 1e-6)
         self._share += FADING * (busy / frame - self._share)

@@ -11,7 +11,7 @@ FRAME = 1 / FRAMES  # [s]
 def frame_length(number: int, together: int = 1) -> float:
     """Simulated time of some frames, beginning with this number, in whole ticks, [s].
 
-    It depends on nothing else, so labs of the usual rate always need equally many ticks, and are
+    It depends on nothing else, so labs at the usual rate always need equally many ticks, and are
     advanced together.
     """
     end, begin = ((each * round(1 / TICK)) // FRAMES for each in (number + together, number))

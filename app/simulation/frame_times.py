@@ -6,14 +6,14 @@ import numpy as np
 
 from onpath.models.arrays import Array
 
-SPARE = 60  # frames that may be added while the others are read
+SPARE = 60  # frames that may be added during a read
 
 
 class FrameTimes:
     """The latest frames, written by one thread and read by any.
 
-    They are in one array. Objects that are replaced one by one, each after a minute, would spread
-    over all memory that is freed meanwhile, so that little of it could be given back.
+    They are rows of one array. Objects that are replaced one by one, each after a minute, would
+    fragment the memory, so that little of it could be returned to the system.
 
     Args:
         most: number of frames that are kept.

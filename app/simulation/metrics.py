@@ -24,12 +24,12 @@ class Metrics:
 
     Attributes:
         pid: process id.
-        clock: time of measurement, [s]; comparable only with other `clock` of this machine.
+        clock: time of the measurement, [s]; comparable only with clocks of the same machine.
         frames_per_s: recent frame rate of the simulation thread.
         late_ms: median, 95th and 99th percentile of the lateness of recent frames, [ms].
         overdue: share of recent frames that are more than 50 ms late.
         labs: number of labs that have a viewer now.
-        simulated_s: simulated time of each of these since its last reset, [s], oldest first.
+        simulated_s: simulated time of each of them since its last reset, [s], oldest lab first.
         cpu_s: CPU time of the process, [s].
         rss_mb: resident memory, [MB]; None if the system does not report it.
     """

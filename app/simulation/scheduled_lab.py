@@ -5,27 +5,29 @@ from __future__ import annotations
 from typing import Protocol
 
 from msgspec import Struct
+from typing_extensions import override
 
 from onpath.app.common.error_log import log_error
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import AT_EASE
 from onpath.app.simulation.frame_length import FRAME
+from onpath.app.simulation.slow_updates import Updated
 
 FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
-LONGEST = 4  # maximum frames of the thread that are simulated together
-NEVER = -1_000_000  # number of a frame long ago
+LONGEST = 4  # maximum number of frames that are simulated together
+NEVER = -1_000_000  # number of a frame in the distant past
 
 
 class Elapsed(Struct, frozen=True):
     """Frames that have not been simulated yet.
 
     Attributes:
-        seconds: that have passed, [s].
+        seconds: elapsed time, [s].
         length: simulated time of the frames at the usual rate, [s].
-        frames: their number.
+        frames: number of frames.
     """
 
     seconds: float
@@ -33,7 +35,7 @@ class Elapsed(Struct, frozen=True):
     frames: int
 
     def and_frame(self, seconds: float, length: float) -> Elapsed:
-        """These and one more."""
+        """These frames and one more."""
         return Elapsed(self.seconds + seconds, self.length + length, self.frames + 1)
 
 
@@ -65,7 +67,7 @@ class Display(Protocol):
         ...
 
 
-class ScheduledLab:
+class ScheduledLab(Updated):
     """A lab, its measured speed and its viewer.
 
     Attributes:
@@ -113,13 +115,13 @@ class ScheduledLab:
     def frame(
         self, seconds: float, length: float = FRAME, count: int = 0, stride: float = AT_EASE
     ) -> Frame:
-        """Simulate a frame and those that wait for it, or let it wait; see `advance_together`.
+        """Simulate a frame with those postponed before it, or postpone it; see `advance_together`.
 
         Simulated time is paused while nobody looks.
 
         Args:
-            seconds: that have passed since the last one, for the measured speed.
-            length: of the frame at the usual rate, see `frame_length`, [s].
+            seconds: time since the last frame, for the measured speed, [s].
+            length: simulated time at the usual rate, see `frame_length`, [s].
             count: number of the frame.
             stride: frames of simulation per frame of display.
         """
@@ -143,24 +145,24 @@ class ScheduledLab:
 
         A busy thread simulates a lab only when it is drawn: several frames together take little
         longer than one. While a script is played, the lab is simulated in every frame, so that
-        the commands come at their times.
+        commands are applied at their times.
         """
         always = stride == AT_EASE or self.lab.script is not None
         return always or self._elapsed.frames >= LONGEST or self.is_turn(count, stride)
 
     @property
+    @override
     def is_outdated(self) -> bool:
-        """See `Updated`."""
         view = self.view  # another thread may remove it
         return view is not None and view.is_outdated
 
+    @override
     def is_turn(self, frame: int, stride: float) -> bool:
-        """See `Updated`."""
         view = self.view
         return view is not None and view.is_turn(self.lab, frame, stride)
 
+    @override
     def refresh(self, frame: int) -> None:
-        """See `Updated`. An error is logged, and does not affect other labs."""
         self.refreshed, view = frame, self.view
         if view is not None:
             try:

@@ -1,7 +1,7 @@
 """The simulation thread: it owns all labs and advances them at 60 Hz, frame by frame.
 
-When it is busy, it simulates each lab in the frames in which the lab is drawn. When it is two
-frames late, it simulates the next two as one. When that is not enough, simulated time slows down,
+When it is busy, it simulates each lab only in the frames in which the lab is drawn. When it is two
+frames late, it simulates the next two as one. When that is not enough, simulated time slows down
 visibly; late frames never accumulate.
 """
 
@@ -33,7 +33,7 @@ BEHIND = 2 * FRAME  # [s] of lateness from which two frames are simulated as one
 LATEST = 0.1  # [s]; when further behind, the schedule restarts
 TOLERATED = FRAME / 2  # [s] of lateness from which long work in other threads waits
 PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not starved
-HANDOVER = 1e-4  # [s] that another thread goes on once this one wants the interpreter back
+HANDOVER = 1e-4  # [s] after which another thread must hand the interpreter back
 ALL_COMMANDS, FEWEST = 4e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
 ANSWER = 30.0  # [s] that another thread waits to be called at the beginning of a frame
@@ -93,11 +93,11 @@ class SimulationThread:
     def call(self, function: Callable[[], T]) -> T:
         """Call a function between two frames, when no lab changes, and return its result.
 
-        Any other thread that reads a lab uses this; it waits for the frame.
+        All other threads that read a lab use this; the caller waits for the next frame.
 
         Raises:
             TimeoutError: the thread does not run.
-            Exception: of the function.
+            Exception: whatever the function raises.
         """
         if threading.current_thread() is self.thread:
             return function()
@@ -151,7 +151,8 @@ class SimulationThread:
         """
         labs, begun = self._labs, self._clock()
         if self._calls:
-            _answer(*self._calls.popleft())
+            function, answer = self._calls.popleft()
+            _answer(function, answer)
         spare = FRAME - late - self._advancing - self._drawing
         apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
         applied = self._clock()
@@ -173,8 +174,8 @@ class SimulationThread:
 def apply_commands(labs: list[ScheduledLab], most: float) -> None:
     """Apply the commands of one frame within `most` [s], exceeded by one command at most.
 
-    Labs whose commands took least time recently come first, so that no lab waits for another one
-    that keeps asking for long work.
+    Labs whose recent commands took the least time come first, so that no lab waits for one that
+    keeps asking for long work.
     """
     share = min(COMMANDS, most / max(sum(lab.lab.has_commands for lab in labs), 1))
     left = most
@@ -189,7 +190,7 @@ def apply_commands(labs: list[ScheduledLab], most: float) -> None:
 def _answer(function: Callable[[], T], answer: Future[T]) -> None:
     try:
         answer.set_result(function())
-    except Exception as error:  # the caller's
+    except Exception as error:  # raised in the caller
         answer.set_exception(error)
 
 

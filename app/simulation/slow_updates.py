@@ -1,7 +1,7 @@
 """Spreads the slow updates of all pages (traces, plots, panels, texts) over the frames.
 
-They take what is left of a frame after the simulation and the moving robots, so that more labs
-get fewer of these updates, and not fewer pictures.
+They take the time that is left in a frame after simulating and drawing the robots, so that more
+labs means fewer of these updates, not fewer pictures.
 """
 
 from __future__ import annotations
@@ -13,24 +13,24 @@ from typing import Protocol
 
 from onpath.app.simulation.display_rate import AT_EASE
 
-INTERVALS = {10: 6, 40: 8}  # frames between updates of a page, while there are at most so many
-MANY, RARE = 12, 15  # the same with more pages, and under load
-SLOWEST = 100  # frames in which every page gets an update, whatever it costs
-SHARE = 0.25  # of a frame, at most, for all slow updates
+INTERVALS = {10: 6, 40: 8}  # maximum number of pages -> frames between updates of a page
+MANY, RARE = 12, 15  # frames between updates with more pages, and under load
+SLOWEST = 100  # frames within which every page gets an update, whatever it costs
+SHARE = 0.25  # maximum share of a frame for all slow updates
 
 
 class Updated(Protocol):
-    """What gets slow updates.
+    """Something that gets slow updates.
 
     Attributes:
-        refreshed: number of the frame of the last one.
+        refreshed: number of the frame of the last update.
     """
 
     refreshed: int
 
     @property
     def is_outdated(self) -> bool:
-        """Whether it needs one now."""
+        """Whether it needs an update now."""
         ...
 
     def is_turn(self, frame: int, stride: float) -> bool:
@@ -38,7 +38,7 @@ class Updated(Protocol):
         ...
 
     def refresh(self, frame: int) -> None:
-        """Make the update; `frame` is the number of the frame."""
+        """Make the update in the frame of this number; errors are logged, not raised."""
         ...
 
 
@@ -56,7 +56,7 @@ class SlowUpdates:
         """Make the updates of a frame.
 
         Args:
-            seconds: that they may take; exceeded by one update, or by those that are overdue.
+            seconds: time that they may take, exceeded by one update or by overdue ones, [s].
             stride: frames of simulation per frame of display.
         """
         latest = frame - interval(len(pages), stride)

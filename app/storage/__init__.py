@@ -1,1 +1,1 @@
-"""What is kept: databases and their tables."""
+"""Storage: the database, its tables, and who may write to them."""

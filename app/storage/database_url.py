@@ -10,12 +10,12 @@ DATABASE = "ONPATH_DATABASE"  # environment variable
 
 
 def database_url(option: str | None) -> str | None:
-    """The URL of the command line or else of the environment.
+    """The URL from the command line, or else from the environment.
 
     Child processes do not inherit the variable: the URL may hold a password.
 
     Raises:
-        ValueError: the URL of the command line is malformed, or has a password.
+        ValueError: the URL on the command line is malformed or contains a password.
     """
     inherited = os.environ.pop(DATABASE, "")
     if option:

@@ -30,10 +30,10 @@ from onpath.models.errors import Coded
 
 log = logging.getLogger(__name__)
 
-VERSION = 1  # of the tables and of what `state` holds
+VERSION = 1  # of the tables and of the content of `state`
 PATIENCE = 10.0  # [s] to wait, while opening, for a lock that another process holds
 TRANSACTION_WAIT = 2.0  # [s], the same for a transaction, for which a user may be waiting
-CACHE = 256  # [KiB] of the file that each connection keeps in memory; a state has a few
+CACHE = 256  # [KiB] of the file that each connection caches; a state takes a few
 Identity = tuple[int, int]
 """Device and inode of a file."""
 _BROKEN = (sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB)
@@ -45,7 +45,7 @@ class NotKept(Coded, OSError):
 
 @contextmanager
 def held(lock: threading.Lock, seconds: float) -> Iterator[None]:
-    """Hold a lock, and wait at most so many seconds for it.
+    """Hold a lock, and wait for it for at most `seconds`.
 
     Raises:
         NotKept: other threads held it for all that time.
@@ -71,7 +71,7 @@ def parsed(url: str | sa.URL) -> sa.URL:
     try:
         return sa.make_url(url)
     except exc.ArgumentError:
-        raise ValueError("no URL of a database, like postgresql+psycopg://user@host/name") from None
+        raise ValueError("not a database URL such as postgresql+psycopg://user@host/name") from None
 
 
 def opened_server(url: sa.URL) -> sa.Engine:
@@ -116,7 +116,7 @@ def opened_file(
             engine = _prepared(url, patience)
             if identity(file) == before:
                 return engine, before
-            engine.dispose()  # another process has replaced it: which one is open?
+            engine.dispose()  # another process has replaced the file: unclear which one is open
         except _Broken as error:
             if file is not None:
                 _move_aside(file, before, str(error), clock, patience)
@@ -134,12 +134,12 @@ def file_of(url: sa.URL) -> Path | None:
 
 
 def identity(file: Path | None) -> Identity | None:
-    """Identity of the file that has this name now; None if there is none."""
+    """Identity of the file that now has this name; None if there is none."""
     try:
-        found = None if file is None else file.stat()
+        status = None if file is None else file.stat()
     except OSError:
         return None
-    return None if found is None else (found.st_dev, found.st_ino)
+    return None if status is None else (status.st_dev, status.st_ino)
 
 
 def journals_of(file: Path | None, known: Identity | None) -> dict[Path, Identity | None]:
@@ -154,12 +154,12 @@ def discard_journals(
 ) -> None:
     """Delete the journals of a database that has been deleted or replaced.
 
-    SQLite would apply them to the file that has its name now. Journals that another process has
+    SQLite would apply them to the file that now has its name. Journals that another process has
     begun for that file are kept.
 
     Args:
-        journals: as `journals_of` found them; the database is still open.
-        patience: how long to wait for another process that moves or opens the file, [s].
+        journals: as found by `journals_of` while the database was open.
+        patience: how long to wait for another process that is moving or opening the file, [s].
     """
     with _locked(file, patience):
         for part, known in journals.items():
@@ -206,7 +206,7 @@ def _rename(file: Path, why: str, clock: Callable[[], float]) -> None:
         part = file.with_name(file.name + tail)
         if part.exists():
             part.rename(aside.with_name(aside.name + tail))
-    log.warning("%s is broken (%s): moved to %s, a fresh one is begun", file, why, aside.name)
+    log.warning("%s is broken (%s): moved to %s, a fresh one is created", file, why, aside.name)
 
 
 def _engine(url: sa.URL, patience: float) -> sa.Engine:
@@ -231,7 +231,7 @@ def _engine(url: sa.URL, patience: float) -> sa.Engine:
 
 
 def _connected(connection: Any, _: Any) -> None:
-    connection.isolation_level = None  # `_begun` begins all transactions, those of DDL too
+    connection.isolation_level = None  # `_begun` begins all transactions, including those of DDL
     for pragma in (
         "journal_mode = WAL",
         "synchronous = NORMAL",
@@ -259,9 +259,9 @@ def _prepared(url: sa.URL, patience: float = PATIENCE) -> sa.Engine:
     try:
         with engine.begin() as connection:
             if engine.dialect.name == "sqlite":
-                found = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
-                if found != "ok":
-                    raise _Broken(found)
+                report = str(connection.exec_driver_sql("PRAGMA quick_check(1)").scalar())
+                if report != "ok":
+                    raise _Broken(report)
             elif engine.dialect.name == "postgresql":
                 lift_statement_limit(connection)  # a migration of many labs may take minutes
             _migrate(connection)
@@ -271,7 +271,7 @@ def _prepared(url: sa.URL, patience: float = PATIENCE) -> sa.Engine:
         if code & 0xFF in _BROKEN:
             raise _Broken(words(error)) from error
         if isinstance(error, UnicodeDecodeError):  # SQLite's message quotes the corrupt data
-            raise _Broken("it is full of strange letters") from error
+            raise _Broken("it contains undecodable text") from error
         raise
     return engine
 

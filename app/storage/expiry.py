@@ -1,4 +1,4 @@
-"""Deletes stored labs that have not been used for long, and the oldest if there are too many.
+"""Deletes stored labs that have not been used for long, and the least recent if there are too many.
 
 Classes are deleted a week after their last change.
 """
@@ -22,15 +22,15 @@ DAY = 24 * 3600.0  # [s]
 KEEP_DAYS, MOST_LABS = 365, 100_000
 CLASS_DAYS = 7
 TOUCH_INTERVAL = 300.0  # [s] between marks on the labs that are in use
-IN_USE = 3 * TOUCH_INTERVAL  # [s] after its last mark, a lab may still be in use
+IN_USE = 3 * TOUCH_INTERVAL  # [s] after its last mark for which a lab counts as in use
 
 
 @dataclass(frozen=True, slots=True)
 class Retention:
     """How long labs are kept, and how many.
 
-    A lab is used when it is opened, whenever it changes, and as long as it is open. One that was in
-    use within the last `IN_USE` seconds, in any process that shares the database, is not deleted.
+    A lab is in use while it is open, and used whenever it is opened or changed. A lab used within
+    the last `IN_USE` seconds, in any process that shares the database, is not deleted.
 
     Attributes:
         days: a lab that has not been used for this number of days is deleted.
@@ -51,7 +51,7 @@ class Retention:
 
 
 class Expiry:
-    """Applies a retention to a database: at the start, and daily.
+    """Applies a retention to a database at the start, and then daily.
 
     Args:
         in_use: returns the codes of the labs that are open in this process.

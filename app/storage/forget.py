@@ -16,7 +16,7 @@ class ForgetCounts:
 
     Attributes:
         labs: number of labs.
-        files: corrupt databases that had been moved aside.
+        files: corrupt databases that had been moved aside, also deleted.
     """
 
     labs: int
@@ -24,7 +24,7 @@ class ForgetCounts:
 
 
 def forget(url: str | None = None) -> ForgetCounts:
-    """Delete all labs of a database: the user's own file if there is no URL.
+    """Delete all labs of a database; without a URL, of the user's own file.
 
     Raises:
         ValueError: the URL is malformed.

@@ -1,4 +1,4 @@
-"""The stored state of a lab: its setup and the progress through the lessons."""
+"""The stored state of a lab: its set-up and the progress through the lessons."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class StateObserver:
 
     Args:
         code: session code of the lab.
-        lab: whose state is stored already; None: a new one.
+        lab: the lab, if its state is stored already; None for a new one.
     """
 
     def __init__(self, code: str, keeper: Keeper, lab: Lab | None = None) -> None:
@@ -79,7 +79,7 @@ def keep(lab: Lab, submit: Callable[[Callable[[], LabState]], None]) -> None:
 
 
 def put_back(lab: Lab, state: LabState) -> None:
-    """Restore a stored state into a new lab; the user is told what of it is not possible today.
+    """Restore a stored state in a new lab; the user is told which parts are no longer possible.
 
     Raises:
         ValueError: the state is invalid; the lab is then unchanged.
@@ -91,14 +91,14 @@ def put_back(lab: Lab, state: LabState) -> None:
     earlier = with_paths_of_today(from_data(before))[0] if before else None
     lab.set_up(setup)
     lab.lessons.resume(progress, earlier, lab)
-    told = list[str]()
+    messages = list[str]()
     if refused:
         reasons = "; ".join(map(lab.words.sentence, refused))
-        told.append(lab.words("say.path_of_then", reasons=reasons))
+        messages.append(lab.words("say.path_of_then", reasons=reasons))
     if absent:
-        told.append(lab.words("say.laws_of_then", names=", ".join(absent)))
-    if told:
-        lab.show_message(" ".join(told), "warning")
+        messages.append(lab.words("say.laws_of_then", names=", ".join(absent)))
+    if messages:
+        lab.show_message(" ".join(messages), "warning")
 
 
 def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:

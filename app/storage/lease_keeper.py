@@ -18,9 +18,9 @@ class LeaseKeeper:
     """Holds the leases of the labs and classes that are open in this process.
 
     Args:
-        held: returns the codes of what is open.
-        watched: codes of what may be open in another process.
-        lost: called with the code of what was open here, and is another process's now.
+        held: returns the codes of the labs and classes that are open here.
+        watched: codes of those that may be open in another process.
+        lost: called with the code of a lab or class that another process has claimed.
         clock: monotonic time, [s].
 
     Attributes:
@@ -41,23 +41,23 @@ class LeaseKeeper:
         self.rounds = Periodic("leases", RENEWAL, self.look)
 
     def is_elsewhere(self, code: str) -> bool:
-        """Whether another process had this open at the last look, and its lease lasts."""
+        """Whether another process had this open at the last renewal, and its lease still lasts."""
         return self._clock() < self._elsewhere.get(code, -inf)
 
     def look(self) -> None:
-        """Renew all leases of what is open. A database that is away is asked again next time."""
+        """Renew all leases of what is open; if the database is unavailable, try again next time."""
         now = self._clock()
         try:
-            found = self._records.renew(self._held(), self._watched)
+            renewal = self._records.renew(self._held(), self._watched)
         except NotKept as error:
             log.debug("leases are not renewed: %s", error)
             return
-        self._elsewhere = {code: now + left for code, left in found.elsewhere.items()}
-        for code in found.lost:
+        self._elsewhere = {code: now + left for code, left in renewal.elsewhere.items()}
+        for code in renewal.lost:
             self._lost(code)
 
     def stop(self) -> None:
-        """Give all leases up, so that other processes can go on at once."""
+        """Give up all leases, so that other processes can claim the states at once."""
         self.rounds.stop()
         try:
             self._records.give_up()

@@ -1,18 +1,18 @@
-"""Leases: which process has a lab or a class open at present. Nobody takes it from one that renews.
+"""Leases: which process has a lab or a class open now. A lease that is renewed cannot be taken.
 
 A process renews the leases of what it has open every `RENEWAL` seconds. While a lease lasts, no
 other process can claim the state (`Records.claim`). It ends when the process gives it up, as it
 does at an orderly stop, or `LEASE` seconds after the process has been killed or suspended.
 
-A lease does not decide who may write: that is the owner named in the state's own row, whom only a
-claim replaces, in the same transaction in which it takes the lease. So there are never two who may
-write, whatever the clocks say. An owner whose lease has lapsed, because it was suspended or the
-database was away, goes on and renews it if nobody has claimed the state meanwhile. If somebody has,
-its writes are refused, it drops its copy and sends its members away, who come back at the new
-owner.
+A lease does not decide who may write. The owner named in the state's own row may, and only a claim
+replaces it, in the same transaction that takes the lease. So there are never two who may write,
+whatever the clocks say. An owner whose lease has lapsed, because it was suspended or the database
+was unavailable, renews it if no other process has claimed the state meanwhile. If one has, the
+former owner's writes are refused; it drops its copy and disconnects its members, who reconnect to
+the new owner.
 
-Times are the database server's, or those of the one machine that has the file. If that clock is put
-back, leases that seem to last much longer than they can count as ended.
+Times are the database server's, or those of the one machine that has the file. If that clock is set
+back, a lease that seems to last longer than is possible counts as ended.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from onpath.app.storage.schema import classes, labs, leases
 
 LEASE = 2.0  # [s] after its last renewal
 RENEWAL = 0.5  # [s] between renewals
-CLOCK_BACK = 60.0  # [s] beyond its end, by which a lease shows that the clock was put back
+CLOCK_BACK = 60.0  # [s] beyond the possible end from which a lease shows a clock set back
 
 _mine = leases.c.owner == sa.bindparam("own")
 _now = sa.bindparam("now", type_=sa.Double)
@@ -59,8 +59,8 @@ class Renewal:
 
     Attributes:
         lost: codes of its labs and classes that other processes have claimed.
-        missing: codes of those of which it has no lease.
-        elsewhere: how long the leases of others last, by code, [s].
+        missing: codes of its labs and classes for which it has no lease.
+        elsewhere: how long the leases of other processes still last, by code, [s].
     """
 
     lost: frozenset[str]
@@ -72,7 +72,7 @@ def take(connection: sa.Connection, code: str, owner: str, now: float) -> None:
     """Take a lease that is free, has ended, or is the owner's already.
 
     Raises:
-        sqlalchemy.exc.IntegrityError: it is another's and lasts; the transaction cannot go on.
+        sqlalchemy.exc.IntegrityError: another process holds it; the transaction cannot go on.
     """
     values = {"of": code, "own": owner, "now": now}
     if not connection.execute(_TAKE, values).rowcount:
@@ -86,7 +86,7 @@ def renew(
 
     Args:
         codes: what the owner has open.
-        watched: what it wants to know of whether others have it open.
+        watched: codes of which it wants to know whether other processes have them open.
     """
     values = {"own": owner, "now": now}
     held = set(codes)

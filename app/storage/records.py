@@ -1,8 +1,8 @@
-"""The stored states of labs and classes: in an SQLite file of the user, or a database by URL.
+"""The stored states of labs and classes, in the user's SQLite file or a database given by URL.
 
 Several processes may share a database. A state belongs to the process that claimed it last, and no
-other can save it; so a process whose copy in memory is outdated notices it. Nobody can claim what
-another process has open: it holds a lease, see leases.py.
+other can save it, so a process notices when its copy in memory is outdated. A state that another
+process has open cannot be claimed: that process holds a lease, see leases.py.
 
 An SQLite file that cannot be used does not stop a lab on a laptop: `Records.warning` then says why,
 and the records are in memory. engine.py opens the database.
@@ -81,7 +81,7 @@ _STATEMENTS = {table: _statements(table) for table in (labs, classes)}
 
 
 class HeldElsewhere(Exception):
-    """The state is another process's: it has claimed it, or has it open."""
+    """Another process has claimed the state, or has it open."""
 
 
 def default_file() -> Path:
@@ -98,16 +98,15 @@ class Records:
     """States of labs by session code, and of classes. Thread-safe.
 
     Args:
-        url: of the database as SQLAlchemy takes it, "postgresql+psycopg://user@host/onpath"; None
-            for `default_file`.
+        url: of the database, as for SQLAlchemy, such as "postgresql+psycopg://user@host/onpath";
+            None for `default_file`.
         clock: seconds since 1970.
         needed: whether an SQLite file that cannot be used is an error.
 
     Attributes:
         owner: unique name of this process among those that share the database.
-        warning: why states are lost when the process ends, in words; empty if they are not.
-        generation: how often the file was found deleted or replaced; what was saved before may be
-            gone.
+        warning: why states will be lost when the process ends; empty if they will not.
+        generation: how often the file was found deleted or replaced; earlier states may be gone.
 
     Raises:
         ValueError: the URL is malformed, or its driver is not installed.
@@ -144,7 +143,7 @@ class Records:
         return None if row is None else _state(row)
 
     def claim(self, code: str, table: sa.Table = labs) -> dict[str, Any] | None:
-        """Take over a state, which counts as its use, and its lease; see `load`.
+        """Take over a state and its lease, which counts as using it; see `load`.
 
         Raises:
             HeldElsewhere: another process has it open.
@@ -169,11 +168,11 @@ class Records:
             NotKept: the database cannot be used.
         """
         with self.transaction() as connection:
-            found = renew(connection, codes, watched, self.owner, self._now(connection))
-        for code in found.missing:
+            renewal = renew(connection, codes, watched, self.owner, self._now(connection))
+        for code in renewal.missing:
             with suppress(exc.IntegrityError), self.transaction() as connection:
                 take(connection, code, self.owner, self._now(connection))
-        return found
+        return renewal
 
     def give_up(self, code: str | None = None) -> None:
         """Give up the lease of a state, or all leases of this process.
@@ -209,7 +208,7 @@ class Records:
             with self.transaction() as connection:
                 if not connection.execute(statements.change, values).rowcount:
                     connection.execute(statements.insert, values)
-        except exc.IntegrityError:  # it is there: of another process, or of a newer version
+        except exc.IntegrityError:  # the row exists: another process's, or of a newer version
             with self.transaction() as connection:
                 row = connection.execute(statements.read, {"of": code}).first()
             if row is not None and row.version > VERSION:
@@ -277,13 +276,13 @@ class Records:
             raise NotKept("error.database", reason=error.strerror or str(error)) from error
         self._journals = journals_of(self._file, self._identity)
         self.generation += 1
-        log.warning("%s was deleted or replaced: labs in use are kept anew in it", self._file)
+        log.warning("%s was deleted or replaced: labs in use are saved to it again", self._file)
 
     @contextmanager
     def transaction(self) -> Iterator[sa.Connection]:
         """A transaction; serialised with all others in SQLite.
 
-        Whoever waits for others, in this process or another, waits `TRANSACTION_WAIT` at most.
+        It waits for others, in this process or another, for at most `TRANSACTION_WAIT`.
 
         Raises:
             NotKept: the database cannot be used; nothing was changed.
@@ -303,7 +302,7 @@ class Records:
                 raise NotKept("error.database", reason=words(error)) from error
 
     def _now(self, connection: sa.Connection) -> float:
-        """The time by which leases are reckoned, the same for all processes, [s]."""
+        """The time that leases refer to, the same for all processes, [s]."""
         if connection.dialect.name == "postgresql":
             return connection.execute(_SERVER_TIME).scalar_one()
         return self._clock()
@@ -347,5 +346,5 @@ def _text(code: str, state: dict[str, Any]) -> str:
 
 
 def _left(until: float) -> float:
-    """Time that is left until a deadline by `time.monotonic`, [s]."""
+    """Time left until a deadline of `time.monotonic`, [s]."""
     return max(until - time.monotonic(), 0.0)

@@ -21,8 +21,10 @@ meta = sa.Table(
 def _states(name: str) -> sa.Table:
     """A table of states by code.
 
-    owner: the process that opened the state last; only it may write. See leases.py.
-    version: of the program's format. updated: when it was last used, seconds since 1970.
+    Columns:
+        owner: the process that opened the state last; only it may write, see leases.py.
+        version: of the program's format.
+        updated: when the state was last used, seconds since 1970.
     """
     return sa.Table(
         name,

@@ -1,7 +1,7 @@
-"""Limits of waiting for a PostgreSQL server, and for other processes that use it.
+"""Limits on waiting for a PostgreSQL server, and for other processes that use it.
 
-Without them a process that is suspended within a transaction keeps its rows, and whoever wants them
-waits as long. The server applies most of them, so they do not hold while it is frozen itself.
+Without them, a process suspended within a transaction would keep its rows locked, and others would
+wait as long. The server enforces most limits, so they do not hold while it is frozen itself.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ CONNECT_WAIT = 5  # [s] for a new connection, a whole number
 STATEMENT_WAIT = 30.0  # [s] for a statement; to delete 100,000 labs takes a few
 IDLE_WAIT = 10.0  # [s] between statements of a transaction; then the server ends the connection
 PROBE_INTERVAL = 5  # [s] between probes of a silent connection, a whole number
-GONE = 15  # [s] without a sign of the server's host, after which a connection is given up
+GONE = 15  # [s] without a sign of the server's host after which a connection is given up
 
 _SET = sa.select(
     sa.func.set_config("lock_timeout", sa.bindparam("lock", type_=sa.String), True),
@@ -26,8 +26,8 @@ _SET = sa.select(
 
 
 def connection_limits(url: sa.URL) -> dict[str, Any]:
-    """What the driver is told about connections; what the URL says itself is left to it."""
-    if url.drivername != "postgresql+psycopg":  # another one may not know these names
+    """The driver's options for connections; options that the URL sets itself are left out."""
+    if url.drivername != "postgresql+psycopg":  # other drivers may not know these names
         return {}
     limits = {
         "connect_timeout": CONNECT_WAIT,
@@ -42,8 +42,8 @@ def connection_limits(url: sa.URL) -> dict[str, Any]:
 def limit_transaction(connection: sa.Connection) -> None:
     """Limit the waits of the transaction that begins; for SQLAlchemy's event.
 
-    They are set for each transaction, not in the options of the connection: these would replace
-    those of the URL, and poolers in front of a server refuse them.
+    They are set for each transaction, not in the connection's options: those would replace the
+    URL's, and poolers in front of a server refuse them.
     """
     patience = connection.get_execution_options()["patience"]
     limits = {"lock": patience, "statement": STATEMENT_WAIT, "idle": IDLE_WAIT}

@@ -17,12 +17,12 @@ log = logging.getLogger(__name__)
 INTERVAL = 2.0  # [s] between writes: the most that is lost if the process is killed
 BREATH = 0.01  # [s] between labs, in which the simulation thread can run
 FLUSH = 10.0  # [s] to wait for the last write
-TURN_WAIT = 2.0  # [s] to wait for the write that is under way, for which a user may be waiting
-HANGING = 5.0  # [s] after which a write that is under way counts as failed
+TURN_WAIT = 2.0  # [s] to wait for a write in progress; a user may be waiting, too
+HANGING = 5.0  # [s] after which a write in progress counts as failed
 
 
 class Store(Protocol):
-    """Where states are saved; see `Records` for the properties."""
+    """Where states are saved; see `Records`."""
 
     @property
     def warning(self) -> str: ...
@@ -30,7 +30,7 @@ class Store(Protocol):
     def generation(self) -> int: ...
 
     def save(self, code: str, state: dict[str, Any]) -> None:
-        """See `Records.save`."""
+        """Save a state, with the errors of `Records.save`."""
         ...
 
 
@@ -41,8 +41,8 @@ class WriteBehind:
         lost: called with the code of a lab that another process has claimed.
 
     Attributes:
-        warning: why the latest states are not saved yet, in words; empty when they are. Failed
-            writes are repeated.
+        warning: why the latest states are not saved yet; empty if they are. Failed writes are
+            repeated.
     """
 
     def __init__(
@@ -66,8 +66,8 @@ class WriteBehind:
         """Save the state that `make_state` returns. Thread-safe, and does not block.
 
         Args:
-            make_state: called in the background thread, or never if a later one replaces it; it
-                must not read what other threads modify.
+            make_state: called in the background thread, or never if a later one replaces it; must
+                not read anything that other threads modify.
         """
         with self._lock:
             self._pending[code] = make_state
@@ -78,7 +78,7 @@ class WriteBehind:
         return code in self._failed or bool(self._records.warning) or self._hangs(code)
 
     def _hangs(self, code: str) -> bool:
-        """Whether the write of this lab, or the one for which it has to wait, takes too long."""
+        """Whether the write of this lab, or the one that it waits for, takes too long."""
         with self._lock:
             if self._current is None:
                 return False
@@ -88,11 +88,11 @@ class WriteBehind:
 
     @property
     def generation(self) -> int:
-        """Changes when what was saved may be gone; see `Records.generation`."""
+        """Changes when saved states may be gone; see `Records.generation`."""
         return self._records.generation
 
     def discard(self, code: str) -> None:
-        """Discard the pending state of a lab that is outdated; it is not being written on return.
+        """Discard the outdated pending state of a lab; on return no write of it is in progress.
 
         Raises:
             NotKept: another write takes too long; the state stays pending.
@@ -104,7 +104,7 @@ class WriteBehind:
     def flush(self, code: str) -> bool:
         """Write the pending state of one lab, if any, in the caller's thread.
 
-        Waits for the write that is under way, which may be of this lab, but not for long.
+        Waits briefly for a write in progress, which may be this lab's.
 
         Returns:
             Whether it is no longer pending. If it is, another write takes too long or the database

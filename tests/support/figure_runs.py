@@ -66,7 +66,7 @@ class PythonSide:
         """Go on under another law, as `ClosedLoopRun.change_law`."""
         given = self.robot, "right", self.law, self.parameters, self.curve
         run = ClosedLoopRun(LOOPS, *given)
-        run.place = single(self.state, run.row, 0.0, 0.0)
+        run.slot = single(self.state, run.row, 0.0, 0.0)
         run.change_law(law, self.parameters, self.curve, self.push)
         self.law, self.state = law, run.state
         self.kernel = self.figure.kernel(law, self.given)

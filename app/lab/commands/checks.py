@@ -44,7 +44,7 @@ def point(value: Array, size: int) -> Array:
     """Check that a point is finite and has shape (size,).
 
     Raises:
-        ValueError: it does not.
+        ValueError: it is not, or has another shape.
     """
     checked = np.asarray(value, dtype=float)
     if checked.shape != (size,) or not np.isfinite(checked).all():

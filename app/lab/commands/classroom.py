@@ -55,7 +55,7 @@ class TakeStep(Command):
     """Open a step of a lesson, wherever the student is.
 
     Attributes:
-        route: that is followed from there; empty for that which the student follows.
+        route: the route to follow from there; if empty, the student's route stays.
         again: whether the prediction of the step is asked once more, after a discussion.
     """
 
@@ -70,18 +70,18 @@ class TakeStep(Command):
         run = lab.lessons
         elsewhere = run.lesson is not None and run.progress.lesson != self.lesson
         run.open_at(self.lesson, self.step, lab, self.route)
-        said = "class.step_elsewhere" if elsewhere else "class.step"
+        key = "class.step_elsewhere" if elsewhere else "class.step"
         if self.again:
             run.ask_again()
             run.begin_anew(lab)
-            said = "class.step_again"
-        lab.show_message(run.words(said))
+            key = "class.step_again"
+        lab.show_message(run.words(key))
         _tell(lab)
 
 
 @dataclass(frozen=True, slots=True)
 class KeepWithin(Command):
-    """Let the student go within some steps only, and bring them there; None ends that."""
+    """Restrict the student to some steps, and bring them there; None lifts the restriction."""
 
     from_teacher: ClassVar[bool] = True
     pace: Pace | None
@@ -109,6 +109,6 @@ class ReportState(Command):
 
 
 def _tell(lab: Lab) -> None:
-    """Show why the lab is stopped."""
+    """Tell the student if the lab is frozen."""
     if lab.frozen:
         lab.show_message(lab.words("class.frozen"), "stop")

@@ -38,7 +38,7 @@ class Hold(Command):
 
 @dataclass(frozen=True, slots=True)
 class SetHoldDirection(Command):
-    """Choose the direction in which brakes act; one that is on is applied anew where it is.
+    """Choose the direction in which brakes act; an active brake is applied again where it is.
 
     Attributes:
         direction: one of `models.closed_loop.obstacles.DIRECTIONS`.

@@ -80,9 +80,16 @@ class Predict(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        told = self.sure, self.reason, self.why
-        lab.lessons.predict(Answer(self.option, self.times, self.values, *told), lab.session)
-        lab.show_message("")  # that a prediction is missing
+        answer = Answer(
+            option=self.option,
+            times=self.times,
+            values=self.values,
+            sure=self.sure,
+            reason=self.reason,
+            why=self.why,
+        )
+        lab.lessons.predict(answer, lab.session)
+        lab.show_message("")  # clear the reminder that a prediction is missing
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +161,7 @@ class AnswerInWords(Command):
 
 @dataclass(frozen=True, slots=True)
 class Act(Command):
-    """Do the action of a link in the text."""
+    """Perform the actions of a link in the text."""
 
     actions: tuple[Action, ...]
 

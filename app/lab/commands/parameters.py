@@ -19,7 +19,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters
 
-PATH_MATTERS = ("across", "rise")  # parameters that not every path can have together
+PATH_MATTERS = ("across", "rise")  # parameters that not every path allows together
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +49,13 @@ class SetParameter(Command):
 
     @staticmethod
     def _begins_later(session: Session) -> bool:
-        """Whether the wanted speed varies at the start of a run only, and that is over."""
+        """Whether the speed profile varies only at the start of a run, which has passed."""
         profile = profile_of(session.parameters)
         return profile is not None and not profile.period and session.time >= profile.times[-1]
 
 
 def _set(lab: Lab, wanted: Parameters) -> None:
-    """Set the parameters, and tell the user if the run has begun anew with them."""
+    """Set the parameters, and tell the user if that has restarted the run."""
     session, run = lab.session, lab.session.run_number
     session.set_parameters(wanted)
     if session.run_number != run:
@@ -89,7 +89,7 @@ class ResetParameters(Command):
 
 @dataclass(frozen=True, slots=True)
 class Identify(Command):
-    """Give the controllers the model identified from the follower's recent motion, once it is."""
+    """Identify a model from the follower's recent motion, and give it to the controllers."""
 
     @override
     def apply(self, lab: Lab) -> None:

@@ -57,7 +57,7 @@ class SelectNext(Command):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MovePoint(Command):
-    """Drag a control point, as far towards a place as the path remains valid.
+    """Drag a control point towards a target, as far as the path remains valid.
 
     Attributes:
         index: of the control point.
@@ -73,7 +73,7 @@ class MovePoint(Command):
     def apply(self, lab: Lab) -> None:
         editor, target = lab.session.editor, point(self.target, 2)
         if editor.proposed is None or editor.selected != self.index:
-            editor.finish()  # of another point
+            editor.finish()  # the drag of another point
             editor.select(self.index)
         editor.drag(self.index, target)
         if self.finished:
@@ -91,7 +91,7 @@ class EndMove(Command):
 
 @dataclass(frozen=True, slots=True)
 class NudgePoint(Command):
-    """Move the selected control point by a step, [m]; with none, right steps simulated time."""
+    """Move the selected control point by a step, [m]; with none, a step right advances time."""
 
     right: float
     up: float
@@ -197,14 +197,14 @@ def commit(lab: Lab, design: PathDesign) -> None:
 def finish(lab: Lab) -> None:
     """End the drag of a control point; if it went less far than wanted, show why.
 
-    The marks of the invalid places are only shown during the drag.
+    The invalid parts of the path are marked only during the drag.
     """
     _end(lab, "say.no_further")
     lab.session.editor.clear_faults()
 
 
-def _end(lab: Lab, told: str) -> None:
-    """Keep an edit, and show the message `told` if it has faults."""
+def _end(lab: Lab, key: str) -> None:
+    """Keep an edit, and show the message of a key if it has faults."""
     editor, words = lab.session.editor, lab.words
     before = editor.design
     editor.finish()
@@ -214,7 +214,7 @@ def _end(lab: Lab, told: str) -> None:
     lab.return_to_present()
     if editor.faults:
         reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
-        lab.show_message(words(told, reasons=reasons), "warning")
+        lab.show_message(words(key, reasons=reasons), "warning")
 
 
 def _selected(lab: Lab) -> int:

@@ -21,7 +21,7 @@ FRAMES, FRAME = 8, 1 / 60  # the hand moves along with the end-point [s]
 
 @dataclass(frozen=True, slots=True)
 class _PullAcross(Command):
-    """Pull both end-points outwards, each across the path at its own place."""
+    """Pull both end-points outwards, each across the path at its own closest point."""
 
     @override
     def apply(self, lab: Lab) -> None:
@@ -38,7 +38,7 @@ class _PullAcross(Command):
 
 @dataclass(frozen=True, slots=True)
 class Pulse(Command):
-    """Pull both end-points across the path for 0.13 s; nothing while a script or a hand acts."""
+    """Pull both end-points across the path for 0.13 s, unless a script or a hand is acting."""
 
     lets_time_run: ClassVar[bool] = True
 

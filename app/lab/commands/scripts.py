@@ -58,13 +58,13 @@ class ScriptPull(Command):
     def apply(self, lab: Lab) -> None:
         session, name = lab.session, SIDE_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
-        there = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
-        session.forces.grab(name, there, _sides(self.only))
+        target = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
+        session.forces.grab(name, target, _sides(self.only))
 
 
 @dataclass(frozen=True, slots=True)
 class ScriptLaws(Command):
-    """Change control laws at this instant, even if their loops must be made first."""
+    """Change control laws at once, even if their loops are not ready."""
 
     laws: Laws
 
@@ -76,7 +76,7 @@ class ScriptLaws(Command):
 
 @dataclass(frozen=True, slots=True)
 class ScriptRate(Command):
-    """Change how fast time goes, compared with the rate that the user had chosen."""
+    """Set the speed of simulated time, relative to the rate that the user had chosen."""
 
     rate: float
 
@@ -88,7 +88,7 @@ class ScriptRate(Command):
 
 @dataclass(frozen=True, slots=True)
 class ScriptStart(Command):
-    """Put both robots to a start, and begin anew there."""
+    """Restart both robots at a given start."""
 
     start: RunStart
 
@@ -118,9 +118,9 @@ class ScriptMove(Command):
 
 
 def commands_of(action: Action) -> list[Command]:
-    """The commands of an action in a text, which a user begins."""
+    """The commands of an action in a text, which the user starts."""
     if action.laws is not None:
-        return [ChooseLaw(*chosen) for chosen in action.laws.named.items()]
+        return [ChooseLaw(side, law) for side, law in action.laws.named.items()]
     return _COMMANDS[action.what](action)
 
 
@@ -141,7 +141,8 @@ def _laws(action: Action) -> list[Command]:
 
 def _move(action: Action) -> list[Command]:
     assert action.move is not None
-    return [ScriptMove(*action.move)]
+    index, right, up = action.move
+    return [ScriptMove(index, right, up)]
 
 
 def _pull(action: Action) -> list[Command]:
@@ -153,7 +154,7 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "hold": lambda action: [ScriptHold(bool(action.hold), action.only)],
     "pull": _pull,
     "release": lambda _: [Release()],
-    "set": lambda action: [SetParameter(*item) for item in (action.set or {}).items()],
+    "set": lambda action: [SetParameter(name, value) for name, value in (action.set or {}).items()],
     "path": lambda action: [ChoosePath(action.path or "")],
     "move": _move,
     "robot": lambda action: [ChooseRobot(action.robot or "")],

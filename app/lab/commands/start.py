@@ -19,7 +19,7 @@ class SetStart(Command):
 
     Attributes:
         name: a field of `Start`.
-        value: SI.
+        value: in SI units.
     """
 
     name: str
@@ -34,7 +34,7 @@ class SetStart(Command):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MoveStart(Command):
-    """Move the start of the next run to a place of the path's plane.
+    """Move the start of the next run to a point of the path's plane.
 
     Attributes:
         target: shape (2,), [m].
@@ -62,7 +62,7 @@ def _take(lab: Lab, start: Start) -> None:
     """Start there at the next reset.
 
     Raises:
-        ValueError: that is not possible; nothing has changed.
+        ValueError: the start is not possible; nothing has changed.
     """
     lab.session.check_start(start)
     lab.session.start = start

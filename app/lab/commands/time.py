@@ -55,8 +55,8 @@ class Reset(Command):
 class ReplayBreakdown(Command):
     """Show the last moments before a robot stopped, slowly.
 
-    If no robot has stopped, this does nothing: the page sends it by itself, and it may arrive after
-    a reset.
+    Does nothing if no robot has stopped: the page sends it on its own, and it may arrive after a
+    reset.
     """
 
     @override
@@ -94,7 +94,7 @@ class SetRate(Command):
 
 @dataclass(frozen=True, slots=True)
 class AskPhase(Command):
-    """Keep the phase plane in the snapshots, or leave it out; it is drawn from every frame."""
+    """Include the phase plane in the snapshots, or leave it out."""
 
     on: bool
 
@@ -105,7 +105,7 @@ class AskPhase(Command):
 
 @dataclass(frozen=True, slots=True)
 class LookAt(Command):
-    """Pause and view the state [s] before now; 0 is now."""
+    """Pause and view the state `ago` seconds before now; 0 is now."""
 
     ago: float
 

@@ -1,4 +1,4 @@
-"""Commands that place, move, turn and take away the wall, in the path's plane."""
+"""Commands that place, move, turn and remove the wall, in the path's plane."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def first_wall(curve: Curve) -> Wall:
 
 @dataclass(frozen=True, slots=True)
 class SetWall(Command):
-    """Put a wall across the top of the path, or take the wall away; None toggles."""
+    """Put a wall across the top of the path, or remove the wall; None toggles."""
 
     on: bool | None = None
 
@@ -61,7 +61,7 @@ class MoveWall(Command):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SwingWall(Command):
-    """Turn the wall, if there is one, about its middle until an end of it points at a place.
+    """Turn the wall, if there is one, about its middle until one end points at a target.
 
     Attributes:
         end: 1 for the end to the left of its normal, -1 for the other.

@@ -1,1 +1,1 @@
-"""Lessons that are played without a student: to check them, and to know what happens in a step."""
+"""Lessons played without a student, to check them and to compute what happens in a step."""

@@ -1,4 +1,4 @@
-"""Tries to pass every task without what it asks; see `onpath.lessons.cheating`."""
+"""Tries to pass every task without doing what it asks; see `onpath.lessons.cheating`."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ class Attempt:
 
 
 def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
-    """Problems of tasks that can be passed without what they ask.
+    """Find tasks that can be passed without doing what they ask.
 
     Args:
         course, folder, store: see `course_check.play_course`.
     """
     ordered = sorted(_attempts(course, folder), key=lambda each: each.cheat.words)
     passed = dict[tuple[Path, str, str], Attempt]()  # the first with each control
-    for begin in range(0, len(ordered), TOGETHER):  # those that use the same loops stand together
+    for begin in range(0, len(ordered), TOGETHER):  # attempts with the same loops are adjacent
         for each in _passed(ordered[begin : begin + TOGETHER], store):
             passed.setdefault((each.file, each.task.id, each.cheat.control), each)
     for (file, task, control), each in sorted(passed.items(), key=lambda item: item[0]):
@@ -66,29 +66,29 @@ def _attempts(course: Course, folder: Path) -> Iterator[Attempt]:
         for index, step in enumerate(lesson.steps):
             for task in step.tasks():
                 for cheat in cheats(lesson, index, task, references[task.id]):
-                    yield Attempt(lesson, step, task, cheat, file)
+                    yield Attempt(lesson=lesson, step=step, task=task, cheat=cheat, file=file)
 
 
 def _passed(attempts: Iterable[Attempt], store: LoopCache) -> Iterator[Attempt]:
-    """Those that pass; all are played together."""
-    trying = [_Trying(attempt, store) for attempt in attempts]
-    while trying:
+    """The attempts that pass; all are played together."""
+    trials = [_Trial(attempt, store) for attempt in attempts]
+    while trials:
         for _ in range(LOOK):
-            for each in trying:
-                each.lab.drain()
-            advance_together(each.lab.frame(FRAME) for each in trying)
-        for each in trying:
-            each.look()
-        yield from (each.attempt for each in trying if each.passed)
-        trying = [each for each in trying if not each.over]
+            for trial in trials:
+                trial.lab.drain()
+            advance_together(trial.lab.frame(FRAME) for trial in trials)
+        for trial in trials:
+            trial.look()
+        yield from (trial.attempt for trial in trials if trial.passed)
+        trials = [trial for trial in trials if not trial.over]
 
 
-class _Trying:
+class _Trial:
     """An attempt that is being played.
 
     Attributes:
         passed: whether the task is passed.
-        over: whether there is nothing more to be seen.
+        over: whether the attempt has ended.
     """
 
     def __init__(self, attempt: Attempt, store: LoopCache) -> None:

@@ -96,7 +96,7 @@ def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
 
 
 def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
-    """Everything that is measured while a step's script is played.
+    """Everything measured while a step's script is played.
 
     Raises:
         ValueError: see `play`.
@@ -113,7 +113,7 @@ def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
 def _measured_runs(
     lesson: Lesson, store: LoopCache
 ) -> tuple[dict[int, Record], list[tuple[int, str]]]:
-    """What is measured in all scripts of a lesson, by the step's index; lines and faults."""
+    """Records of all scripts of a lesson, by the step's index, and faults with their lines."""
     runs, faults = dict[int, Record](), list[tuple[int, str]]()
     for index, step in enumerate(lesson.steps):
         try:
@@ -155,6 +155,6 @@ def _fault(
 
 
 def line_of_heading(heading: str, file: Path) -> int:
-    """The line of `[heading]` in a file of TOML; 1 if there is none."""
+    """The line of `[heading]` in a TOML file; 1 if there is none."""
     lines = read_text(file).split("\n")
     return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)

@@ -1,4 +1,4 @@
-"""All that is measured in a run of a script, frame by frame."""
+"""Everything measured while a script is played, frame by frame."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onpath.models.arrays import Array
 class Samples:
     """All quantities of both robots at every frame of a script, as the checks of a task read them.
 
-    Times go on through resets.
+    Times continue across resets.
     """
 
     def __init__(self, session: Session) -> None:
@@ -36,7 +36,10 @@ class Samples:
         if len(record.times[new]):
             self._times.append(record.times[new] + self._before)
             self._values.append(
-                {r: {q: c[new] for q, c in own.items()} for r, own in record.values.items()}
+                {
+                    robot: {name: column[new] for name, column in columns.items()}
+                    for robot, columns in record.values.items()
+                }
             )
         self._until = session.time
 
@@ -48,14 +51,14 @@ class Samples:
             names = dict.fromkeys(name for piece in self._values for name in piece[robot])
             for name in names:
                 columns = [
-                    piece[robot].get(name, np.full(len(own), np.nan))
-                    for own, piece in zip(self._times, self._values, strict=True)
+                    piece[robot].get(name, np.full(len(instants), np.nan))
+                    for instants, piece in zip(self._times, self._values, strict=True)
                 ]
                 values[robot][name] = np.concatenate(columns)
         return times, values
 
     def record(self, session: Session) -> Record:
-        """The whole of it as one run."""
+        """All samples, as the record of one run."""
         last = record_of(session, Beginning(self._run, self._until))
         times, values = self.columns()
         happenings = tuple(

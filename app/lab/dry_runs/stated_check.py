@@ -1,4 +1,4 @@
-"""Compares the numbers that a lesson's texts state of its runs with what was measured in them."""
+"""Compares the numbers that a lesson's texts state with those measured in its runs."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ def stated_faults(lesson: Lesson, runs: Mapping[int, Record]) -> Iterator[tuple[
 
 
 def _run_of(lesson: Lesson, index: int) -> int | None:
-    """The run that a step tells of: its own, else the last one before it, else the next one."""
+    """The run that a step describes: its own, else the last one before it, else the next one."""
     steps = range(len(lesson.steps))
     ordered = [*range(index, -1, -1), *steps[index + 1 :]]
     return next((at for at in ordered if lesson.steps[at].script is not None), None)
 
 
 def _fault(stated: Stated, run: Record) -> str:
-    """Why a number is not that of a run; empty if it is."""
+    """Why a stated number differs from the run's; empty if it does not."""
     chosen = run.chosen(stated.robot, Window(during=stated.during)) & in_span(run.times, stated)
     measured = statistic(run, stated.robot, stated.quantity, stated.stat, chosen)
     what = f"{stated.stat} {stated.quantity} {stated.robot}"

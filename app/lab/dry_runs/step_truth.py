@@ -11,9 +11,9 @@ from onpath.lessons.schema import Lesson, Step
 
 
 def computed_truth(lesson: Lesson, index: int) -> Truth | None:
-    """Play the demonstration of the prediction that step `index` asks, and record it.
+    """Play the demonstration that answers the prediction of step `index`, and record it.
 
-    Returns None if the lesson does not show what was predicted, or cannot.
+    Returns None if the lesson has no such demonstration, or it cannot be played.
     """
     predictions, shown = lesson.steps[index].predictions(), _shown(lesson, index)
     if not predictions or shown is None or shown.script is None:
@@ -31,7 +31,7 @@ def computed_truth(lesson: Lesson, index: int) -> Truth | None:
 
 
 def _shown(lesson: Lesson, index: int) -> Step | None:
-    """The step that shows it: that which asks, or the next one if that is a demonstration."""
+    """The step that shows the outcome: the one that asks, or the next if it is a demonstration."""
     candidates = [lesson.steps[index], *lesson.steps[index + 1 : index + 2]]
     for step in candidates:
         if step.script is not None and (step is candidates[0] or step.kind == "run"):

@@ -35,7 +35,7 @@ from onpath.models.systems.robots import BalancedLinkage, Robot
 
 MOST_TICKS = 3000  # maximum ticks to use
 MEASURED = RIGHT  # the side whose record is used; any would do, under any law
-# the robot is the same while these are unchanged
+# settings of the plant and its sensors; while they are unchanged, the robot is the same
 PLANT = ("plant", "coulomb", "stiction", "encoder_step", "sensor_noise")
 UNITS = {"M": "kg m²", "b": "N m s", "c": "N m", "G": "N m"}
 POOR = 0.05  # unexplained share of the torque above which the report warns
@@ -43,10 +43,10 @@ POOR = 0.05  # unexplained share of the torque above which the report warns
 
 @dataclass(frozen=True, slots=True)
 class Learned:
-    """What was learned of a robot.
+    """What was learned about a robot.
 
     Attributes:
-        robot: as it was then.
+        robot: the robot at that time.
         model: the estimates.
         seconds: duration of the data, [s].
     """
@@ -153,28 +153,28 @@ def _rows(robot: Robot, segments: list[Segment]) -> Array:
 
 @lru_cache(maxsize=4)
 def _loop(robot: Robot, kind: Kind) -> InterpretedLoop:
-    """A loop for one thread alone: that of `identification`."""
+    """A loop for the identification thread only."""
     return InterpretedLoop(kernel_of(robot, kind))
 
 
 def _sentence(learned: Learned, before: Parameters, after: Parameters, words: Words) -> str:
     """Report of what was identified, applied and left out."""
-    robot, found, duration = learned.robot, learned.model, learned.seconds
+    robot, model, duration = learned.robot, learned.model, learned.seconds
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
     values = "; ".join(
-        words("identified.value", value=_value(found, name), before=f"{believed[name]:.4f}")
+        words("identified.value", value=_value(model, name), before=f"{believed[name]:.4f}")
         for name in INERTIA
     )
     text = words("identified.found", seconds=f"{duration:.1f}", values=values)
     limited = [name for name in INERTIA if _at_end(after, name)]
     if limited:
         text += words("identified.limited", names=words("identified.and").join(limited))
-    further = [name for name in (*DRY, *BALANCE) if _matters(found, name)]
+    further = [name for name in (*DRY, *BALANCE) if _matters(model, name)]
     if further:
-        values = ", ".join(_value(found, name) for name in further)
+        values = ", ".join(_value(model, name) for name in further)
         text += words("identified.also", values=values)
-    if found.unexplained > POOR:
-        text += words("identified.unexplained", percent=f"{100 * found.unexplained:.0f}")
+    if model.unexplained > POOR:
+        text += words("identified.unexplained", percent=f"{100 * model.unexplained:.0f}")
     return text
 
 

@@ -1,7 +1,7 @@
 """Identification in a thread of its own, since it takes longer than a frame.
 
-All labs share the thread. Each waits for one identification at most, and the thread rests after
-each as long as it took, so that no lab can delay others by asking all the time.
+All labs share the thread. A lab has at most one identification under way, and the thread rests
+after each for as long as it took, so that no lab can delay the others by asking continually.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _thread = ThreadPoolExecutor(1, "identification")
 
 
 class Identification:
-    """What one lab has asked to be identified.
+    """The identification that one lab has requested.
 
     Args:
         at_once: whether to wait for the result.
@@ -39,22 +39,22 @@ class Identification:
         Raises:
             ValueError: see `learn`.
         """
-        asked = self._under_way
-        if asked is None or not (self._at_once or asked.done()):
+        future = self._under_way
+        if future is None or not (self._at_once or future.done()):
             return None
         self._under_way = None
-        return asked.result()
+        return future.result()
 
     @property
     def is_under_way(self) -> bool:
-        """Whether there will be a result."""
+        """Whether a result is still to come."""
         return self._under_way is not None and not self._under_way.done()
 
 
-def _learn(asked: Future[Learned], robot: Robot, history: HistoryCopy) -> None:
+def _learn(future: Future[Learned], robot: Robot, history: HistoryCopy) -> None:
     begun = time.monotonic()
     try:
-        asked.set_result(learn(robot, history))
+        future.set_result(learn(robot, history))
     except Exception as error:
-        asked.set_exception(error)
+        future.set_exception(error)
     time.sleep(time.monotonic() - begun)

@@ -1,1 +1,1 @@
-"""Closed loops of labs: made in the background, kept, and waited for by changes of laws."""
+"""The labs' closed loops: compiled in the background, cached, and awaited by changes of law."""

@@ -1,8 +1,8 @@
 """Keys that wait to be compiled; those requested recently come first.
 
-A lab asks in every frame for a loop that it lacks. What nobody has asked for lately is overtaken by
-what somebody needs now, and given up once many wait. So no lab that changes its settings without
-end holds up another one.
+A lab asks in every frame for a loop that it lacks. A key that no lab has asked for lately is
+overtaken by those that are needed now, and dropped once too many wait. So a lab that keeps changing
+its settings does not hold up the others.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from collections.abc import Callable
 from typing import Generic, TypeVar
 
 K = TypeVar("K")
-MOST = 32  # keys that wait; beyond that, the one asked for longest ago is given up
+MOST = 32  # keys that wait; beyond that, the one asked for longest ago is dropped
 LATELY = 0.5  # [s]
 
 
 class CompileQueue(Generic[K]):
-    """First come, first served among the keys that are asked for lately. Thread-safe.
+    """First come, first served among the keys asked for recently. Thread-safe.
 
     Args:
         clock: monotonic time, [s].
@@ -26,7 +26,7 @@ class CompileQueue(Generic[K]):
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
-        self._asked: dict[K, float] = {}  # when last, [s]; in the order in which they came
+        self._asked: dict[K, float] = {}  # time of the last request, [s]; in order of arrival
         self._lock = threading.Lock()
 
     def __contains__(self, key: K) -> bool:
@@ -50,6 +50,6 @@ class CompileQueue(Generic[K]):
             if not self._asked:
                 return None
             latest = max(self._asked.values())
-            found = next(key for key, at in self._asked.items() if at >= latest - LATELY)
-            del self._asked[found]
-            return found
+            chosen = next(key for key, at in self._asked.items() if at >= latest - LATELY)
+            del self._asked[chosen]
+            return chosen

@@ -1,8 +1,8 @@
-"""Changes of the control laws of one lab, each as soon as the loop that it needs is made.
+"""Changes of one lab's control laws, each made as soon as the loop that it needs is ready.
 
-A law that is chosen comes when its loop can run; the old law goes on until then. A typed law that
-is in force may need another loop, after a change of the robot or of a parameter: then time stands
-still until that is made. Nothing here waits.
+A chosen law takes effect when its loop can run; until then the old law stays in force. A typed law
+in force may need another loop after a change of the robot or of a parameter: simulated time then
+stands still until that loop is ready. Nothing here blocks.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ from onpath.models.systems.robots import Robot
 
 def suits(law: str, robot: Robot, parameters: Parameters) -> bool:
     """Whether a law can be used with a robot and its controlled output."""
-    own, composite = law_named(law), getattr(parameters, "law", "") == "composite"
-    return own.suits(robot.system) and (own.commands_acceleration or not composite)
+    entry, composite = law_named(law), getattr(parameters, "law", "") == "composite"
+    return entry.suits(robot.system) and (entry.commands_acceleration or not composite)
 
 
 class LawChanges:
-    """The laws that are to come, and the loops that are lacking.
+    """The pending changes of law, and the loops that they lack.
 
     Args:
         store: provides the loops.
@@ -37,7 +37,7 @@ class LawChanges:
     Attributes:
         coming: laws whose loops are being made, by side.
         stands_still: whether time waits for them, because a run begins with them.
-        refusals: why typed laws could not be used, as far as not reported yet.
+        refusals: why typed laws could not be used; those not yet reported.
     """
 
     def __init__(self, store: LoopCache, change: Callable[[str, str], None]) -> None:
@@ -45,22 +45,23 @@ class LawChanges:
         self.coming: dict[str, str] = {}
         self.stands_still = False
         self.refusals: list[ValueError] = []
-        self._asked = False  # for loops of typed laws, in the last frame
+        self._asked = False  # whether the last frame asked for loops of typed laws
 
     def begin(
         self, laws: Mapping[str, str], robot: Robot, parameters: Parameters, curve: Curve
     ) -> dict[str, str]:
-        """The laws with which a run can begin now, when these are wanted.
+        """The laws with which a run can begin now, given the chosen ones.
 
-        A law that does not suit the robot is replaced by that of a new lab. So is a typed law whose
-        loop is not made yet, and time stands still until it is there.
+        A law that does not suit the robot is replaced by a new lab's. So is a typed law whose loop
+        is not ready, and time stands still until it is.
         """
-        both = {**DEFAULT_LAWS, **laws}
+        chosen = {**DEFAULT_LAWS, **laws}
         first = {
             side: law if suits(law, robot, parameters) else DEFAULT_LAWS[side]
-            for side, law in both.items()
+            for side, law in chosen.items()
         }
-        self.coming = {b: law for b, law in self.coming.items() if suits(law, robot, parameters)}
+        coming = self.coming.items()
+        self.coming = {side: law for side, law in coming if suits(law, robot, parameters)}
         late = dict[str, str]()
         for side, law in list(first.items()):
             if is_text(law):
@@ -91,8 +92,10 @@ class LawChanges:
         typed = [side for side, run in runs.items() if run.is_typed]
         if not (typed or self.coming or self._asked):
             return True
-        found = {b: runs[b].lacks(parameters, curve, pushes[b]) for b in typed}
-        lacking = {b: (runs[b].robot, kind) for b, kind in found.items() if kind is not None}
+        kinds = {side: runs[side].lacks(parameters, curve, pushes[side]) for side in typed}
+        lacking = {
+            side: (runs[side].robot, kind) for side, kind in kinds.items() if kind is not None
+        }
         coming = {
             side: (runs[side].robot, kind_of(law, parameters, curve, pushes[side]))
             for side, law in self.coming.items()
@@ -110,8 +113,9 @@ class LawChanges:
         return all(goes_on) and not self.stands_still
 
     def _goes_on(self, side: str, run: ClosedLoopRun, key: Key) -> bool:
-        """Whether a typed law can go on; if it never can, the side gets that of a new lab."""
-        if run.kind == key[1] or run.law != key[1].controller:  # or it has just been changed
+        """Whether a typed law can go on; if it never can, the side gets a new lab's law."""
+        _, kind = key
+        if run.kind == kind or run.law != kind.controller:  # it has just been changed
             return True
         ready = self._is_ready(key)
         if ready is None:
@@ -119,16 +123,17 @@ class LawChanges:
         return ready is not False
 
     def _ask(self, keys: Sequence[Key]) -> None:
-        """Ask for the loops of typed laws among these; none are made for this lab besides."""
-        typed = [key for key in keys if is_text(key[1].controller)]
+        """Ask for the loops of typed laws among these, and cancel this lab's other requests."""
+        typed = [(robot, kind) for robot, kind in keys if is_text(kind.controller)]
         if typed or self._asked:
             self._store.want(self, typed)
         self._asked = bool(typed)
 
     def _is_ready(self, key: Key) -> bool | None:
-        """Whether a loop is made; None if it cannot be made, which the user is told."""
+        """Whether a loop is ready; None if it cannot be made, of which the user is told."""
+        robot, kind = key
         try:
-            return self._store.is_ready(*key)
+            return self._store.is_ready(robot, kind)
         except ValueError as error:
             self.refusals.append(error)
             return None

@@ -22,29 +22,28 @@ from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
 MOST = 8  # compiled loops that are kept, in use or not; 0.1 to 0.4 MB each
-MOST_REFUSED = 256  # kinds of loops that are known not to be compilable; others are tried again
+MOST_REFUSED = 256  # loops remembered as not compilable; forgotten ones are tried again
 
 
 class LoopCache:
     """Loops by robot and kind. `get` never waits for compilation.
 
     Labs share the loops of the registry's laws. A loop exists as long as a lab uses it; the
-    compiled ones that were used last are kept longer. For those of typed laws see `TypedLoops`.
+    compiled loops used last are kept longer. For the loops of typed laws see `TypedLoops`.
 
     Args:
-        at_once: whether loops of typed laws are made while they are asked for, not in the
-            background.
+        at_once: whether loops of typed laws are made on request, not in the background.
         clock: monotonic time, [s].
 
     Attributes:
-        at_once: see above; whoever uses the loops does other long work at once, too.
+        at_once: see above; users of the cache then do their other long work at once, too.
     """
 
     def __init__(self, at_once: bool = False, clock: Callable[[], float] = time.monotonic) -> None:
         self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
-        self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the one used last comes last
+        self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the most recent last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
-        self._refused = dict[Key, None]()  # cannot be compiled; in the order in which that was seen
+        self._refused = dict[Key, None]()  # not compilable; in order of discovery
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.RLock()
@@ -53,19 +52,19 @@ class LoopCache:
         """The fastest loop available now. Call from the simulation thread only.
 
         Args:
-            known: one that the caller has, which may not be kept here any more.
+            known: a loop that the caller has, which may no longer be kept here.
         """
         key = (robot.core, kind)
         if is_text(kind.controller):
             return self._typed.find(key) or known or InterpretedLoop(kernel_of(robot, kind))
-        found = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
+        loop = self._find(key) or self._share(key, InterpretedLoop(kernel_of(robot, kind)))
         self.prepare(robot, kind)
-        return found
+        return loop
 
     def is_ready(self, robot: Robot, kind: Kind) -> bool:
         """Whether `get` returns a loop at once.
 
-        If not, that of a registry's law is made in the background; for others see `want`.
+        If not, the loop of a registry's law is made in the background; for others see `want`.
 
         Raises:
             ValueError: a typed law cannot be used with this robot and these settings.
@@ -86,9 +85,9 @@ class LoopCache:
             self._typed.want(lab, [(robot.core, kind) for robot, kind in keys])
 
     def prepare(self, robot: Robot, kind: Kind) -> None:
-        """Compile a loop of a registry's law in the background, unless that is done.
+        """Compile a loop of a registry's law in the background, unless it is compiled.
 
-        Ask again in every frame in which it is lacking: see `CompileQueue`.
+        Call again in every frame in which it is lacking: see `CompileQueue`.
         """
         key = (robot.core, kind)
         if is_text(kind.controller) or isinstance(self._made.get(key), CompiledLoop):
@@ -109,12 +108,12 @@ class LoopCache:
         with self._lock:
             if self._pool is not None:
                 return self._pool.submit(act)
-        ended = Future[None]()
-        ended.cancel()
-        return ended
+        cancelled = Future[None]()
+        cancelled.cancel()
+        return cancelled
 
     def _find(self, key: Key) -> Loop | None:
-        """The loop that was made, which then counts as the one used last."""
+        """The loop made for a key, if any; it then counts as the one used last."""
         with self._lock:
             if key in self._kept:
                 self._kept.move_to_end(key)
@@ -123,8 +122,8 @@ class LoopCache:
     def _share(self, key: Key, loop: Loop) -> Loop:
         """Let all labs use a loop, and keep it if it is compiled.
 
-        An interpreted one is not kept: those of labs that wait for compiled ones, and ask in every
-        frame, would displace a compiled one before its lab asks again.
+        An interpreted loop is not kept: labs that wait for a compiled loop ask in every frame, and
+        their interpreted ones would displace a compiled loop before its lab asks again.
         """
         with self._lock:
             self._made[key] = loop
@@ -137,17 +136,18 @@ class LoopCache:
     def _compile_next(self) -> None:
         with self._lock:
             key = self._waiting.next()
-            if key is None:  # given up
+            if key is None:  # dropped
                 return
             self._making.add(key)
+        robot, kind = key
         try:
-            kernel = kernel_of(*key)
+            kernel = kernel_of(robot, kind)
             meanwhile = self._find(key) or self._share(key, InterpretedLoop(kernel))
             self._share(key, translate_loop(kernel))
             del meanwhile  # nothing else refers to it, unless a lab uses it
-            prepare_speed_limit(key[0])
-        except Exception as error:  # its labs continue with the interpreted loop
-            log.warning("%s is not compiled, it is interpreted: %s", key[1].controller, error)
+            prepare_speed_limit(robot)
+        except Exception as error:  # labs continue with the interpreted loop
+            log.warning("%s is not compiled, it is interpreted: %s", kind.controller, error)
             self._refused[key] = None
             if len(self._refused) > MOST_REFUSED:
                 del self._refused[next(iter(self._refused))]

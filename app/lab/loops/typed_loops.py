@@ -1,7 +1,7 @@
 """Loops of typed laws, of which there may be any number: few are kept, and few are made at a time.
 
-The loops used last are kept. Each lab says in every frame which ones it lacks; what it does not
-want any more is not made, and a lab that wants many in a short time has to wait.
+The loops used last are kept. Each lab says in every frame which ones it lacks; a loop that it no
+longer wants is not made, and a lab that wants many in a short time has to wait.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ log = logging.getLogger(__name__)
 Key = tuple[Robot, Kind]
 Submit = Callable[[Callable[[], None]], "Future[None]"]
 MOST = 64  # loops that are kept; 0.1 to 0.4 MB each
-MOST_MADE, WITHIN = 8, 10.0  # loops that are begun for one lab, in these seconds
+MOST_MADE, WITHIN = 8, 10.0  # maximum number of loops begun for one lab, within this time, [s]
 
 
 @dataclass(slots=True)
-class Asked:
-    """What was made for a lab.
+class Requests:
+    """The loops that one lab wants.
 
     Attributes:
-        waiting: what it lacked when it was last asked.
+        waiting: the loops that it lacked in the last frame.
         begun: when the latest loops for it were begun, [s].
     """
 
@@ -52,11 +52,9 @@ class TypedLoops:
 
     def __init__(self, submit: Submit, clock: Callable[[], float]) -> None:
         self._submit, self._clock = submit, clock
-        self._made: OrderedDict[Key, Loop | CodedError] = (
-            OrderedDict()
-        )  # the one used last comes last
+        self._made = OrderedDict[Key, Loop | CodedError]()  # the one used last comes last
         self._making: dict[Key, Future[None]] = {}
-        self._labs: WeakKeyDictionary[object, Asked] = WeakKeyDictionary()
+        self._labs: WeakKeyDictionary[object, Requests] = WeakKeyDictionary()
         self._lock = threading.RLock()
 
     def __len__(self) -> int:
@@ -77,22 +75,21 @@ class TypedLoops:
         return found
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
-        """Make these in the background, and nothing else that the lab has wanted before.
+        """Make these loops in the background, and cancel the lab's other requests.
 
         Another lab that wants the same says so in its next frame.
         """
         with self._lock:
-            asked = self._labs.setdefault(lab, Asked())
-            for key in asked.waiting.difference(keys):
+            requests = self._labs.setdefault(lab, Requests())
+            for key in requests.waiting.difference(keys):
                 if key in self._making and self._making[key].cancel():
                     del self._making[key]
-            asked.waiting = {key for key in keys if key not in self._made}
-            for key in asked.waiting:
-                if key not in self._making and self._may_begin(asked):
-                    self._making[key] = self._submit(partial(self._make, key, asked.begun))
+            requests.waiting = {key for key in keys if key not in self._made}
+            for key in requests.waiting:
+                if key not in self._making and self._may_begin(requests.begun):
+                    self._making[key] = self._submit(partial(self._make, key, requests.begun))
 
-    def _may_begin(self, asked: Asked) -> bool:
-        begun = asked.begun
+    def _may_begin(self, begun: deque[float]) -> bool:
         return len(begun) < MOST_MADE or self._clock() - begun[0] >= WITHIN
 
     def _make(self, key: Key, begun: deque[float]) -> None:
@@ -105,8 +102,9 @@ class TypedLoops:
 
     def make(self, key: Key) -> None:
         """Make a loop: an interpreted one first, and then the compiled one in its place."""
+        robot, kind = key
         try:
-            kernel = kernel_of(*key)
+            kernel = kernel_of(robot, kind)
             self._put(key, InterpretedLoop(kernel))
         except CodedError as refused:
             self._put(key, refused)

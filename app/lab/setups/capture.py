@@ -1,4 +1,4 @@
-"""The set-up that a session has, as data."""
+"""Captures the set-up of a session as data."""
 
 from __future__ import annotations
 
@@ -26,46 +26,50 @@ DIGITS = 6
 def capture(session: Session) -> Setup:
     """The current set-up of a session; a path being dragged counts only after the drag."""
     robots = {**session.earlier, session.entry.name: session.robot_settings()}
-    found = {name: _captured(name, own, session.presets) for name, own in sorted(robots.items())}
+    captured = {
+        name: _captured(name, settings, session.presets)
+        for name, settings in sorted(robots.items())
+    }
+    chosen = session.chosen_laws.items()
     return Setup(
         robot=session.entry.name,
-        robots={name: robot for name, robot in found.items() if robot != RobotSetup()},
+        robots={name: robot for name, robot in captured.items() if robot != RobotSetup()},
         rate=_rounded(session.rate),
         copy=session.copy,
         exaggeration=_rounded(session.exaggeration),
-        laws={b: law for b, law in session.chosen_laws.items() if law != DEFAULT_LAWS[b]},
+        laws={side: law for side, law in chosen if law != DEFAULT_LAWS[side]},
         hold=session.hold_direction,
     )
 
 
-def _captured(name: str, own: RobotSettings, paths: Mapping[str, PathDesign]) -> RobotSetup:
+def _captured(name: str, settings: RobotSettings, paths: Mapping[str, PathDesign]) -> RobotSetup:
     """The set-up of one robot."""
-    wall = own.wall
+    editor, wall = settings.editor, settings.wall
     return RobotSetup(
-        dict(_differences(name, own.parameters)),
-        capture_path(own.editor.design, paths) if own.editor else Path(),
-        dict(_start_of(own.start)),
-        () if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
+        parameters=dict(_differences(name, settings.parameters)),
+        path=capture_path(editor.design, paths) if editor else Path(),
+        start=dict(_start_of(settings.start)),
+        wall=() if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
     )
 
 
 @lru_cache(maxsize=128)  # every lab is captured once a second
 def _start_of(start: Start) -> dict[str, float]:
     """The numbers of a start that are not 0."""
-    found = {n: _rounded(value) for n, value in asdict(start).items()}
-    return {n: value for n, value in found.items() if value}
+    numbers = {name: _rounded(value) for name, value in asdict(start).items()}
+    return {name: value for name, value in numbers.items() if value}
 
 
 @lru_cache(maxsize=256)
-def _differences(name: str, own: Parameters) -> dict[str, int | float | str]:
-    """What differs from the parameters of a new lab with this robot."""
-    usual, found = values_of(ROBOTS[name].parameters()), dict[str, int | float | str]()
-    known = specs(own)
-    for name, value in values_of(own).items():
-        spec, default = known[name], usual[name]
+def _differences(robot: str, parameters: Parameters) -> dict[str, int | float | str]:
+    """The parameters that differ from those of a new lab with this robot."""
+    defaults, differing = values_of(ROBOTS[robot].parameters()), dict[str, int | float | str]()
+    known = specs(parameters)
+    for name, value in values_of(parameters).items():
+        spec, default = known[name], defaults[name]
         if value != default and kept(spec, value) != default:
-            found[name] = kept(spec, value)
-    return found
+            differing[name] = kept(spec, value)
+    return differing
 
 
 def kept(spec: Spec, value: Any) -> int | float | str:

@@ -1,8 +1,8 @@
-"""What was kept or shared when defaults, names or checks of paths were others: all that reads it.
+"""Reads what was stored or shared under earlier defaults, names and path checks.
 
-Set-ups are stored as differences from the defaults of their time. Who changes a default adds a line
-to `CHANGES`, with the next version; a test fails until it is there. A parameter that is added, and
-changes the motion, has a line, too: its former value is the one with which the motion is as before.
+Set-ups are stored as differences from the defaults of their time. Whoever changes a default adds a
+line to `CHANGES` with the next version; a test fails until it is there. A new parameter that
+changes the motion needs a line, too: its former value is the one that leaves the motion as it was.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 
 UNTIL = date(2027, 9, 30)
-"""Until the end of the academic year these readers stay. Then `CHANGES` up to that day and
-`RENAMED` may be deleted: a set-up that needs them is refused as one that is not valid."""
+"""These readers stay until the end of the academic year. Then the present `CHANGES` and `RENAMED`
+may be deleted, and a set-up that needs them is refused as invalid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Change:
     Attributes:
         since: version of the defaults in which it has its present value.
         name: of the parameter.
-        former: its value before.
-        robots: names of those whose default it was; empty: of all that have the parameter.
+        former: its previous value.
+        robots: names of the robots concerned; empty for all that have the parameter.
     """
 
     since: int
@@ -51,19 +51,19 @@ CHANGES = (
 )
 """By version, oldest first."""
 DEFAULTS = max(change.since for change in CHANGES)
-"""Present version of the defaults; stored data that name none are of version 1."""
+"""Present version of the defaults; stored data without a version are of version 1."""
 RENAMED: Mapping[tuple[str, Any], str] = {("plant", "as_printed"): "unit_modes"}
 """(Parameter, former name of an option) -> its present name."""
 
 
 def former_defaults(robot: str, version: int) -> dict[str, Any]:
-    """A robot's parameters whose defaults were others in a version, with their values then."""
-    found = dict[str, Any]()
+    """A robot's parameters whose defaults were different in a version, with their values then."""
+    former = dict[str, Any]()
     for change in CHANGES:
         concerned = robot in change.robots if change.robots else _has(robot, change.name)
         if change.since > version and concerned:
-            found.setdefault(change.name, change.former)
-    return found
+            former.setdefault(change.name, change.former)
+    return former
 
 
 def _has(robot: str, name: str) -> bool:
@@ -76,35 +76,37 @@ def brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, Robo
     Args:
         version: of the defaults that they differ from.
     """
-    found = dict(robots)
+    current = dict(robots)
     for name in dict.fromkeys([*ROBOTS, *robots]):
         former = former_defaults(name, version) if name in ROBOTS else {}
         robot = robots.get(name, RobotSetup())
-        own = {**former, **robot.parameters}
-        own = {each: RENAMED.get((each, value), value) for each, value in own.items()}
-        if own != robot.parameters:
-            found[name] = msgspec.structs.replace(robot, parameters=own)
-    return found
+        parameters = {
+            parameter: RENAMED.get((parameter, value), value)
+            for parameter, value in {**former, **robot.parameters}.items()
+        }
+        if parameters != robot.parameters:
+            current[name] = msgspec.structs.replace(robot, parameters=parameters)
+    return current
 
 
 def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
-    """A kept set-up with the circle in place of every path that is refused today, and why it is.
+    """A stored set-up with the circle in place of each path that is now refused, and the reasons.
 
-    A path that was accepted when it was kept may be refused now. A start that is not possible, too,
-    is replaced by that of a new lab.
+    A path that was accepted when it was stored may be refused now. A start that is no longer
+    possible is replaced by a new lab's.
 
     Raises:
         ValueError: the set-up is impossible for another reason.
     """
-    robots, told = dict(setup.robots), tuple[Message, ...]()
+    robots, messages = dict(setup.robots), list[Message]()
     for name, wanted in planned(setup, presets()).items():
         if reasons := wanted.path_faults:
             kept = robots.get(name, RobotSetup())
             robots[name] = msgspec.structs.replace(kept, path=Path(), start={})
-            told = (*told, *reasons)
+            messages += reasons
         elif wanted.start != ON_PATH:
             try:
                 wanted.check_start()
             except ValueError:
                 robots[name] = msgspec.structs.replace(robots[name], start={})
-    return msgspec.structs.replace(setup, robots=robots), told
+    return msgspec.structs.replace(setup, robots=robots), tuple(messages)

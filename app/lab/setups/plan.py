@@ -76,7 +76,7 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
         ValueError: an unknown name, a number out of range, points that do not form a path, or a
             law that does not suit the robot.
     """
-    msgspec.convert(plain(setup), Setup)  # one made in Python has not been validated
+    msgspec.convert(plain(setup), Setup)  # a set-up made in Python has not been validated
     _within("speed", setup.rate, RATES)
     _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
     robots = dict(setup.robots)
@@ -99,8 +99,17 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
         raise unknown_name(min(unknown), list(asdict(ON_PATH)), "start")
     if len(robot.wall) not in (0, 3):
         raise CodedError("error.half_a_wall")
-    start, wall = Start(**robot.start), Wall(*robot.wall) if robot.wall else None
-    return Wanted(ROBOTS[name], parameters, _design(robot.path, paths), start, wall)
+    start, wall = Start(**robot.start), None
+    if robot.wall:
+        z1, z2, angle = robot.wall
+        wall = Wall(z1, z2, angle)
+    return Wanted(
+        entry=ROBOTS[name],
+        parameters=parameters,
+        design=_design(robot.path, paths),
+        start=start,
+        wall=wall,
+    )
 
 
 def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:

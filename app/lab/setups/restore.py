@@ -1,4 +1,4 @@
-"""Put a session into the state that a set-up describes."""
+"""Restores a set-up in a session."""
 
 from __future__ import annotations
 

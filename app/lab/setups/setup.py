@@ -84,8 +84,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, msgspec.Struct):
         new = type(value)()
         names = zip(value.__struct_encode_fields__, value.__struct_fields__, strict=True)
-        own = {stored: (getattr(value, name), getattr(new, name)) for stored, name in names}
-        return {stored: plain(now) for stored, (now, before) in own.items() if now != before}
+        fields = {stored: (getattr(value, name), getattr(new, name)) for stored, name in names}
+        return {stored: plain(now) for stored, (now, default) in fields.items() if now != default}
     if isinstance(value, Mapping):
         return {name: plain(item) for name, item in value.items()}
     return list(value) if isinstance(value, tuple) else value

@@ -15,5 +15,9 @@ def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
     """
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
-    own = {robot: RobotSetup(dict(scene.set), path, scene.start.numbers)}
-    return Setup(robot, own, exaggeration=exaggeration, laws=scene.laws.named)
+    return Setup(
+        robot=robot,
+        robots={robot: RobotSetup(dict(scene.set), path, scene.start.numbers)},
+        exaggeration=exaggeration,
+        laws=scene.laws.named,
+    )

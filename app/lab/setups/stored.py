@@ -1,6 +1,6 @@
 """Set-ups as plain data.
 
-Data name the version of the defaults that they differ from, so that those of an earlier version
+The data name the version of the defaults from which they differ, so that data of an earlier version
 keep their meaning.
 """
 
@@ -43,14 +43,14 @@ def from_data(data: Any) -> Setup:
     """
     stored = msgspec.convert(data, StoredSetup)
     robots = brought_up(stored.robots, stored.defaults)
-    own: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
-    setup = Setup(**{**own, "robots": robots})
+    fields: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
+    setup = Setup(**{**fields, "robots": robots})
     entry = planned(setup, presets())[setup.robot].entry
     return msgspec.structs.replace(setup, laws=checked_laws(setup.laws, entry))
 
 
 def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
-    """A kept set-up without the laws that are not here any more and their gains, and their names.
+    """A stored set-up without laws that no longer exist and their gains, and the names of both.
 
     The data need not be valid otherwise.
     """
@@ -60,14 +60,15 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
         return data, ()
     known = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
     gains = {n for robot in stored.robots.values() for n in robot.parameters if n not in known}
-    absent = {b: law for b, law in stored.laws.items() if not is_text(law) and law not in LAWS}
+    chosen = stored.laws.items()
+    absent = {side: law for side, law in chosen if not is_text(law) and law not in LAWS}
     robots = {
         name: msgspec.structs.replace(robot, parameters=_without(robot.parameters, gains))
         for name, robot in stored.robots.items()
     }
     laws = _without(stored.laws, absent)
-    found = msgspec.structs.replace(stored, robots=robots, laws=laws)
-    return msgspec.to_builtins(found), (*sorted({*absent.values()}), *sorted(gains))
+    remaining = msgspec.structs.replace(stored, robots=robots, laws=laws)
+    return msgspec.to_builtins(remaining), (*sorted({*absent.values()}), *sorted(gains))
 
 
 def _without(values: Mapping[str, T], names: Collection[str]) -> dict[str, T]:

@@ -7,17 +7,16 @@ from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.place import Place, place_at
 
-INTERVAL = 1.0  # [s] of simulated time between places that are shown, so that one can read them
+INTERVAL = 1.0  # [s] of simulated time between updates, so that the numbers can be read
 
 
 def law_places(session: Session, time: float, before: PageSnapshot | None) -> LawPlaces:
     """The places of the robots at the instant that is shown, each where its law aims.
 
-    They are taken anew after `INTERVAL`, or when something else has changed, or in a lab that
-    stands still.
+    They are updated after `INTERVAL`, when anything else has changed, and while the lab is paused.
 
     Args:
-        time: that is shown, [s].
+        time: the time that is shown, [s].
         before: the previous whole snapshot of the same lab.
     """
     aims = {side: law_named(law) for side, law in session.chosen_laws.items()}
@@ -33,9 +32,9 @@ def law_places(session: Session, time: float, before: PageSnapshot | None) -> La
     instant = session.instant() if past is None else past.instant()
     curve = session.editor.curve if past is None else past.curve
     fields = session.sample_layout.unpack(instant.sample)
-    found = dict[str, Place]()
+    places = dict[str, Place]()
     for row, side in enumerate(session.runs):
         if side in aims:
             theta, rate = (float(fields[name][row, 0]) for name in (aims[side].aim, "theta_rate"))
-            found[side] = place_at(robot, parameters, curve, theta, rate)
-    return LawPlaces(time, version, found)
+            places[side] = place_at(robot, parameters, curve, theta, rate)
+    return LawPlaces(time, version, places)

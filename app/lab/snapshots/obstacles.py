@@ -27,7 +27,7 @@ def drawn_wall(session: Session) -> Array:
         return NOWHERE
     if session.viewing is None and session.wall is not None:
         return _placed(session.robot, session.wall)
-    return _rows(session.robot, *lifted)
+    return _wall_rows(session.robot, lifted)
 
 
 def drawn_brakes(session: Session) -> dict[str, Array]:
@@ -37,18 +37,19 @@ def drawn_brakes(session: Session) -> dict[str, Array]:
     pushes, rows = session.forces.pushes, dict[str, Array]()
     for side in SIDES:
         if side in session.forces.held and (hold := pushes[side].hold) is not None:
+            anchor, blocked = hold
             slides = pushes[side].hold_normal is None
-            rows[side] = _brake_rows(session.robot, *(each.tobytes() for each in hold), slides)
+            rows[side] = _brake_rows(session.robot, anchor.tobytes(), blocked.tobytes(), slides)
     return rows
 
 
 @lru_cache(maxsize=256)
 def _brake_rows(robot: Robot, anchor: bytes, blocked: bytes, slides: bool) -> Array:
     """One of `Snapshot.brakes`; the same array for the same arguments."""
-    place, way = np.frombuffer(anchor), np.frombuffer(blocked)
+    point, direction = np.frombuffer(anchor), np.frombuffer(blocked)
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
     origin, right, up = robot.place(robot.frame.lift(corners))
-    at, ahead = robot.place(np.stack([place, place + way]))
+    at, ahead = robot.place(np.stack([point, point + direction]))
     free = np.cross(np.cross(right - origin, up - origin), ahead - at)
     return np.stack([at, ahead - at, slides * free / np.linalg.norm(free)])
 
@@ -56,7 +57,7 @@ def _brake_rows(robot: Robot, anchor: bytes, blocked: bytes, slides: bool) -> Ar
 def wall_then(robot: Robot, past: Segment) -> Array:
     """`Motion.wall` during a segment of a history."""
     lifted = _lifted_then(robot, past)
-    return NOWHERE if lifted is None else _rows(robot, *lifted)
+    return NOWHERE if lifted is None else _wall_rows(robot, lifted)
 
 
 def wall_state(session: Session) -> WallState | None:
@@ -68,10 +69,8 @@ def wall_state(session: Session) -> WallState | None:
     if lifted is not None:
         robot, n = session.robot, session.robot.system.n
         past = None if session.viewing is None else session.history.at(session.viewing)
-        instant, plant = (
-            past.instant() if past else session.instant(),
-            robot.plant(session.parameters),
-        )
+        instant = past.instant() if past else session.instant()
+        plant = robot.plant(session.parameters)
         for side, state in zip(SIDES, instant.states, strict=True):
             forces[side] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
     return WallState(wall.z1, wall.z2, wall.angle, forces)
@@ -80,7 +79,13 @@ def wall_state(session: Session) -> WallState | None:
 def start_state(session: Session) -> StartState:
     """Numbers of the start of the next run."""
     start = session.start
-    return StartState(start.theta, start.beside, start.along, start.across, start.clock_offset)
+    return StartState(
+        theta=start.theta,
+        beside=start.beside,
+        along=start.along,
+        across=start.across,
+        clock_offset=start.clock_offset,
+    )
 
 
 @lru_cache(maxsize=256)
@@ -109,11 +114,12 @@ def _lifted_then(robot: Robot, past: Segment) -> tuple[Array, Array] | None:
 
 @lru_cache(maxsize=256)
 def _placed(robot: Robot, wall: Wall) -> Array:
-    return _rows(robot, *wall.lifted(robot.frame))
+    return _wall_rows(robot, wall.lifted(robot.frame))
 
 
-def _rows(robot: Robot, place: Array, normal: Array) -> Array:
-    """See `Motion.wall`."""
+def _wall_rows(robot: Robot, lifted: tuple[Array, Array]) -> Array:
+    """`Motion.wall` from a point and the normal of the wall."""
+    place, normal = lifted
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
     origin, right, up = robot.place(robot.frame.lift(corners))
     middle, ahead = robot.place(np.stack([place, place + normal]))

@@ -66,7 +66,7 @@ class LawPlaces:
     """Places on the path at which the poles of some laws are shown.
 
     Attributes:
-        time: at which the robots were there, [s].
+        time: when the robots were there, [s].
         version: changes whenever the robot, the path or a law does.
         of: places, by side; sides whose laws have the same poles everywhere are missing.
     """
@@ -153,8 +153,8 @@ class PageSnapshot(Snapshot):
         obstacle: the wall, or None.
         beginning: the start of the next run.
         places: of the robots on the path, for the poles of their laws.
-        phase: ξ₁ and ξ₂ of the last seconds in every frame, shape (n, robots, 2), SI; only if a
-            phase plane is asked for, else shape (0, 0, 2).
+        phase: ξ₁ and ξ₂ of the last seconds in every frame, shape (n, robots, 2), SI; shape
+            (0, 0, 2) unless a phase plane is drawn.
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.
     """

@@ -1,7 +1,7 @@
 """Geometry of both robots at one instant: from the state to the pose of every part.
 
-The geometry is a CasADi function, made once per robot; numpy would take ten times as long for so
-few numbers. Points are columns in the function, and rows of the arrays outside. Everything is in
+The geometry is a CasADi function, made once per robot; for so few numbers, NumPy would take ten
+times as long. Points are columns in the function, and rows of the arrays outside. Everything is in
 the robot's own frame (x right, y away, z up); the scene places the robots.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -107,16 +108,16 @@ class RobotGeometry:
         self._joints, self._robot = robot.system.n, robot
 
     def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
-        """See `Motion.drawn`."""
+        """`Motion.drawn` of an instant."""
         q = [state[: self._joints] for state in instant.states]
         seen = instant.sample.take(_seen(self._robot, instant.laws))
         return self._drawn(q, [seen], curve.table(), exaggeration)
 
     def of_runs(self, runs: Iterable[ClosedLoopRun], table: Array, exaggeration: float) -> Array:
-        """See `drawn_now`."""
+        """`Motion.drawn` of the present states of two runs; see `drawn_now`."""
         q, seen = list[Array](), list[Array]()
         for run in runs:
-            states, i = run.place
+            states, i = run.slot
             record = states.records[i]
             q.append(record[: self._joints])
             seen.append(record[states.size :].take(_logged(self._robot, run.law)))
@@ -125,8 +126,8 @@ class RobotGeometry:
     def _drawn(
         self, q: Sequence[Array], seen: Sequence[Array], table: Array, exaggeration: float
     ) -> Array:
-        given = np.concatenate(q), np.concatenate(seen), table, exaggeration
-        return self._draw(*given)[0].reshape(len(SIDES), -1).copy()
+        drawn = self._draw(np.concatenate(q), np.concatenate(seen), table, exaggeration)[0]
+        return drawn.reshape(len(SIDES), -1).copy()
 
 
 @per_thread
@@ -146,12 +147,28 @@ def _logged(robot: Robot, law: str) -> np.ndarray:
 def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
     """Indices of both robots' end-points, forces and aims in a flat sample."""
     layout = sample_layout(robot)
-    found = list[int]()
+    indices = list[int]()
     for i, law in enumerate(laws):
         for field in ("y", "force", law_named(law).aim):
             place = layout.slices[field]
-            found.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
-    return np.array(found)
+            indices.extend(range(i * layout.size + place.start, i * layout.size + place.stop))
+    return np.array(indices)
+
+
+class _Points(NamedTuple):
+    """One robot's `RobotView.points` in their order, as columns of symbols.
+
+    Attributes:
+        bars: beginnings and ends of the bars, in turn.
+    """
+
+    bars: ca.SX
+    joints: ca.SX
+    marks: ca.SX
+    marker: ca.SX
+    tip: ca.SX
+    end: ca.SX
+    force: ca.SX
 
 
 @lru_cache(maxsize=16)
@@ -172,60 +189,64 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
     placed = _affine(robot.place, p)
     on_path = _affine(lambda z: robot.place(robot.frame.lift(z)), dimension)
 
-    def drawn(q: ca.SX, seen: ca.SX) -> list[ca.SX]:
+    def drawn(q: ca.SX, seen: ca.SX) -> _Points:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]
         bars, joints = robot.skeleton(q, exaggeration)
         sigma = LocalCurve.from_values(aim, closed, table @ basis(aim, closed)).sigma
         pull = placed(force) - placed(ca.SX(p, 1))
         straight = robot.skeleton(q, ca.SX(0))[0][:, -1]
         marks = straight if ca.depends_on(bars, exaggeration) else ca.SX(3, 0)  # of a bent link
-        return [bars, joints, marks, on_path(sigma), bars[:, -1], placed(y), pull]
+        return _Points(
+            bars=bars,
+            joints=joints,
+            marks=marks,
+            marker=on_path(sigma),
+            tip=bars[:, -1],
+            end=placed(y),
+            force=pull,
+        )
 
-    each = [drawn(*columns) for columns in zip(ca.horzsplit(q), ca.horzsplit(seen), strict=True)]
-    bars, joints, marks = (part.shape[1] for part in each[0][:3])
-    counts = Counts(bars // 2, joints, marks, robot.drawing.strip)
+    robots = list(map(drawn, ca.horzsplit(q), ca.horzsplit(seen)))
+    first = robots[0]
+    counts = Counts(
+        bars=first.bars.shape[1] // 2,
+        joints=first.joints.shape[1],
+        marks=first.marks.shape[1],
+        strip=robot.drawing.strip,
+    )
     columns = [
-        ca.vertcat(*[ca.vec(part) for part in (*parts, *_poses(robot.drawing, counts, *parts))])
-        for parts in each
+        ca.vertcat(*[ca.vec(part) for part in (*points, *_poses(robot.drawing, counts, points))])
+        for points in robots
     ]
     flat = ca.densify(ca.horzcat(*columns))
     return ca.Function("geometry", [q, seen, table, exaggeration], ca.cse([flat])), counts
 
 
-def _poses(
-    drawing: Drawing,
-    counts: Counts,
-    ends: ca.SX,
-    joints: ca.SX,
-    marks: ca.SX,
-    marker: ca.SX,
-    tip: ca.SX,
-    _: ca.SX,
-    force: ca.SX,
-) -> tuple[ca.SX, ...]:
+def _poses(drawing: Drawing, counts: Counts, points: _Points) -> tuple[ca.SX, ...]:
     """One robot's `RobotView.poses`, as columns.
 
     Links alternate between the back and the front layer, pieces of a strip are in the front
     layer, so that no link intersects another; bearings span both.
     """
     depths = drawing.depths
-    waist = waist_angle(ends, drawing.away)
+    waist = waist_angle(points.bars, drawing.away)
     normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
-    begins, along = ends[:, ::2], ends[:, 1::2] - ends[:, ::2]
+    begins = points.bars[:, ::2]
+    along = points.bars[:, 1::2] - begins
     layers = ca.DM([depths.back if back else depths.front for back in counts.behind]).T
     turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
     still = ca.DM([1, 0, 0, 0])  # these face the viewer at any orientation of the linkage
-    discs = [marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
-    further = marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
-    machined = ca.horzcat(joints + depths.boss * normal, tip + depths.pen * normal)
+    discs = [points.marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
+    further = points.marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
+    bosses, pen = points.joints + depths.boss * normal, points.tip + depths.pen * normal
     return (
         begins + normal @ layers,
         bar_quaternions(along, waist),
-        ca.horzcat(machined, *discs, further),
-        tip,
+        ca.horzcat(bosses, pen, *discs, further),
+        points.tip,
         ca.sqrt(ca.sum1(along**2)),
         ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
-        force,
+        points.force,
     )
 
 

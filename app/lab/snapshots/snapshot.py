@@ -65,7 +65,15 @@ class Counts:
     def pose_shapes(self) -> PoseShapes:
         """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
         bars, parts = self.bars, self.joints + 3 + self.marks
-        return PoseShapes((bars, 3), (bars, 4), (parts, 3), (1, 3), (bars,), (parts, 4), (1, 3))
+        return PoseShapes(
+            bars=(bars, 3),
+            quaternions=(bars, 4),
+            parts=(parts, 3),
+            tips=(1, 3),
+            lengths=(bars,),
+            turns=(parts, 4),
+            forces=(1, 3),
+        )
 
     @property
     def size(self) -> int:
@@ -222,8 +230,8 @@ class Snapshot:
         achieved_speed: simulated seconds per wall second over the last second.
         robots: by side, left first.
         path: followed by both robots.
-        held: whether Hold is on.
-        held_back: sides of the robots that it holds.
+        held: whether a robot is held back.
+        held_back: sides of the robots that are held back.
         brakes: of the robots that are held back, by side: where the end-point was held [m], the
             unit vector along which it cannot move, and the one along which it can, shape (3, 3);
             the latter is 0 if it cannot move at all. Empty while the past is viewed.
@@ -270,4 +278,11 @@ class Snapshot:
         """The part of it that is shown most often."""
         views = list(self.robots.values())
         drawn = np.stack([np.concatenate([view.points.ravel(), view.poses]) for view in views])
-        return Motion(self.key, self.path, views[0].counts, drawn, self.wall, self.start)
+        return Motion(
+            key=self.key,
+            path=self.path,
+            counts=views[0].counts,
+            drawn=drawn,
+            wall=self.wall,
+            start=self.start,
+        )

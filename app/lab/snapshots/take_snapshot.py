@@ -52,22 +52,28 @@ DESIGN_POINTS = 32
 
 
 def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: int = 0) -> Motion:
-    """Take what moves in the scene, now or at the past instant being viewed.
+    """Take a snapshot of what moves in the scene, now or at the past instant being viewed.
 
     Args:
         before: the previous snapshot of the same lab; unchanged parts are shared with it.
         student: see `PageKey`.
     """
     session, key = lab.session, page_key(lab, student)
-    robot, larger = session.robot, session.exaggeration
+    robot, exaggeration = session.robot, session.exaggeration
     if session.viewing is None and not lab.breakdown.replaying:
         curve, table = session.editor.curve, session.editor.table
-        drawn, counts = drawn_now(robot, session.runs.values(), curve, table, larger)
+        drawn, counts = drawn_now(robot, session.runs.values(), curve, table, exaggeration)
     else:
         instant, curve, _ = _shown(lab)
-        drawn, counts = drawn_robots(robot, curve, instant, larger)
-    path = _path_view(session, curve, key, before)
-    return Motion(key, path, counts, drawn, drawn_wall(session), _drawn_start(session))
+        drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
+    return Motion(
+        key=key,
+        path=_path_view(session, curve, key, before),
+        counts=counts,
+        drawn=drawn,
+        wall=drawn_wall(session),
+        start=_drawn_start(session),
+    )
 
 
 def take_page_snapshot(
@@ -115,13 +121,13 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
     """The fields of `Snapshot`."""
     session, key = lab.session, page_key(lab, student)
     instant, curve, time = _shown(lab)
-    traces, larger = _traces(session, time), session.exaggeration
+    traces = _traces(session, time)
     message, level = lab.notice
     return {
         "time": time,
         "running": session.running,
         "achieved_speed": achieved,
-        "robots": robot_views(session.robot, curve, instant, traces, larger),
+        "robots": robot_views(session.robot, curve, instant, traces, session.exaggeration),
         "path": _path_view(session, curve, key, before),
         "held": bool(session.forces.held),
         "grabbed": session.forces.grabbed,
@@ -161,7 +167,8 @@ def _shown(lab: Lab) -> tuple[Instant, Curve, float]:
     """The instant that is shown, its path and its time, [s]."""
     session = lab.session
     if (slow := lab.breakdown.instant(session)) is not None:
-        return *slow, slow[0].time
+        instant, curve = slow
+        return instant, curve, instant.time
     past = None if session.viewing is None else session.history.at(session.viewing)
     time = session.time if session.viewing is None else session.viewing
     if past is None:
@@ -172,18 +179,30 @@ def _shown(lab: Lab) -> tuple[Instant, Curve, float]:
 def page_key(lab: Lab, student: int = 0) -> PageKey:
     """Make the `PageKey` of a lab."""
     run, session = lab.lessons, lab.session
-    progress, language = run.progress, run.words.language
-    in_lesson = run.lesson is not None
     return _page_key(
-        session.entry.name, session.robot, language, in_lesson, progress.presenting, student
+        name=session.entry.name,
+        robot=session.robot,
+        language=run.words.language,
+        in_lesson=run.lesson is not None,
+        presenting=run.progress.presenting,
+        student=student,
     )
 
 
 @lru_cache(maxsize=256)
-def _page_key(name: str, robot: Robot, *others: Any) -> PageKey:
+def _page_key(
+    *, name: str, robot: Robot, language: str, in_lesson: bool, presenting: bool, student: int
+) -> PageKey:
     """The key; the same object for the same page."""
-    fields = sample_layout(robot).fields
-    return PageKey(name, fields, *others, plane=robot.frame.numbers)
+    return PageKey(
+        robot=name,
+        fields=sample_layout(robot).fields,
+        language=language,
+        in_lesson=in_lesson,
+        presenting=presenting,
+        student=student,
+        plane=robot.frame.numbers,
+    )
 
 
 def scale_note(session: Session, words: Words) -> str:
@@ -218,15 +237,17 @@ def _path_view(
     editor, robot = session.editor, session.robot
     is_present = curve is editor.curve
     version = editor.version if is_present else curve.series.tobytes()
-    place = key.robot, key.plane
-    there = before and (before.key.robot, before.key.plane)
-    if before is not None and there == place and before.path.version == version:
+    if (
+        before is not None
+        and (before.key.robot, before.key.plane) == (key.robot, key.plane)
+        and before.path.version == version
+    ):
         return before.path
 
     def placed(z: Array) -> Array:
         return robot.place(robot.frame.lift(z))
 
-    wrong = [fault.points for fault in editor.faults] if is_present else []
+    refused = [fault.points for fault in editor.faults] if is_present else []
     points = editor.points() if is_present else np.zeros((0, 2))
     if len(points) and editor.rise:
         theta, _ = editor.blend.target.plan.nearest(points)
@@ -236,7 +257,7 @@ def _path_view(
         points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
         control_points=placed(points),
         selected=editor.selected if is_present else None,
-        refused=placed(np.concatenate(wrong) if wrong else np.zeros((0, 2))),
+        refused=placed(np.concatenate(refused) if refused else np.zeros((0, 2))),
     )
 
 
@@ -285,6 +306,5 @@ def _truth(lab: Lab) -> Truth | None:
 def _plots(session: Session, time: float, key: PageKey, before: PageSnapshot | None) -> PlotSamples:
     if before is not None and before.time == time and before.key == key:
         return before.plots
-    history = session.history
-    samples = history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
-    return PlotSamples(*samples, session.across_since)
+    times, values = session.history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
+    return PlotSamples(times, values, session.across_since)

@@ -1,4 +1,4 @@
-"""Run by Alembic for each upgrade: on the connection that `upgrade` passes."""
+"""Run by Alembic for each upgrade, on the connection that `upgrade` passes."""
 
 from __future__ import annotations
 

@@ -134,12 +134,12 @@ def test_no_lab_keeps_the_log_of_all_ticks() -> None:
     labs = compiled_labs(5)
     advance_together([lab.frame(FRAME) for lab in labs])
     for run in (run for lab in labs for run in lab.session.runs.values()):
-        records = run.place[0].records
+        records = run.slot[0].records
         assert records.base is None and records.shape == (5, run.state.size + run.row.size + 2)
     do(labs[0], *(c.SetParameter(*each) for each in WILD), c.Hold(True))
     while labs[0].session.runs[FOLLOWER].diverged is None:
         advance_together([lab.frame(FRAME) for lab in labs])
-    assert len(labs[0].session.runs[FOLLOWER].place[0].records) == 1
+    assert len(labs[0].session.runs[FOLLOWER].slot[0].records) == 1
     assert all(run.diverged is None for lab in labs[1:] for run in lab.session.runs.values())
 
 
@@ -148,7 +148,7 @@ def test_a_lab_that_was_left_keeps_nothing_of_those_it_was_advanced_with() -> No
     for _ in range(5):
         advance_together([lab.frame(FRAME) for lab in labs])
     session = labs[0].session
-    together, before = session.runs[FOLLOWER].place[0].records, session.instant()
+    together, before = session.runs[FOLLOWER].slot[0].records, session.instant()
     assert len(together) >= len(labs)
     forget_history(session)
     after = session.instant()

@@ -381,8 +381,8 @@ def test_an_input_stores_its_settings_exactly(
     for change in changes:
         settings[list(change)] = list(change.values())
         earlier, made = made, Input(FOLLOWER, KIND, settings.copy(), False, 1).like(made)
-        assert made.settings(settings[made.places]).tobytes() == settings.tobytes()
-        assert made is earlier or not change.keys() <= set(earlier.places.tolist())
+        assert made.settings(settings[made.varying]).tobytes() == settings.tobytes()
+        assert made is earlier or not change.keys() <= set(earlier.varying.tolist())
         changed |= change.keys()
         assert made.base is first.base or len(changed) > FEW
 

@@ -480,7 +480,7 @@ def test_a_process_that_finds_a_broken_file_waits_while_another_moves_it_aside(f
 def test_a_database_elsewhere_must_work_from_the_start() -> None:
     with pytest.raises(ValueError, match="no driver"):
         Records("martian://user:secret@host/onpath")
-    with pytest.raises(ValueError, match="no URL"):
+    with pytest.raises(ValueError, match="not a database URL"):
         Records("not a URL: secret")
 
 
