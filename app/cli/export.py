@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -46,18 +48,22 @@ class ExportFigure:
         from onpath.app.notebook.figure import PATHS, figure
         from onpath.models.control.sides import DEFAULT_LAWS
 
-        written = figure(
-            self.file,
-            self.robot,
-            self.law or tuple(DEFAULT_LAWS.values()),
-            {_name(each): read_path(each) for each in self.path} or PATHS,
-            sliders=self.slider or None,
-            controls=self.control or None,
-            choices=self.choice,
-            title=self.title,
-            language=self.language,
-            **{"output" if n == "law" else n: v for n, v in assignments(self.set).items()},
-        )
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always", UserWarning)
+            written = figure(
+                self.file,
+                self.robot,
+                self.law or tuple(DEFAULT_LAWS.values()),
+                {_name(each): read_path(each) for each in self.path} or PATHS,
+                sliders=self.slider or None,
+                controls=self.control or None,
+                choices=self.choice,
+                title=self.title,
+                language=self.language,
+                **{"output" if n == "law" else n: v for n, v in assignments(self.set).items()},
+            )
+        for each in told:
+            print(f"onpath: {each.message}", file=sys.stderr)
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
 
 
