@@ -26,8 +26,9 @@ class ExperimentCommand:
     robot: str = ""
     """Name of the robot; by default the paper's."""
     law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
-    """Laws to run: names with commas between, all, or both (tracking and following); or a law of
-    your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"."""
+    """Laws to run: names with commas between, all, or both (trajectory_tracking and
+    path_following); or a law of your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta -
+    speed)"."""
     path: str | None = None
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -48,18 +50,22 @@ class ExportFigure:
 
         given = assignments(self.set)
         parameters = {"output" if name == "law" else name: given[name] for name in given}
-        written = figure(
-            self.file,
-            robot=self.robot,
-            laws=self.law or tuple(DEFAULT_LAWS.values()),
-            paths={_name(each): read_path(each) for each in self.path} or PATHS,
-            sliders=self.slider or None,
-            controls=self.control or None,
-            choices=self.choice,
-            title=self.title,
-            language=self.language,
-            **parameters,
-        )
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            written = figure(
+                self.file,
+                robot=self.robot,
+                laws=self.law or tuple(DEFAULT_LAWS.values()),
+                paths={_name(each): read_path(each) for each in self.path} or PATHS,
+                sliders=self.slider or None,
+                controls=self.control or None,
+                choices=self.choice,
+                title=self.title,
+                language=self.language,
+                **parameters,
+            )
+        for each in caught:
+            print(f"onpath: {each.message}", file=sys.stderr)
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
 
 

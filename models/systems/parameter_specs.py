@@ -20,7 +20,7 @@ class Spec:
     """Declaration of a parameter.
 
     Attributes:
-        group: "basic", "gains", "task", "realism" or "robot".
+        group: "basic", "gains", "task", "path", "realism" or "robot".
         label: name on a widget.
         unit: "" for none.
         low, high, step: range of a number.

@@ -32,7 +32,8 @@ from onpath.models.control.poles import Channel
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.parameters import Parameters, declared
+from onpath.models.systems.robots import RobotEntry
 
 BASIC = ["speed", "K1", "K2", "K5"]
 ADVANCED = ["speed_profile", "profile_period", "ramp", "task", "target"]
@@ -51,6 +52,7 @@ class GainsPanel:
         self._shown: tuple[ParameterValues, dict[str, str], LawPlaces] | None = None
         self._widgets = [
             ParameterWidgets(gui, words, post, BASIC, first),
+            ParameterWidgets(gui, words, post, own_of(ROBOTS[first.key.robot]), first),
             OwnGainWidgets(gui, words, post, first),
         ]
         self._settling = gui.add_markdown("")
@@ -90,6 +92,14 @@ class GainsPanel:
         places = snapshot.places if snapshot.places.of else None
         shown = _text_and_picture(parameters_of(snapshot), laws, places, self._words)
         self._settling.content, self._picture.content = shown
+
+
+def own_of(entry: RobotEntry) -> list[str]:
+    """The parameters that only this robot has and no other panel or folder shows."""
+    if entry.flexible_link is not None:
+        return []  # its panel has them
+    own = {n: s for n, s in declared(entry.parameters).items() if n not in declared(Parameters)}
+    return [name for name, spec in own.items() if spec.group not in ("realism", "path")]
 
 
 def add_identify(gui: viser.GuiApi, words: Words, post: Post) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from onpath.app.common.templates import render
 from onpath.assets import asset_path
-from onpath.models.systems.robots import Robot, RobotEntry
+from onpath.models.systems.robots import AXES, Robot, RobotEntry
 
 SIZE = (640, 360)  # [px]
 MARGIN = 50  # [px]
@@ -29,11 +29,15 @@ def _data(kind: str, content: bytes) -> str:
 
 
 def robot_sketch(robot: Robot) -> str:
-    """An SVG front view of the robot with its end-point in the centre of the path region."""
+    """An SVG of the robot with its end-point in the centre of the path region.
+
+    A robot with two outputs is seen across their plane, and others from the front.
+    """
     q = ca.SX.sym("q", robot.system.n)
     drawn = ca.Function("drawn", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
     home = robot.rest(robot.frame.lift(np.zeros(2)))
-    bars, joints = (points.full()[[0, 2]].T for points in drawn.call([ca.DM(home)]))
+    seen_along = robot.axes if robot.system.p == 2 else np.array(AXES[2])
+    bars, joints = ((seen_along @ points.full()).T for points in drawn.call([ca.DM(home)]))
     low, high = bars.min(axis=0), bars.max(axis=0)
     scale = (np.array(SIZE) - 2 * MARGIN).min() / max(float((high - low).max()), 1e-6)
 

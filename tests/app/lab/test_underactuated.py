@@ -179,6 +179,15 @@ def test_the_command_line_says_it_and_refuses(
     assert SINGULAR in line
 
 
+def test_the_export_of_a_figure_says_it_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    own = ["export", "figure", str(tmp_path / "crane.html"), "--robot", CRANE.name, "--set"]
+    assert run_command([*own, "alpha=1.1"]) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("onpath: ") and UNSTABLE in line
+
+
 def test_a_figure_warns_refuses_and_tells_the_cause_on_its_page(tmp_path: Path) -> None:
     file = tmp_path / "crane.html"
     with pytest.raises(CodedError, match=SINGULAR):

@@ -14,11 +14,17 @@ from hypothesis import strategies as st
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.panels.gains_panel import ADVANCED, BASIC, own_of
 from onpath.app.page.panels.widgets import PRESS_ENDS, OwnGainWidgets, ParameterWidgets, on_hold
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.sides import LEFT, RIGHT
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import declared
+from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import store
+from tests.support.underactuated.cart_pendulum import ROBOT as CART
+from tests.support.underactuated.overhead_crane import ROBOT as CRANE
 
 
 class Timer:
@@ -149,3 +155,18 @@ def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
     assert visible() == {"Clock waits", "Along / across"}
     lab.session.change_law(LEFT, "path_following")
     assert visible() == {"Along / across"}
+
+
+@pytest.mark.parametrize("entry", [*ROBOTS.values(), CRANE, CART], ids=lambda entry: entry.name)
+def test_every_parameter_of_a_robot_has_one_place_in_the_lab(entry: RobotEntry) -> None:
+    specs = declared(entry.parameters)
+    own, apart = own_of(entry), [n for n, s in specs.items() if s.group in ("realism", "path")]
+    shown = [*BASIC, *ADVANCED, *own, *apart]
+    assert len(shown) == len(set(shown))
+    if entry.flexible_link is None:  # its panel has the others
+        assert set(shown) == specs.keys()
+
+
+def test_what_only_a_crane_has_stands_beside_the_gains() -> None:
+    assert own_of(CRANE) == ["alpha", "length", "rod", "load", "pivot"]
+    assert own_of(CART) == ["pendulum", "mass", "pivot"]

@@ -76,7 +76,7 @@ def own_matrix(robot: Robot, parameters: Parameters, q: Array) -> Array:
 def test_grid_is_the_least_singular_value_of_the_matrix_of_the_theorem(name: str) -> None:
     parameters = CASES[name]
     robot = ROBOTS[name].make(parameters)
-    grid = rank_grid(robot, parameters, np.array([-0.3, -0.35]), np.array([0.2, 0.3]), cells=9)
+    grid = rank_grid(robot, parameters, np.array([-0.3, -0.35]), np.array([0.2, 0.3]), cells=13)
     inside = np.isfinite(grid.values)
     assert inside.sum() > 20
     for z, value in zip(grid.centres[inside], grid.values[inside], strict=True):
@@ -91,7 +91,8 @@ def test_grid_ends_where_the_reach_does(name: str) -> None:
     parameters, rng = CASES[name], np.random.default_rng(0)
     robot = ROBOTS[name].make(parameters)
     home = robot.rest(robot.frame.lift(np.zeros(2)))
-    q = home + rng.uniform(-1, 1, (400, robot.system.n)) * (np.arange(len(home)) < robot.system.m)
+    q = rng.uniform(-1, 1, (400, robot.system.n)) * (np.arange(len(home)) < robot.system.m)
+    q = home + rng.uniform(0.05, 1, (400, 1)) * q  # [rad], or [m] where a joint slides
     sound = [row for row in q if robot.fault(row[None], 0 * row[None], parameters) is None]
     reached = robot.endpoint(np.array(sound))
     assert len(reached) > 50
@@ -100,7 +101,7 @@ def test_grid_ends_where_the_reach_does(name: str) -> None:
     way = rng.normal(size=(400, 3))
     way *= rng.uniform(1.001, 2.0, (400, 1)) * robot.reach / np.linalg.norm(way, axis=1)[:, None]
     if robot.system.p == 2:
-        way[:, 1] = 0.0
+        way = robot.place(robot.unplace(way))  # in the plane of its outputs
     beyond = robot.unplace(way)[np.linalg.norm(way, axis=1) > robot.reach]
     assert len(beyond) > 50
     assert np.isnan(section_map(robot, parameters, beyond)).all()
