@@ -79,8 +79,13 @@ def step_minutes(step: Step) -> Minutes:
 
 def together(parts: Iterable[Minutes]) -> Minutes:
     """The sum of some durations."""
-    columns = [(part.reading, part.runs, part.predictions, part.tasks) for part in parts]
-    return Minutes(*map(sum, zip(*columns, strict=True))) if columns else Minutes()
+    every = list(parts)
+    return Minutes(
+        reading=sum(part.reading for part in every),
+        runs=sum(part.runs for part in every),
+        predictions=sum(part.predictions for part in every),
+        tasks=sum(part.tasks for part in every),
+    )
 
 
 def required_minutes(lesson: Lesson) -> Minutes:

@@ -104,7 +104,9 @@ def _part(
                 numbers[robot][quantity] = _numbers(times[defined], column[defined])
         if "distance" in numbers[robot]:
             settled[robot] = _settled(times[chosen] - begin, values[robot]["distance"][chosen])
-    return ScriptPart(begin, end, tuple(actions), numbers, settled)
+    return ScriptPart(
+        begin=begin, end=end, actions=tuple(actions), numbers=numbers, settled=settled
+    )
 
 
 def _numbers(times: Array, column: Array) -> Numbers:

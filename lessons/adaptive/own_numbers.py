@@ -90,8 +90,10 @@ def marked(html: Markup, steps: Sequence[Step], index: int) -> Markup:
 
     Their attributes are `data-own`, the statistic, and `data-step`, the index of the sketch's step.
     """
-    drawn = [i for i, step in enumerate(steps) if any(isinstance(b, Sketch) for b in step.blocks)]
-    before = [i for i in drawn if i <= index]
+    sketched = [
+        i for i, step in enumerate(steps) if any(isinstance(b, Sketch) for b in step.blocks)
+    ]
+    before = [i for i in sketched if i <= index]
 
     def replacement(match: re.Match[str]) -> str:
         kind, other = _parts(match[1])
