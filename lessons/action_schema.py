@@ -1,4 +1,4 @@
-"""The data of what a lesson does with the lab: its state as a step begins, and scripts."""
+"""What a lesson does with the lab: the setup at the beginning of each step, and scripts."""
 
 from __future__ import annotations
 
@@ -15,26 +15,26 @@ class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Laws(Data, frozen=True):
-    """Control laws of the sides; empty: that of a new lab, or no change."""
+    """Control laws of the sides; an empty one is that of a new lab, or stays as it is."""
 
     left: str = ""
     right: str = ""
 
     @property
     def named(self) -> dict[str, str]:
-        """Those that are named, by side."""
+        """The laws that are given, by side."""
         return {side: law for side, law in msgspec.structs.asdict(self).items() if law}
 
 
 class RunStart(Data, frozen=True):
-    """Where and how both robots start, by the path; all of it is 0 in a new lab.
+    """The start of both robots relative to the path; all values are 0 in a new lab.
 
     Attributes:
-        place: parameter of a point of the path, [rad].
-        across: distance from there, to the left of the path positive, as ξ₁, [mm].
+        place: path parameter of the point near which they start, [rad].
+        across: distance from that point, positive to the left of the path, as ξ₁, [mm].
         speed: along the path, [mm/s].
         across_rate: velocity across the path, as ξ₂, [mm/s].
-        lead: how far the clock of a law that has one is ahead, [rad].
+        lead: how far ahead the clock starts, for a law that has one, [rad].
     """
 
     place: float = 0.0
@@ -45,7 +45,7 @@ class RunStart(Data, frozen=True):
 
     @property
     def numbers(self) -> dict[str, float]:
-        """Those that are not 0, named as in `models.closed_loop.start.Start`, SI."""
+        """The values that are not 0, in SI units, named as in `models.closed_loop.start.Start`."""
         named = {
             "theta": self.place,
             "beside": 1e-3 * self.across,
@@ -60,8 +60,9 @@ class SceneMark(Data, frozen=True):
     """A text in the scene, or an arrow with a text at its tail, at both robots.
 
     Attributes:
-        at: place, or the arrow's tip: right and up from the middle of the preset paths, [mm].
-        tail: of the arrow, in the same way; None for a text alone. It is called `from` in TOML.
+        at: position of the text or of the arrow's tip, right and up from the middle of the preset
+            paths, [mm].
+        tail: position of the arrow's tail; None for a text alone. In TOML it is called `from`.
         text: may be empty if there is an arrow.
     """
 
@@ -78,10 +79,10 @@ class StepSetup(Data, frozen=True):
         path: name of a preset; empty: the circle.
         laws: control laws of the sides.
         set: parameters that differ from the lab's defaults; all others are reset to them.
-        controls: controls that are shown: names of parameters, or of CONTROLS.
-        plot: what is plotted besides the distance, of PLOTS: one, or a list of two; empty for none.
+        controls: the controls that are shown: names of parameters, or members of CONTROLS.
+        plot: what is plotted besides the distance: one of PLOTS, a list of two, or empty for none.
         start: where and how both robots start.
-        show: what is drawn besides the robots, of DRAWINGS.
+        show: what is drawn besides the robots: members of DRAWINGS.
         marks: texts and arrows in the scene.
         running: whether time runs.
         keep: whether robot, path, laws and parameters of the step before are kept, except those
@@ -176,7 +177,7 @@ class Script(Data, frozen=True):
     """A sequence of actions that the lab performs by itself.
 
     Attributes:
-        do: in any order.
+        do: the actions, in any order.
         until: end of the script, [s].
     """
 
@@ -185,7 +186,7 @@ class Script(Data, frozen=True):
 
     @property
     def seconds(self) -> float:
-        """How long it takes to watch it, [s]: longer than `until` with slow motion."""
+        """The time it takes to watch, [s]; slow motion makes it longer than `until`."""
         time, rate, taken = 0.0, 1.0, 0.0
         for action in sorted(self.do, key=lambda action: action.at):
             if action.rate:

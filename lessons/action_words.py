@@ -15,16 +15,18 @@ def script_words(script: Script, parameters: Parameters, words: Words) -> Iterat
     """A sentence for each instant of a script.
 
     Args:
-        parameters: of the robot, which name what is set.
+        parameters: of the robot; they name the settings.
     """
     for at in sorted({action.at for action in script.do}):
-        done = [action_words(action, parameters, words) for action in script.do if action.at == at]
-        yield words("guide.at", time=_number(at, words), what="; ".join(done))
+        descriptions = [
+            action_words(action, parameters, words) for action in script.do if action.at == at
+        ]
+        yield words("guide.at", time=_number(at, words), what="; ".join(descriptions))
 
 
 def action_words(action: Action, parameters: Parameters, words: Words) -> str:
     """What an action does."""
-    what, make = action.what, _WORDS.get(action.what)
+    what, describe = action.what, _WORDS.get(action.what)
     if what == "set":
         values = action.set or {}
         return ", ".join(
@@ -34,8 +36,8 @@ def action_words(action: Action, parameters: Parameters, words: Words) -> str:
     if what == "laws" and action.laws is not None:
         laws = action.laws.named.items()
         return ", ".join(f"{words(f'side.{side}')}: {law_label(law, words)}" for side, law in laws)
-    said = make(action, words) if make else words(f"event.{what}")
-    return f"{said} ({words(f'robot.{action.only}')})" if action.only else said
+    text = describe(action, words) if describe else words(f"event.{what}")
+    return f"{text} ({words(f'robot.{action.only}')})" if action.only else text
 
 
 def _pull(action: Action, words: Words) -> str:

@@ -1,7 +1,7 @@
-"""Ways to pass a task without what it asks, which `onpath lessons check --cheat` tries.
+"""Attempts to pass a task without doing what it asks, for `onpath lessons check --cheat`.
 
-A task asks for what its reference solution does. A cheat leaves that out, and uses one other
-control instead: on request, the lab shows all of them in any step.
+A task asks for what its reference solution does. A cheat leaves that out and uses one other control
+instead; a student can have any control shown in any step.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 from onpath.models.systems.parameter_specs import Spec
 
 LEAST = 8.0
-"""Shortest time that a cheat is given, [s]."""
+"""The shortest duration of a cheat, [s]."""
 HOLD = (Action(at=1.5, hold=True), Action(at=5.0, hold=False))
-"""The brake, for longer than any task of the course asks."""
+"""The brake, held for longer than any task of the course requires."""
 DONE = ("hold", "pull", "move", "path", "identify", "laws")
-"""What a solution does, besides settings, and without which it must not pass."""
+"""Actions, besides settings, without which a solution must not pass."""
 OTHERS = ("path", "laws", "start", "settings")
 """Names of controls other than parameters; "settings": a solution without them."""
 STARTS = {
@@ -43,10 +43,10 @@ class Cheat:
     """One attempt.
 
     Attributes:
-        control: what it uses; a solution that uses it, or an author who declares it in
-            `Reference.fair`, makes it no cheat.
-        words: what it does.
-        script: the same, for the lab.
+        control: the control that it uses. It is no cheat if the solution uses that control, too, or
+            if the author lists it in `Reference.fair`.
+        words: a description.
+        script: the actions.
     """
 
     control: str
@@ -55,7 +55,7 @@ class Cheat:
 
 
 def cheats(lesson: Lesson, index: int, task: Task, reference: Reference) -> list[Cheat]:
-    """All cheats at a task of a step but those that are declared fair, or cannot pass an `Only`."""
+    """The cheats to try at a task, without those that are fair or that an `Only` excludes."""
     scene = lesson.scene_at(index)
     entry = ROBOTS[scene.robot or lesson.front.robot]
     solution = reference.solution
@@ -65,7 +65,7 @@ def cheats(lesson: Lesson, index: int, task: Task, reference: Reference) -> list
 
 
 def _may_pass(cheat: Cheat, task: Task) -> bool:
-    """Whether no check forbids the control of a cheat."""
+    """Whether every `Only` of a task allows the control of a cheat."""
     if cheat.control == "settings":
         return True
     names = SIDES if cheat.control == "laws" else (cheat.control,)
@@ -80,20 +80,20 @@ def fair_faults(reference: Reference, entry: RobotEntry) -> Iterator[str]:
 
 
 def _with_another_control(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
-    """Another control than those of a solution, with and without what it does besides settings."""
+    """Use one control that the solution does not use, alone or with the rest of the solution."""
     until = max(solution.until, LEAST)
     settings = {name for action in solution.do for name in action.set or {}}
     used = {action.what for action in solution.do} | settings
     bare = tuple(action for action in solution.do if action.what != "set")
-    ways: dict[str, tuple[Action, ...]] = {"nothing else": ()}
+    companions: dict[str, tuple[Action, ...]] = {"nothing else": ()}
     if settings and bare:
-        ways["the rest of the solution"] = bare
+        companions["the rest of the solution"] = bare
         yield Cheat("settings", "nothing set, and the rest of the solution", Script(bare, until))
     if "hold" not in used:
-        ways["a hold"] = HOLD
+        companions["a hold"] = HOLD
     for control, words, action in _controls(entry):
-        for way, rest in ways.items() if control not in used else ():
-            yield Cheat(control, f"{words} and {way}", Script((action, *rest), until))
+        for companion, rest in companions.items() if control not in used else ():
+            yield Cheat(control, f"{words} and {companion}", Script((action, *rest), until))
 
 
 def _controls(entry: RobotEntry) -> Iterator[tuple[str, str, Action]]:
@@ -111,7 +111,7 @@ def _controls(entry: RobotEntry) -> Iterator[tuple[str, str, Action]]:
 
 
 def _extremes(spec: Spec) -> tuple[Value, ...]:
-    """The options of a choice; of a number the ends of its range, and 0."""
+    """The options of a choice; the ends of the range of a number, and 0."""
     if spec.options:
         return spec.options
     zero = (0.0,) if spec.low < 0.0 < spec.high else ()
@@ -133,7 +133,7 @@ def _otherwise(solution: Script, entry: RobotEntry) -> Iterator[Cheat]:
         for name, value in (action.set or {}).items():
             for other in known[name].options if name in known else ():
                 if str(other) != str(value):
-                    own = replace(action, set={**(action.set or {}), name: other})
-                    script = replace(solution, do=(*before, own, *after))
+                    changed = replace(action, set={**(action.set or {}), name: other})
+                    script = replace(solution, do=(*before, changed, *after))
                     words = f"{name} = {other} in place of {value} at {action.at:g} s"
                     yield Cheat(name, words, script)

@@ -57,7 +57,7 @@ class Verdict:
 def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
     """The verdicts on the checks of a task; the task is passed when all of them are.
 
-    A check that has nothing to say, an `Only` that holds, is left out.
+    A check without words, such as an `Only` that holds, is left out.
     """
     verdicts = [verdict(check, record, words) for check in task.check]
     return [each for each in verdicts if each.words]
@@ -85,8 +85,8 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     if value is None:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     shown = _rounded(value, check.below, check.above, words)
-    said = words("check.bound", **names, value=shown) + seconds
-    return Verdict(enough and _within(value, check.below, check.above), said)
+    text = words("check.bound", **names, value=shown) + seconds
+    return Verdict(enough and _within(value, check.below, check.above), text)
 
 
 @verdict.register
@@ -108,8 +108,8 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         return Verdict(False, words("check.nothing", **names, seconds=seconds))
     ratio = large / max(small, TINY)
     shown = _rounded(ratio, None, check.ratio, words) if ratio < 1000 else ">1000"
-    said = words("check.compare", **names, ratio=shown)
-    return Verdict(enough and ratio >= check.ratio, said + seconds)
+    text = words("check.compare", **names, ratio=shown)
+    return Verdict(enough and ratio >= check.ratio, text + seconds)
 
 
 @verdict.register
@@ -124,7 +124,7 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
     limit = None if before is None else check.share * before
     passed = enough and value is not None and limit is not None and value < limit
     unit = unit_of(check.stat, check.quantity)
-    said = words(
+    text = words(
         "check.better",
         robot=robots[check.robot],
         stat=stat_words(check.stat, check.quantity, words),
@@ -132,7 +132,7 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
         value="–" if value is None else f"{_rounded(value, limit, None, words)} {unit}",
         before="–" if before is None else f"{_rounded(before, None, None, words)} {unit}",
     )
-    return Verdict(passed, said + seconds)
+    return Verdict(passed, text + seconds)
 
 
 def measured(check: Better | Once, record: Record) -> float | None:
@@ -154,7 +154,7 @@ def _(check: Once, record: Record, words: Words) -> Verdict:
         )
     shown = now if kept is None else kept
     names = bound_words(check, robots, words)
-    said = words(
+    text = words(
         "check.once",
         **names,
         value="–" if shown is None else _rounded(shown, check.below, check.above, words),
@@ -162,11 +162,11 @@ def _(check: Once, record: Record, words: Words) -> Verdict:
         equals=value_label(check.name, check.equals, words),
         least=words.number(check.least),
     )
-    return Verdict(kept is not None, said)
+    return Verdict(kept is not None, text)
 
 
 def keeps(check: Once, record: Record) -> float | None:
-    """The value with which a run keeps a bound while the setting is as it should be, or None."""
+    """The value that meets the bound while the setting is as required; None if there is none."""
     if not verdict(Setting(name=check.name, equals=check.equals), record, ENGLISH).passed:
         return None
     value = measured(check, record)
@@ -190,13 +190,13 @@ def _(check: Event, record: Record, words: Words) -> Verdict:
         if any(happens(event, each) for each in undone):
             have = 0
         have += happens(event, check)
-    said = words(
+    text = words(
         "check.event",
         event=event_words(check, record.parameters, words),
         have=min(have, check.times),
         need=check.times,
     )
-    return Verdict(have >= check.times, said)
+    return Verdict(have >= check.times, text)
 
 
 @verdict.register
@@ -215,12 +215,12 @@ def _(check: Order, record: Record, words: Words) -> Verdict:
 
 @verdict.register
 def _(check: Setting, record: Record, words: Words) -> Verdict:
-    own: dict[str, object] = {"path": record.path, "robot": record.robot}
-    own |= {"length": record.length()}
-    own["path"] = record.path if record.path in presets() else OWN
-    own |= {**DEFAULT_LAWS, **{side: short_name(law) for side, law in record.laws.items()}}
-    own = values_of(record.parameters) | own
-    value = own.get(check.name)
+    values: dict[str, object] = {"path": record.path, "robot": record.robot}
+    values |= {"length": record.length()}
+    values["path"] = record.path if record.path in presets() else OWN
+    values |= {**DEFAULT_LAWS, **{side: short_name(law) for side, law in record.laws.items()}}
+    values = values_of(record.parameters) | values
+    value = values.get(check.name)
     equals, wanted = setting_wanted(check, words)
     if equals is not None:
         passed = _same(value, equals)
@@ -259,10 +259,10 @@ def statistic(
 
 
 def _rounded(value: float, below: float | None, above: float | None, words: Words) -> str:
-    """The number with as few digits as keep it on its side of the bounds.
+    """The number with just enough digits to stay on its side of the bounds.
 
     Three digits, and at most two decimals, unless rounding would turn a missed bound into a met one
-    or the reverse, or there is a bound so small that two decimals would hide the distance to it.
+    or vice versa, or a bound is so small that two decimals would hide the distance to it.
     """
     least = min((abs(bound) for bound in (below, above) if bound), default=1.0)
     decimals = max(2, 2 - math.floor(math.log10(least)))
@@ -311,7 +311,7 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
 
 
 def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
-    """What is said of a bound, apart from the measured value.
+    """The words for a bound, apart from the measured value.
 
     Args:
         robots: displayed names.
@@ -327,7 +327,7 @@ def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> 
 
 
 def compare_words(check: Compare, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:
-    """What is said of a comparison, apart from the measured ratio; see `bound_words`."""
+    """The words for a comparison, apart from the measured ratio; see `bound_words`."""
     return {
         "larger": robots[check.larger],
         "stat": stat_words(check.stat, check.quantity, words),
@@ -350,10 +350,10 @@ def stat_words(stat: Stat, quantity: str, words: Words) -> str:
 
 
 def range_words(below: float | None, above: float | None, unit: str, words: Words) -> str:
-    """What lies between two bounds, at least one of them given, in words."""
+    """The range between two bounds, at least one of which is given, in words."""
     limits = [
-        words(f"check.{way}", limit=words.written(f"{limit:g}"), unit=unit).rstrip()
-        for way, limit in (("above", above), ("below", below))
+        words(f"check.{side}", limit=words.written(f"{limit:g}"), unit=unit).rstrip()
+        for side, limit in (("above", above), ("below", below))
         if limit is not None
     ]
     return limits[0] if len(limits) == 1 else words("check.and", first=limits[0], second=limits[1])
@@ -363,10 +363,10 @@ def event_words(check: Event, parameters: Parameters, words: Words) -> str:
     """What has to happen, in words."""
     key = f"event.{check.event}"
     if check.name:
-        said = words(key, detail=event_label(check.event, check.name, parameters, words))
+        text = words(key, detail=event_label(check.event, check.name, parameters, words))
     else:
-        said = words.get(f"{key}_any", "") or words(key)
+        text = words.get(f"{key}_any", "") or words(key)
     if not check.since:
-        return said
+        return text
     before = [event_words(event_named(text), parameters, words) for text in check.since]
-    return words("check.since", event=said, events=", ".join(before))
+    return words("check.since", event=text, events=", ".join(before))

@@ -1,4 +1,4 @@
-"""What a lesson lacks as a whole: kinds of steps, parts of a step, and marks that contradict."""
+"""Faults of a lesson as a whole: missing kinds of steps, incomplete steps, revealed answers."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from onpath.lessons.schema import (
 from onpath.lessons.task_schema import Task
 
 NEEDED = ("play", "predict", "run", "explain", "task")
-"""Kinds of steps of which each lesson has one that is not optional."""
+"""Each lesson has at least one step of each of these kinds that is not optional."""
 
 
 def lacks(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[tuple[int, str]]:
-    """Lines and problems of the lesson: missing kinds of steps, incomplete steps.
+    """Missing kinds of steps and incomplete steps: line and problem of each.
 
     Args:
-        broken: lines at which steps begin of which a block could not be read.
+        broken: first lines of the steps in which a block could not be read.
     """
     kinds = [step.kind for step in steps if not step.optional]
     for kind in NEEDED:
@@ -61,7 +61,7 @@ FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 
 
 def order_faults(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterator[tuple[int, str]]:
-    """Lines and faults of predictions that do not suit what comes before or after them.
+    """Predictions that do not fit the steps before or after them: line and fault of each.
 
     Args:
         broken: as in `lacks`.
@@ -71,24 +71,26 @@ def order_faults(steps: Sequence[Step], broken: Collection[int] = ()) -> Iterato
         for prediction in step.predictions():
             if isinstance(prediction, Sketch) and after is not None and after.line not in broken:
                 yield from ((step.line, fault) for fault in _length_faults(prediction, after))
-            for told in prediction.hidden:
-                yield from ((s.line, f) for s, f in _told_before(told, steps[: index + 1], step))
+            for hidden in prediction.hidden:
+                yield from (
+                    (s.line, f) for s, f in _revealed_before(hidden, steps[: index + 1], step)
+                )
 
 
 def first_page_faults(front: Front, steps: Sequence[Step]) -> Iterator[str]:
-    """The faults of facts about a lesson that tell what a prediction hides."""
+    """Faults of the front matter that reveal what a prediction hides."""
     for name in ("title", "summary", "needs", "goals"):
         words = safe(getattr(front, name)).striptags()
         for step in steps:
-            for told in (each for asked in step.predictions() for each in asked.hidden):
-                if _says(words, told):
-                    yield f"{name}: {told!r} is told before step {step.title!r} asks for it"
+            for hidden in (each for asked in step.predictions() for each in asked.hidden):
+                if _contains(words, hidden):
+                    yield f"{name}: {hidden!r} is told before step {step.title!r} asks for it"
 
 
-def _says(words: str, told: str) -> bool:
-    """Whether a text has a word, or words, that are not to be told."""
-    word = rf"(?<!\w){re.escape(' '.join(told.split()))}(?!\w)"
-    return bool(told.strip()) and re.search(word, words, re.IGNORECASE) is not None
+def _contains(text: str, hidden: str) -> bool:
+    """Whether a text contains hidden words."""
+    word = rf"(?<!\w){re.escape(' '.join(hidden.split()))}(?!\w)"
+    return bool(hidden.strip()) and re.search(word, text, re.IGNORECASE) is not None
 
 
 def _length_faults(sketch: Sketch, run: Step) -> Iterator[str]:
@@ -99,13 +101,13 @@ def _length_faults(sketch: Sketch, run: Step) -> Iterator[str]:
         )
 
 
-def _told_before(told: str, steps: Sequence[Step], asked: Step) -> Iterator[tuple[Step, str]]:
-    """The steps up to a prediction whose text tells what it hides."""
+def _revealed_before(hidden: str, steps: Sequence[Step], asked: Step) -> Iterator[tuple[Step, str]]:
+    """The steps up to a prediction whose text reveals what it hides."""
     for step in steps:
         blocks = [block.html for block in step.blocks if isinstance(block, Text)]
         words = safe(FOLDED.sub(" ", "".join(blocks))).striptags()
-        if _says(f"{step.title} {words}", told):
+        if _contains(f"{step.title} {words}", hidden):
             yield (
                 step,
-                f"{told!r} is told before step {asked.title!r} asks for it; put it in a fold",
+                f"{hidden!r} is told before step {asked.title!r} asks for it; put it in a fold",
             )

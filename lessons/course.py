@@ -1,4 +1,4 @@
-"""Folders of lessons: reads them in all their languages, and reports everything that is wrong."""
+"""Reads folders of lessons in all their languages, and reports everything that is wrong."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from onpath.models.systems.catalogue import ROBOTS
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
 NOTES = ("usual", "answer", "ask", "passed")
-"""Texts that a block has in all languages or in none."""
+"""Texts that a block has either in all languages or in none."""
 LANGUAGE = re.compile(r"[a-z]{2}")  # name of a language's file
 NUMBER = re.compile(r"(\d+)([a-z]?)-")
-"""Number of a lesson's folder; with a letter, such as 01b-..., it may be left out."""
+"""The number of a lesson's folder; one with a letter, such as 01b-..., may be skipped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Course:
     Attributes:
         lessons: name -> language -> lesson.
         routes: name -> route.
-        tests: name -> language -> lesson; the concept test before and after the course, or nothing.
+        tests: name -> language -> lesson; the concept test before and after the course, if any.
     """
 
     lessons: dict[str, Mapping[str, Lesson]]
@@ -54,7 +54,7 @@ class Course:
         return name in self.lessons or name in self.tests
 
     def lesson(self, name: str, language: str) -> Lesson:
-        """A lesson or test in a language; failing that in English, failing that in any language.
+        """A lesson or test in a language; failing that, in English or else in any language.
 
         Raises:
             KeyError: there is no such lesson.
@@ -65,8 +65,8 @@ class Course:
     def numbers(self) -> dict[str, str]:
         """Lesson -> its displayed number: "1", "2", ...
 
-        A side road, in a folder such as `01b-name`, has the number of the lesson before it and its
-        letter, so that all others keep the numbers by which texts refer to them.
+        An optional lesson, in a folder such as `01b-name`, has the number of the lesson before it
+        and a letter, so that the other lessons keep their numbers, to which texts refer.
         """
         numbers, count = dict[str, str](), 0
         for name in self.lessons:
@@ -87,7 +87,7 @@ NO_LESSONS = Course({})
 def read_course(
     folders: Iterable[Path], first: Course = NO_LESSONS
 ) -> tuple[Course, list[Problem]]:
-    """All valid lessons in some folders, and the problems of the others.
+    """All valid lessons in the folders, and the problems of the others.
 
     Args:
         first: a course to which these are added.
@@ -119,14 +119,15 @@ def read_course(
 
 
 def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
-    """Problems of the folders in a course: two of one number, and those that nobody reads."""
+    """Problems of the folders in a course: numbers used twice, and folders that are not read."""
     numbered: dict[str, str] = {}
     for home in lessons:
         if number := NUMBER.match(home.name):
             first = numbered.setdefault(number[0], home.name)
             if first != home.name:
-                own = number[0].removesuffix("-")
-                yield Problem(str(home), 1, f"{first!r} has the number {own}, too")
+                yield Problem(
+                    str(home), 1, f"{first!r} has the number {number[0].removesuffix('-')}, too"
+                )
     known = [ROUTES, FOLDER]
     for other in sorted(folder.iterdir()) if lessons else ():
         unread = other not in lessons and other.name not in known and other.name[0] not in "._"
@@ -136,7 +137,7 @@ def _folder_faults(folder: Path, lessons: Sequence[Path]) -> Iterator[Problem]:
 
 
 def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:
-    """The lessons in a folder, or the one whose folder it is; their problems; where they are."""
+    """The lessons in a folder, or the lesson whose folder it is; their problems; their folder."""
     if not _is_lesson(folder):
         return *read_course([folder]), folder
     home = folder.resolve()
@@ -145,7 +146,7 @@ def read_folder(folder: Path) -> tuple[Course, list[Problem], Path]:
 
 
 def _is_lesson(folder: Path) -> bool:
-    """Whether it is the folder of one lesson."""
+    """Whether this is the folder of a single lesson."""
     return any(folder.glob("??.md")) and not any(folder.glob("*/??.md"))
 
 
@@ -215,13 +216,13 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
         try:
             read[name] = msgspec.convert(table, Reference)
         except msgspec.ValidationError as error:
-            own = "\n".join(lines[line - 1 :])
-            told = f"{error}{nearest(str(error), Reference)}"
-            problems.append(problem(f"task {name!r}: {told}", line_of(told, own, line)))
+            rest = "\n".join(lines[line - 1 :])
+            message = f"{error}{nearest(str(error), Reference)}"
+            problems.append(problem(f"task {name!r}: {message}", line_of(message, rest, line)))
     for name, reference in read.items():
-        own = "\n".join(lines[begins[name] - 1 :])
+        rest = "\n".join(lines[begins[name] - 1 :])
         for fault in _reference_faults(reference, lesson.front.robot):
-            problems.append(problem(f"{name}: {fault}", line_of(fault, own, begins[name])))
+            problems.append(problem(f"{name}: {fault}", line_of(fault, rest, begins[name])))
     return read, problems
 
 
@@ -233,7 +234,7 @@ def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
 
 
 def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
-    """Problems where a translation differs from the lesson in more than its words."""
+    """Differences between a translation and the lesson in more than the words."""
     for name in ("needs", "goals", "misconception"):
         if bool(getattr(first.front, name)) != bool(getattr(other.front, name)):
             yield Problem(str(file), 1, f"{name} is not given in both languages")
@@ -246,10 +247,10 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
         robots = f"robot is {other.front.robot!r}, and {first.front.robot!r} in {first.language}.md"
         front = read_text(file).partition("\n+++")[0]
         yield Problem(str(file), line_of(robots, front, 1), robots)
-    for own, theirs in zip(first.steps, other.steps, strict=False):
-        ours, others = _structure(own), _structure(theirs)
-        if differs := [what for what, part in ours.items() if others[what] != part]:
-            text = f"step {theirs.title!r} is not as in {first.language}.md, line {own.line}"
+    for ours, theirs in zip(first.steps, other.steps, strict=False):
+        parts, translated = _structure(ours), _structure(theirs)
+        if differs := [what for what, part in parts.items() if translated[what] != part]:
+            text = f"step {theirs.title!r} is not as in {first.language}.md, line {ours.line}"
             yield Problem(str(file), theirs.line, f"{text}: not the same {', '.join(differs)}")
 
 
@@ -261,7 +262,7 @@ def _without_words(scene: StepSetup | None) -> StepSetup | None:
 
 
 def _structure(step: Step) -> dict[str, object]:
-    """The parts of a step that are the same in all languages, by their names for messages."""
+    """The parts of a step that are the same in all languages, by their names in messages."""
     texts = [block for block in step.blocks if isinstance(block, Text)]
     return {
         "kind": step.kind,
@@ -277,7 +278,7 @@ def _structure(step: Step) -> dict[str, object]:
 
 
 def _asked(step: Step) -> dict[str, object]:
-    """What a step asks, in the same way."""
+    """What a step asks, as in `_structure`."""
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     return {
         "tasks": [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()],

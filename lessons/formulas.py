@@ -1,6 +1,6 @@
 """Converts Markdown to safe HTML: typed HTML is escaped, LaTeX becomes MathML.
 
-All of it leaves through `onpath.lessons.safe_html`.
+All output passes through `onpath.lessons.safe_html`.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ MIME = {
     ".webp": "image/webp",
 }
 COMMA = re.compile(r"<mn>(\d+)</mn><mrow><mo>,</mo></mrow><mn>(\d+)</mn>")
-"""A decimal comma, 0{,}5 in LaTeX, as the converter writes it: an operator with space around it."""
+"""A decimal comma, 0{,}5 in LaTeX, which the converter writes as an operator between spaces."""
 LARGEST = 400_000
 """Largest size of a picture, [B]."""
 
@@ -80,7 +80,7 @@ def reader() -> MarkdownIt:
 
 
 def _table_open(*_: object) -> str:
-    """A table in a box that scrolls, also by keyboard, where the table is wider than the page."""
+    """A table in a box that scrolls, also by keyboard, if the table is wider than the page."""
     return '<div class="wide" tabindex="0"><table>\n'
 
 
@@ -92,7 +92,7 @@ def render(markdown: MarkdownIt, tokens: Sequence[Token]) -> Markup:
     """The HTML of parsed Markdown.
 
     Raises:
-        TextError: see `mathml`; or there is a link or a picture that `safe` would remove.
+        TextError: a formula cannot be converted, or `safe` would remove a link or a picture.
     """
     written = markdown.renderer.render(tokens, markdown.options, {})
     if faults := list(refused(written)):
@@ -106,10 +106,10 @@ def folded(title: str, content: Markup) -> Markup:
 
 
 def to_html(text: str) -> Markup:
-    """The HTML of a short text such as a question or a hint; a single paragraph loses its <p>.
+    """The HTML of a short text such as a question or a hint; a single paragraph has no <p>.
 
     Raises:
-        TextError: see `render`; or there is a picture, whose place is the text of a step.
+        TextError: as `render`; or there is a picture, which only the text of a step may have.
     """
     markdown = reader()
     tokens = markdown.parse(text)
@@ -126,7 +126,7 @@ def embedded(picture: Path) -> str:
     """A picture as a data: URL.
 
     Raises:
-        ValueError: the file type is not supported, or the file is too large, or no SVG.
+        ValueError: the file type is not supported, the file is too large, or it is not valid SVG.
         OSError: the file cannot be read.
     """
     mime = MIME.get(picture.suffix.lower())

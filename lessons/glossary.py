@@ -1,4 +1,4 @@
-"""The glossary: the lessons' plain words, and the terms under which a textbook has them."""
+"""The glossary: the lessons' plain words and the corresponding textbook terms."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onpath.assets import asset_path
 from onpath.lessons.action_schema import Data
 from onpath.lessons.words import DEFAULT
 
-Said = Annotated[str, msgspec.Meta(min_length=1)]
+NonEmpty = Annotated[str, msgspec.Meta(min_length=1)]
 
 
 class Entry(Data, frozen=True):
@@ -20,14 +20,14 @@ class Entry(Data, frozen=True):
 
     Attributes:
         plain: the lessons' words.
-        term: the field's.
-        means: a sentence that says what it is.
+        term: the technical term.
+        means: an explanation in one sentence.
         lesson: number of the lesson that explains it, such as 4 or 4b.
     """
 
-    plain: Said
-    term: Said
-    means: Said
+    plain: NonEmpty
+    term: NonEmpty
+    means: NonEmpty
     lesson: Annotated[str, msgspec.Meta(pattern=r"^[0-9]+[a-z]?$")]
 
 

@@ -1,4 +1,4 @@
-"""Displayed names of what a task's checks speak of: parameters, their options, paths and robots."""
+"""Displayed names of what a task checks: parameters, their options, paths and robots."""
 
 from __future__ import annotations
 

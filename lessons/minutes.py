@@ -1,9 +1,9 @@
 """How long a lesson takes, estimated from its files.
 
-The sum of the words at 130 a minute, the runs at their own length, and a fixed time for whatever is
-drawn, chosen, answered or done. Folded texts, hints, and answers to options that are wrong are not
+The sum of the words at 130 a minute, the durations of the runs, and a fixed time for each thing
+that is drawn, chosen, answered or done. Folded texts, hints, and answers to wrong options are not
 counted: they need not be read. A formula has as many words as letters and numbers. The minutes of a
-lesson are those of its steps that are not optional; those of the others are given separately.
+lesson are those of its steps that are not optional; the optional ones are given separately.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ MINUTES = {
     "number": 1.0,
     "open": 1.0,
 }
-"""Assumed time for each kind of what a student does, beyond reading."""
+"""Assumed time for each kind of activity, beyond reading."""
 FOLDED = re.compile(r"<details>.*?</details>", re.DOTALL)
 TAG = re.compile(r"<[^>]*>")
 
 
 @dataclass(frozen=True, slots=True)
 class Minutes:
-    """Estimated duration of a step or of a lesson, in minutes, by what takes it."""
+    """Estimated duration of a step or a lesson, in minutes, by kind of activity."""
 
     reading: float = 0.0
     runs: float = 0.0
@@ -60,7 +60,7 @@ class Minutes:
 
 
 def word_count(html: str) -> int:
-    """Number of words of an HTML text, without what is folded."""
+    """Number of words of an HTML text, without its folded parts."""
     words = unescape(TAG.sub(" ", FOLDED.sub(" ", html))).split()
     return sum(any(letter.isalnum() for letter in word) for word in words)
 
@@ -79,8 +79,13 @@ def step_minutes(step: Step) -> Minutes:
 
 def together(parts: Iterable[Minutes]) -> Minutes:
     """The sum of some durations."""
-    columns = [(part.reading, part.runs, part.predictions, part.tasks) for part in parts]
-    return Minutes(*map(sum, zip(*columns, strict=True))) if columns else Minutes()
+    every = list(parts)
+    return Minutes(
+        reading=sum(part.reading for part in every),
+        runs=sum(part.runs for part in every),
+        predictions=sum(part.predictions for part in every),
+        tasks=sum(part.tasks for part in every),
+    )
 
 
 def required_minutes(lesson: Lesson) -> Minutes:
@@ -94,14 +99,14 @@ def optional_minutes(lesson: Lesson) -> Minutes:
 
 
 def lesson_minutes(lesson: Lesson) -> tuple[int, int]:
-    """Whole minutes of a lesson, and those of its optional steps, which are not among them."""
+    """Whole minutes of a lesson without its optional steps, and those of the optional steps."""
     optional = optional_minutes(lesson).total
     return max(1, round(required_minutes(lesson).total)), round(optional)
 
 
 @singledispatch
 def _read(block: Block) -> list[str]:
-    """What a student reads of a part of a step."""
+    """The texts of a part of a step that a student reads."""
     raise TypeError(f"no such block: {block!r}")
 
 

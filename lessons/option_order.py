@@ -1,7 +1,7 @@
 """The order in which a student is shown the options of a question.
 
-Everything that is stored or counted has the author's numbering; only what a student sees is in
-another order, so that no place is always the right one, and neighbours cannot copy letters.
+Everything that is stored or counted has the author's numbering. Only what a student sees is in
+another order, so that no position is always right and neighbours cannot copy letters.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 
 LETTERS = "ABCDEFGH"
-"""Names of the places of options, and in records and statistics of the options themselves."""
+"""Names of the positions of options; in records and statistics, of the options themselves."""
 
 
 def option_order(count: int, question: str, student: str) -> tuple[int, ...]:
@@ -20,8 +20,8 @@ def option_order(count: int, question: str, student: str) -> tuple[int, ...]:
 
     Args:
         count: number of options.
-        question: names the question, in all languages alike.
-        student: what tells students apart, such as the session code of the lab; empty for the
+        question: identifies the question, in the same way in all languages.
+        student: identifies the student, such as the session code of the lab; empty for the
             author's order.
     """
     if not student:

@@ -1,4 +1,4 @@
-"""The steps within which a teacher lets the class go."""
+"""The steps that a teacher has opened to the class."""
 
 from __future__ import annotations
 

@@ -71,8 +71,17 @@ class _Draft:
     def step(self, stated: tuple[Stated, ...] = ()) -> Step:
         kind: Any = self.kind
         blocks, when = tuple(self.blocks), self.mark.when
-        parts = self.scene, self.script, self.mark.optional or bool(when), when, stated
-        return Step(kind, self.title, self.line, blocks, *parts)
+        return Step(
+            kind=kind,
+            title=self.title,
+            line=self.line,
+            blocks=blocks,
+            scene=self.scene,
+            script=self.script,
+            optional=self.mark.optional or bool(when),
+            when=when,
+            stated=stated,
+        )
 
 
 def read_lesson(path: Path) -> Lesson:
@@ -116,11 +125,11 @@ class _Reader:
         if not self._problems and front is not None:
             name, language = self._path.parent.name, self._path.stem
             made = self._made(steps)
-            return Lesson(name, language, front, made, keys_of(made))
+            return Lesson(name=name, language=language, front=front, steps=made, keys=keys_of(made))
         raise LessonError(self._problems)
 
     def _made(self, drafts: list[_Draft]) -> tuple[Step, ...]:
-        """The steps, each with the numbers that are stated in it."""
+        """The steps, each with the numbers that its text states."""
         ends = [*(draft.line for draft in drafts[1:]), float("inf")]
         return tuple(
             draft.step(tuple(each for each in self._stated if draft.line <= each.line < end))
@@ -128,7 +137,7 @@ class _Reader:
         )
 
     def _front(self) -> tuple[Front | None, int]:
-        """The front matter and the number of lines it takes."""
+        """The front matter, and its number of lines."""
         lines = self._text.split("\n")
         ends = [i for i, line in enumerate(lines) if line.rstrip() == "+++"]
         if len(ends) < 2 or ends[0] != 0:
@@ -178,7 +187,7 @@ class _Reader:
         return drafts
 
     def _line_of(self, words: str, first: int) -> int:
-        """The line of the file in which words stand, from a line on; that line if nowhere."""
+        """The first line from `first` on that contains some words; `first` if there is none."""
         lines = enumerate(self._text.split("\n")[first - 1 :], first)
         return next((number for number, line in lines if words in line), first)
 
@@ -247,7 +256,7 @@ class _Reader:
         self._prose(draft, self._markdown.parse(content), line, title)
 
     def _branch(self, draft: _Draft, when: str, content: str, line: int) -> None:
-        """Read a fenced block of Markdown that is shown for some answers only."""
+        """Read a fenced block of Markdown that is shown only after certain answers."""
         if not when:
             self._complain(line, "a branch needs an answer: ```when wrong")
         self._branches[draft.line, when] = line - 1
@@ -256,7 +265,7 @@ class _Reader:
     def _prose(
         self, draft: _Draft, tokens: list[Token], line: int, fold: str = "", when: str = ""
     ) -> None:
-        """Read a part of a text; lab links end the text block, and so does a condition."""
+        """Read a part of a text; a lab link or a condition ends the block of text."""
         read = read_prose(self._markdown, tokens, self._path.parent, self._robot, fold)
         for below, fault in read.faults:
             self._complain(line + below, fault)
@@ -293,7 +302,7 @@ def _sections(tokens: list[Token]) -> Iterator[list[Token]]:
 
 
 def _words_faults(content: str) -> Iterator[str]:
-    """The faults of the texts in a block of TOML; none if it cannot be read, which is told."""
+    """The faults of the texts in a block of TOML; none if it cannot be read: that is reported."""
     try:
         yield from data_faults(load_toml(content))
     except tomllib.TOMLDecodeError:

@@ -9,12 +9,12 @@ import msgspec
 
 MOST_POINTS = 200
 MOST_TEXT = 1000
-"""Longest answer in own words, [characters]."""
+"""Longest answer in a student's own words, [characters]."""
 Index = Annotated[int, msgspec.Meta(ge=0, le=1000)]
 Key = Annotated[str, msgspec.Meta(max_length=80)]
 Written = Annotated[str, msgspec.Meta(max_length=MOST_TEXT)]
 Sure = Literal["", "guessing", "fairly", "certain"]
-"""How sure a student is of a prediction; empty if it was not said."""
+"""How sure a student is of a prediction; empty if the student did not say."""
 SURENESS: tuple[Sure, ...] = ("guessing", "fairly", "certain")
 Points = Annotated[tuple[float, ...], msgspec.Meta(max_length=MOST_POINTS)]
 
@@ -27,7 +27,7 @@ class Answer(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         times, values: points of a sketch, [s] and in the quantity's unit.
         sure: how sure the student is.
         reason: index of the chosen reason, or None.
-        why: the student's reason in own words.
+        why: the reason in the student's own words.
     """
 
     option: Index | None = None
@@ -64,11 +64,11 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         hints: number of hints shown, by task.
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
-        written: answers in own words, by step and block.
-        asked_again: predictions that the teacher has asked again, after a discussion, by step.
+        written: answers in the student's own words, by step and block.
+        asked_again: predictions that the teacher has asked again after a discussion, by step.
         second: the answers to those.
         marks: keys of the chosen options; see `lessons.kept`.
-        unknown: where something was chosen that cannot be known, since the lesson has changed.
+        unknown: keys of choices that cannot be identified, because the lesson has changed.
         handed_in: whether a test has been handed in, after which its answers do not change.
     """
 

@@ -27,30 +27,30 @@ from onpath.models.systems.catalogue import ROBOTS
 HTML = re.compile(
     r"</?[A-Za-z][\w-]*(\s+[\w:-]+(\s*=\s*(\"[^\"]*\"|'[^']*'|[^\s<>\"']+))?)*\s*/?>|<!--"
 )
-"""Typed tags; they are shown, which nobody wants."""
+"""HTML tags in a text; they would be shown as typed, which nobody wants."""
 CONTROL = re.compile(r"[^\t\n\r\x20-\x7e\xa0-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""What no page shows, and no XML may contain, such as the manifest of a SCORM package."""
+"""Characters that no page shows and no XML may contain, such as a SCORM package's manifest."""
 CODE = re.compile(r"`[^`]*`|(?<!\\)\$[^$]*\$|<https?://[^\s<>]*>")
-"""Where a block of TOML has code, a formula or an address, in which `<` is no tag."""
+"""Code, formulas and addresses in a block of TOML, in which `<` begins no tag."""
 
 
 ELSEWHERE = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:|[/\\]")
-"""How addresses begin that are no file of the lesson."""
-OWN = "a picture is a file in the lesson's folder"
+"""The beginning of an address that is not a file of the lesson."""
+PICTURE_RULE = "a picture is a file in the lesson's folder"
 
 
 NO_LINK = re.compile(
     r"\]\(\s*<?((?:javascript:|vbscript:|file:|data:(?!image/))[^\s)]{0,40})", re.IGNORECASE
 )
-"""What the parser takes for no address, and shows as it is typed."""
+"""Addresses that the parser does not accept and shows as typed."""
 
 
 @dataclass(slots=True)
 class Prose:
-    """What was read.
+    """A part of a text that has been read.
 
     Attributes:
-        html: of the text; empty if it consists of links only, which become buttons.
+        html: the text; empty if it consists of links only, which become buttons.
         faults: each with the number of lines after the first one.
     """
 
@@ -69,9 +69,9 @@ def read_prose(
     """Read a part of a text.
 
     Args:
-        home: the folder of its pictures.
-        robot: at which its links act.
-        fold: a title, for a text that is shown when it is pressed.
+        home: the folder of the pictures.
+        robot: the robot on which the links act.
+        fold: title of a folded text; empty if the text is not folded.
     """
     prose = Prose()
     first = next((token.map[0] for token in tokens if token.map), 0)
@@ -95,13 +95,13 @@ def read_prose(
 
 
 def text_faults(text: str) -> Iterator[str]:
-    """What is wrong with the words of a text in Markdown, apart from formulas that can be read."""
+    """The faults of the words of a text in Markdown, apart from its formulas."""
     if match := HTML.search(text):
         yield f"{match[0]}: HTML is shown as it is typed; write Markdown, or `{match[0]}` as code"
     if match := CONTROL.search(text):
         yield f"{match[0]!a}: a control character, which no page shows"
     if match := NO_LINK.search(text):
-        yield f"{match[1]!r}: an address begins with https:// or {SCHEME}, and {OWN}"
+        yield f"{match[1]!r}: an address begins with https:// or {SCHEME}, and {PICTURE_RULE}"
     yield from own_faults(text)
 
 
@@ -122,7 +122,7 @@ def data_faults(value: Any) -> Iterator[str]:
 
 
 def _unclosed(text: str) -> str:
-    """The fault of a text in which a formula begins and does not end."""
+    """The fault of a text with a formula that does not end."""
     at = text.rindex("$")
     part = text[max(0, at - 5) : at + 25].strip()
     return f"{part!r}: a formula begins with $ and does not end; a dollar is written \\$"
@@ -139,7 +139,7 @@ def _written_faults(token: Token) -> Iterator[str]:
 
 
 def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
-    """Put pictures into the text; the faults of those that cannot be."""
+    """Embed the pictures in the text; yields the faults of those that cannot be embedded."""
     for image in children:
         if image.type != "image":
             continue
@@ -151,20 +151,20 @@ def _pictures(children: Sequence[Token], home: Path) -> Iterator[str]:
         try:
             picture = (home / source).resolve()
             if ELSEWHERE.match(source):
-                raise ValueError(f"picture {source[:40]!r}: {OWN}")
+                raise ValueError(f"picture {source[:40]!r}: {PICTURE_RULE}")
             if not picture.is_relative_to(home.resolve()):
                 raise ValueError(f"picture {source!r} is not in the lesson's folder")
             image.attrSet("src", embedded(picture))
         except (OSError, RuntimeError):  # the latter for links that lead to each other
             image.type = "text"
-            yield f"no picture {source!r}: {OWN}"
+            yield f"no picture {source!r}: {PICTURE_RULE}"
         except ValueError as error:
             image.type = "text"
             yield str(error)
 
 
 def _links(children: list[Token], robot: str, faults: list[str]) -> Iterator[LabLink]:
-    """Lab links of a text; in the text their words become bold instead of links."""
+    """The lab links of a text, in which their words become bold text."""
     for i, token in enumerate(children):
         if token.type != "link_open":
             continue
@@ -200,10 +200,10 @@ def _unknown_names(action: Action, robot: str) -> list[str]:
 
 
 def _separate(after: list[Token]) -> None:
-    """Put a comma between a link and one that follows it directly: their words would run together.
+    """Put a comma between two adjacent links, whose words would run together.
 
     Args:
-        after: the two tokens after the link.
+        after: the two tokens after the first link.
     """
     kinds = [token.type for token in after]
     if kinds == ["text", "link_open"] and not after[0].content.strip():

@@ -33,7 +33,7 @@ PLOTS = (
     *("phase", "speed", "torques", "across", "across_rate", "place", "rate", "force"),
     *("modes", "deflection", "energy"),
 )
-"""Names of the plots that a scene can show."""
+"""Names of the plots that a scene may show."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Happening:
         time: simulated time, [s].
         name: one of lessons.task_schema.EventName.
         detail: name of the parameter, the path or the robot; or empty.
-        robots: the robots that it concerns.
+        robots: the robots concerned.
     """
 
     run: int
@@ -69,9 +69,9 @@ class Record:
         end: end of the last instant, [s].
         path, robot: names of the path and of the robot model.
         laws: current control law of each side; a side without one has that of a new lab.
-        length: measures the path, [mm].
-        changed: names the settings that differ from the step's set-up, as in `Only`.
-        before: what was measured earlier; see `lessons.measures.earlier_run`.
+        length: returns the length of the path, [mm].
+        changed: returns the names of the settings that differ from the step's setup, as in `Only`.
+        before: values measured earlier; see `lessons.measures.earlier_run`.
     """
 
     times: Array
@@ -93,8 +93,8 @@ class Record:
     def chosen(self, robot: RobotName, window: Window) -> Mask:
         """The instants that a window selects, shape (n,).
 
-        `window.during` selects by hold and pull; `window.last` keeps only the latest so many
-        seconds.
+        `window.during` selects by hold and pull; `window.last` is the number of latest seconds to
+        keep.
         """
         held = self._during(robot, "hold", "let_go")
         pulled = self._during(robot, "pull", "release")

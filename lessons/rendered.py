@@ -1,4 +1,4 @@
-"""The parts of a lesson with their Markdown as safe HTML."""
+"""Converts the Markdown in the parts of a lesson to safe HTML."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def rendered(part: Any) -> Any:
 
     Raises:
         TextError: see `onpath.lessons.formulas.to_html`.
-        TypeError: no part of a lesson.
+        TypeError: it is not a part of a lesson.
     """
     raise TypeError(f"no part of a lesson: {part!r}")
 

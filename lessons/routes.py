@@ -18,7 +18,7 @@ from onpath.lessons.words import DEFAULT
 from onpath.models.systems.parameter_specs import unknown_name
 
 FOLDER = "routes"
-"""Folder of the routes, beside those of the lessons."""
+"""The folder of the routes, next to the folders of the lessons."""
 Lessons = Mapping[str, Mapping[str, Lesson]]
 Texts = dict[str, str]  # language -> text
 
@@ -49,7 +49,7 @@ class Route(Data, frozen=True):
 
     @property
     def minutes(self) -> float:
-        """Of all stops together."""
+        """Total of all stops."""
         return sum(stop.minutes for stop in self.stop)
 
     def text(self, texts: Texts, language: str) -> str:
@@ -62,7 +62,7 @@ class Route(Data, frozen=True):
         return next(held, None)
 
     def beside(self, lesson: str, index: int, by: int) -> tuple[str, int] | None:
-        """Lesson and index of the step `by` steps from a step, at most the next stop's; or None.
+        """Lesson and index of the step `by` steps away, at most in the next stop, or None.
 
         A step that is not on the route has its neighbours in its lesson.
         """
@@ -78,7 +78,7 @@ class Route(Data, frozen=True):
 
 @dataclass(frozen=True, slots=True)
 class ReadRoutes:
-    """Routes by name, which is that of the file, and what is wrong with the others."""
+    """Routes by the names of their files, and the problems of the others."""
 
     routes: dict[str, Route]
     problems: list[Problem]
@@ -88,7 +88,7 @@ def read_routes(folder: Path, lessons: Lessons | None = None) -> ReadRoutes:
     """The routes of a folder of lessons, in the order of their files' names.
 
     Args:
-        lessons: of the course; None: the routes are known to be sound, and not checked.
+        lessons: those of the course; None if the routes are known to be valid and need no check.
     """
     read = ReadRoutes({}, [])
     for file in sorted((folder / FOLDER).glob("[!.]*.toml")):
@@ -113,7 +113,7 @@ def read_routes(folder: Path, lessons: Lessons | None = None) -> ReadRoutes:
 
 
 def route_faults(route: Route, lessons: Lessons) -> Iterator[str]:
-    """What is wrong with a route."""
+    """The faults of a route."""
     for name, texts in (("title", route.title), ("summary", route.summary)):
         if not texts.get(DEFAULT):
             yield f"{name}: there is none in English"

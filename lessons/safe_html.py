@@ -1,7 +1,7 @@
-"""The only way from a lesson's words to `Markup`: an allow-list of elements and attributes.
+"""The only way to turn a lesson's words into `Markup`: an allow-list of elements and attributes.
 
-Whatever a converter writes, nothing but text and these elements with these attributes reaches a
-page: no script, no style, no form, no address but a picture's own data and links to https.
+Whatever a converter writes, only text and these elements with these attributes reach a page: no
+scripts, styles or forms, and no addresses except the data of a picture and links to https.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ PICTURE = re.compile(r"data:image/(svg\+xml|png|jpeg|webp);base64,[A-Za-z0-9+/]*
 LINK = re.compile(r"https://[^\s]+")
 ALIGNED = re.compile("text-align:(left|center|right)")
 SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,30}")
-"""The name of a quantity that a mark in a text points at."""
+"""The name of the quantity to which a mark in a text refers."""
 
 Allowed = Mapping[str, re.Pattern[str]]
-"""Attribute -> what its whole value must be."""
+"""Attribute -> pattern of its whole value."""
 HTML = (
     *("p", "em", "strong", "br", "hr", "blockquote", "ul", "ol", "li", "pre", "code", "a", "img"),
     *("h1", "h2", "h3", "h4", "h5", "h6", "table", "thead", "tbody", "tr", "th", "td"),
@@ -36,13 +36,13 @@ MATHML = (
     *("mtable", "mtr", "mtd", "mstyle", "mpadded", "mphantom", "menclose"),
 )
 ANY: Allowed = {"translate": re.compile("no")}
-"""Of every element."""
+"""Attributes of every element."""
 ANY_MATHML: Allowed = {
     **dict.fromkeys(("mathvariant", "mathcolor", "mathbackground", "displaystyle"), WORD),
     **dict.fromkeys(("mathsize", "scriptlevel"), LENGTHS),
 }
-"""Of every element of a formula."""
-OWN: Mapping[str, Allowed] = {
+"""Attributes of every element of a formula."""
+OF_ELEMENT: Mapping[str, Allowed] = {
     "a": {"href": LINK, "title": TEXT, "target": re.compile("_blank")},
     "img": {"src": PICTURE, "alt": TEXT, "title": TEXT},
     "ol": {"start": re.compile(r"\d{1,9}")},
@@ -81,19 +81,19 @@ OWN: Mapping[str, Allowed] = {
     "mtd": {"columnalign": WORD},
     "menclose": {"notation": re.compile(r"[a-z]+( [a-z]+){0,5}")},
 }
-"""Of single elements."""
+"""Element -> the attributes that only some elements have."""
 ALLOWED: Mapping[str, Allowed] = {
-    **{element: {**ANY, **OWN.get(element, {})} for element in HTML},
-    **{element: {**ANY, **ANY_MATHML, **OWN.get(element, {})} for element in MATHML},
+    **{element: {**ANY, **OF_ELEMENT.get(element, {})} for element in HTML},
+    **{element: {**ANY, **ANY_MATHML, **OF_ELEMENT.get(element, {})} for element in MATHML},
 }
 """Element -> its attributes."""
 NOT_WORDS = {element: {"translate": "no"} for element in ("math", "code", "pre")}
-"""What a page translator would take apart."""
+"""Elements that a translator of pages would garble."""
 
 
-@lru_cache(maxsize=256)  # of texts with a student's numbers by every page at 10 Hz
+@lru_cache(maxsize=256)  # every page asks at 10 Hz, for texts with a student's numbers
 def safe(html: str) -> Markup:
-    """HTML without anything that `ALLOWED` does not name; applied twice, it changes nothing more.
+    """HTML without anything that is not in `ALLOWED`; idempotent.
 
     Formulas and code are marked as not to be translated.
     """
@@ -101,7 +101,7 @@ def safe(html: str) -> Markup:
 
 
 def refused(html: str) -> Iterator[str]:
-    """What `safe` would take out of HTML, in words; nothing means that it stays as it is."""
+    """Describes what `safe` would remove from HTML; nothing if it would leave it unchanged."""
     found = _Refused()
     found.feed(html)
     found.close()

@@ -1,4 +1,4 @@
-"""The data that a lesson consists of. lessons/parse.py reads a lesson file into them.
+"""The data of a lesson, into which lessons/parse.py reads a lesson file.
 
 Questions, answers, tasks, hints, needs and goals are Markdown in the file and Markup here.
 """
@@ -24,7 +24,7 @@ class Option(Data, frozen=True):
         text: as shown.
         answer: the response to a student who chooses it.
         right: whether it is correct.
-        key: tells it from the others when the lesson has changed; see `lessons.kept.option_keys`.
+        key: identifies the option when the lesson has changed; see `lessons.kept.option_keys`.
     """
 
     text: str
@@ -38,9 +38,9 @@ class Choice(Data, frozen=True, tag="choice", tag_field="kind"):
 
     Attributes:
         ask: for the teacher, what to ask the class before it is seen.
-        hidden: what no text before may say, outside a fold.
-        reasons: from which the student may choose one.
-        why: whether the student is asked for a reason in own words.
+        hidden: words that no earlier text may contain outside a fold.
+        reasons: the student may choose one of them.
+        why: whether the student is asked for a reason in his or her own words.
     """
 
     question: str
@@ -86,7 +86,7 @@ class Quiz(Data, frozen=True):
     """A question at the end of a lesson, or of the concept test.
 
     Attributes:
-        misconception: for the teacher, the false belief at which a question of the test aims.
+        misconception: for the teacher, the false belief that a question of the test targets.
     """
 
     question: str
@@ -98,9 +98,9 @@ class NumberQuestion(Data, frozen=True):
     """A question whose answer is a number, which is checked.
 
     Attributes:
-        number: the right one, in `unit`.
-        tolerance: largest deviation that is accepted, in `unit`.
-        answer: shown to whoever has answered.
+        number: the right answer, in `unit`.
+        tolerance: largest accepted deviation, in `unit`.
+        answer: shown after the student has answered.
     """
 
     question: str
@@ -115,10 +115,10 @@ class NumberQuestion(Data, frozen=True):
 
 
 class OpenQuestion(Data, frozen=True):
-    """A question that is answered in own words; the answer is kept, and not marked.
+    """A question that is answered in words; the answer is kept, but not marked.
 
     Attributes:
-        answer: a model answer, shown to whoever has answered.
+        answer: a model answer, shown after the student has answered.
     """
 
     question: str
@@ -136,8 +136,8 @@ class Text(msgspec.Struct, frozen=True):
     """Part of a step's text, as safe HTML, and its lab links, which follow it as buttons.
 
     Attributes:
-        html: may contain numbers of the student's, see `lessons.adaptive.own_numbers`.
-        when: the answer for which it is shown, see `lessons.adaptive.branches`; empty for any.
+        html: may contain the student's numbers, see `lessons.adaptive.own_numbers`.
+        when: the answer after which it is shown, see `lessons.adaptive.branches`; empty for any.
     """
 
     html: Markup
@@ -159,11 +159,11 @@ KINDS: dict[type[Block], str] = {
 
 
 class StepMark(Data, frozen=True):
-    """What a block ```step says of its step.
+    """The contents of a block ```step.
 
     Attributes:
-        optional: whether it is a side road, which may be left out.
-        when: the answer for which it is opened, as in `Text`; such a step is optional.
+        optional: whether the step may be skipped.
+        when: the answer after which the step is shown, as in `Text`; such a step is optional.
     """
 
     optional: bool = False
@@ -174,12 +174,13 @@ class Step(msgspec.Struct, frozen=True):
     """One page of a lesson.
 
     Attributes:
-        line: of the file at which it begins.
-        scene: state of the lab at the beginning, or None for that of the step before.
+        line: first line in the file.
+        scene: state of the lab at the beginning; None for that of the step before.
         script: actions that the lab performs by itself, or None.
-        optional: whether it may be left out; the lesson's minutes and its end do not count it.
+        optional: whether it may be skipped; it does not count for the minutes and the end of the
+            lesson.
         when: see `StepMark`.
-        stated: numbers of its text that a run must confirm.
+        stated: numbers in its text that a run must confirm.
     """
 
     kind: StepKind
@@ -207,9 +208,9 @@ class Front(Data, frozen=True):
     Attributes:
         needs: what the student must know, which follows "You need:" on the first page.
         goals: what the student learns, which follows "Afterwards you can:" on the first page.
-        misconception: for the teacher, the false belief that the lesson aims at.
-        takeaway: what to remember, which the end of the lesson tells.
-        minutes: an estimate by hand in earlier files; ignored, see lessons/minutes.py.
+        misconception: for the teacher, the false belief that the lesson targets.
+        takeaway: points to remember, shown at the end of the lesson.
+        minutes: an estimate in earlier files; ignored, see lessons/minutes.py.
     """
 
     title: str
@@ -228,7 +229,7 @@ class Lesson(msgspec.Struct, frozen=True):
     Attributes:
         name: of its folder.
         language: two letters.
-        keys: of what can be chosen, the same in all languages; see `lessons.kept.option_keys`.
+        keys: of the options, the same in all languages; see `lessons.kept.option_keys`.
     """
 
     name: str
@@ -245,9 +246,9 @@ class Lesson(msgspec.Struct, frozen=True):
         return scene
 
     def laws_shown(self, index: int) -> dict[str, str]:
-        """Control laws, as in `Laws.named`, under which a prediction of a step is put to the test.
+        """Control laws, as in `Laws.named`, under which the prediction of a step is tested.
 
-        That is in the step after it if that one lets it happen, else in the step itself.
+        They are those of the next step if it is a `run` step, else those of the step itself.
         """
         after = self.steps[index + 1 : index + 2]
         return self.scene_at(index + (bool(after) and after[0].kind == "run")).laws.named

@@ -1,4 +1,4 @@
-"""What the sides of a lab and their control laws are called, and their roles in the lessons."""
+"""Displayed names of the sides of a lab and their control laws, and their roles in the lessons."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ SIDE_OF: dict[RobotName, str] = {role: side for side, role in ROLES.items()}
 
 
 def law_label(law: str, words: Words) -> str:
-    """Displayed name of a control law; all typed laws have the same."""
+    """Displayed name of a control law, the same for all typed laws."""
     if law == OWN or is_text(law):
         return words.get("law.own.label", LABEL)
     return words.get(f"law.{law}.label", LAWS[law].label)
 
 
 def law_text(law: str, words: Words) -> str:
-    """What a control law does, in a sentence; a typed law is its own."""
+    """A sentence about what a control law does; a typed law is its own description."""
     if is_text(law):
         return law
     return words.get(f"law.{law}.text", LAWS[law].text)
@@ -39,10 +39,10 @@ def law_titles(laws: Iterable[str], words: Words) -> dict[str, str]:
 
 
 def side_titles(laws: Mapping[str, str | tuple[str, ...]], words: Words) -> dict[str, str]:
-    """Displayed name of each side: that of its law, and its side if both would be named alike.
+    """Displayed name of each side: that of its law, with the side if both names would be equal.
 
     Args:
-        laws: control law of each side, or several, one after the other.
+        laws: the control law of each side, or several that it has had in turn.
     """
     return dict(_side_titles(tuple(laws.items()), words))
 
@@ -52,8 +52,8 @@ def _side_titles(
     laws: tuple[tuple[str, str | tuple[str, ...]], ...], words: Words
 ) -> dict[str, str]:
     labels = {
-        side: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(own)))
-        for side, own in laws
+        side: ", ".join(dict.fromkeys(law_label(law, words) for law in _all(names)))
+        for side, names in laws
     }
     if len(set(labels.values())) == len(labels):
         return labels
@@ -66,7 +66,7 @@ def _side_titles(
 def robot_names(laws: Mapping[str, str], words: Words) -> dict[RobotName, str]:
     """Displayed names of the robots of the lessons.
 
-    A robot under the law of a new lab has the name of its role, another that of its side.
+    A robot under the law of a new lab is named after its role, any other after its side.
 
     Args:
         laws: control law of each side; a side without one has that of a new lab.

@@ -1,4 +1,4 @@
-"""What happened in a run of a lesson's step, as numbers: one part for each action of its script."""
+"""Numbers about the run of a lesson's step: one part for each instant at which its script acts."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ class ScriptPart:
 
     Attributes:
         begin, end: [s] since the script began.
-        actions: those at the beginning.
+        actions: the actions at `begin`.
         numbers: robot -> quantity -> statistics.
-        settled: robot -> time after `begin` from which on it is within NEAR of the path, [s]; None
-            if it is not at the end.
+        settled: robot -> time after `begin` from which it stays within NEAR of the path, [s]; None
+            if it is not there at the end.
     """
 
     begin: float
@@ -55,7 +55,7 @@ class ScriptPart:
 def parts_of(
     script: Script, times: Array, values: dict[RobotName, dict[str, Array]]
 ) -> list[ScriptPart]:
-    """The parts of a run of a script, and the whole as the last one if there are several.
+    """The parts of a script's run, followed by the whole run if there are several.
 
     Args:
         times: shape (n,), [s] since the script began, increasing.
@@ -104,7 +104,9 @@ def _part(
                 numbers[robot][quantity] = _numbers(times[defined], column[defined])
         if "distance" in numbers[robot]:
             settled[robot] = _settled(times[chosen] - begin, values[robot]["distance"][chosen])
-    return ScriptPart(begin, end, tuple(actions), numbers, settled)
+    return ScriptPart(
+        begin=begin, end=end, actions=tuple(actions), numbers=numbers, settled=settled
+    )
 
 
 def _numbers(times: Array, column: Array) -> Numbers:
@@ -120,7 +122,7 @@ def _numbers(times: Array, column: Array) -> Numbers:
 
 
 def _settled(times: Array, distances: Array) -> float | None:
-    """The first time from which on all distances are small; None if the last one is not."""
+    """The time from which all distances are small; None if the last one is not."""
     far: Sequence[int] = np.flatnonzero(~(distances <= NEAR)).tolist()
     if not far:
         return 0.0

@@ -1,4 +1,4 @@
-"""The data of a task and of the checks that decide whether it is passed; lessons/checks.py does."""
+"""The data of a task and its checks, which lessons/checks.py evaluates."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Window(Data, frozen=True):
 
     Attributes:
         during: "always", "held", "pulled", or "free" (neither held nor pulled).
-        last: only the latest of those, [s]; 0 for all.
+        last: the latest seconds of those to consider, [s]; 0 for all.
         least: least total duration, [s].
     """
 
@@ -60,7 +60,7 @@ class Better(Window, frozen=True, tag="better", tag_field="kind"):
     """A statistic of a quantity is less than it was in the run before, up to the last reset.
 
     Attributes:
-        share: at most this share of what it was.
+        share: largest admissible share of the earlier value.
     """
 
     quantity: str = ""
@@ -76,7 +76,7 @@ class Event(Data, frozen=True, tag="event", tag_field="kind"):
         name: of a parameter for "set", a path for "path", a robot for "robot", a law for "law";
             empty for any.
         times: least number of times.
-        since: events, as in `Order`; only what has happened after the latest of them counts.
+        since: events, as in `Order`; only events after the latest of them count.
     """
 
     event: EventName
@@ -106,7 +106,7 @@ class Setting(Data, frozen=True, tag="setting", tag_field="kind"):
 
 
 class Only(Data, frozen=True, tag="only", tag_field="kind"):
-    """No setting other than these differs from the step's set-up.
+    """No setting other than these differs from the step's setup.
 
     Attributes:
         names: as in `Setting`, without "length"; or "start", or "wall".
@@ -116,11 +116,11 @@ class Only(Data, frozen=True, tag="only", tag_field="kind"):
 
 
 class Once(Bound, frozen=True, tag="once", tag_field="kind"):
-    """A bound that was kept at some time since the step began, while a setting had a value.
+    """A bound that was kept at some time since the step began, with a setting at a given value.
 
     Attributes:
         name, equals: the setting, as in `Setting`.
-        since: events, as in `Order`; only what was kept after the latest of them counts.
+        since: events, as in `Order`; only a bound kept after the latest of them counts.
     """
 
     name: str = ""
@@ -135,11 +135,11 @@ class Task(Data, frozen=True):
     """What the student has to do, and how the lab checks it.
 
     Attributes:
-        id: unique in the lesson, the same in all languages.
-        check: all of them must be satisfied at the same time.
+        id: unique within the lesson, the same in all languages.
+        check: the checks, which must all be satisfied at the same time.
         hints: shown one at a time.
         best: a quantity of the follower to minimise; the student's best value is kept.
-        passed: why it worked, shown once the task is passed.
+        passed: an explanation of why it worked, shown once the task is passed.
     """
 
     id: str

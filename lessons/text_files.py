@@ -1,4 +1,4 @@
-"""Reads the text files of lessons, and says what is wrong with one as its author can mend it."""
+"""Reads the text files of lessons; messages tell the author how to mend a faulty one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ STRING = re.compile(
     r"""\"{3}(?P<long>(?:[^\\]|\\.)*?)\"{3}|'{3}.*?'{3}|"(?P<short>(?:[^"\\\n]|\\.)*)"|'[^'\n]*'|#[^\n]*""",
     re.DOTALL,
 )
-"""A text or a comment of TOML."""
+"""A string or a comment in TOML."""
 CURLY = re.compile("[“”„‟‘’‚‛«»]")
 BACKSLASH = "in TOML a backslash is written \\\\, or the text stands between single quotes"
 
@@ -32,7 +32,7 @@ class FileError(ValueError):
 
 
 def read_text(file: Path) -> str:
-    """The text of a file of any editor: with or without a byte-order mark, any ends of lines.
+    """The text of a file, with or without a byte-order mark and with any line endings.
 
     Raises:
         FileError: it cannot be read, is too large, or is not in UTF-8.
@@ -60,10 +60,10 @@ def read_text(file: Path) -> str:
 
 
 def load_toml(content: str) -> dict[str, Any]:
-    """What is in TOML.
+    """The contents of a TOML text.
 
     Raises:
-        tomllib.TOMLDecodeError: it cannot be read; for every reason, unlike `tomllib.loads`.
+        tomllib.TOMLDecodeError: it cannot be read for any reason; `tomllib.loads` may raise others.
     """
     try:
         return tomllib.loads(content)
@@ -76,12 +76,12 @@ def load_toml(content: str) -> dict[str, Any]:
 
 
 def toml_fault(error: tomllib.TOMLDecodeError, content: str) -> tuple[int, str]:
-    """What is wrong with TOML that cannot be read: lines after the first one, and words."""
+    """The fault of TOML that cannot be read: the number of lines before it, and a description."""
     bare = STRING.sub(lambda text: re.sub(r"[^\n]", " ", text[0]), content)
     if curly := CURLY.search(bare):
         line = content.count("\n", 0, curly.start())
         return line, f'{curly[0]}: in TOML a text stands between straight quotes, "…"'
     place = re.search(r" \(at line (\d+), column (\d+)\)", str(error))
-    said = str(error).replace(place[0], f" (column {place[2]})") if place else str(error)
-    hint = f"; {BACKSLASH}" if re.search("escape|hex", said, re.I) else ""
-    return int(place[1]) - 1 if place else content.count("\n"), f"TOML: {said}{hint}"
+    message = str(error).replace(place[0], f" (column {place[2]})") if place else str(error)
+    hint = f"; {BACKSLASH}" if re.search("escape|hex", message, re.I) else ""
+    return int(place[1]) - 1 if place else content.count("\n"), f"TOML: {message}{hint}"

@@ -21,10 +21,10 @@ ESCAPE = re.compile(r"\\(.)([A-Za-z]*)", re.DOTALL)
 
 
 def escape_faults(content: str) -> Iterator[tuple[int, str]]:
-    """Commands of LaTeX that TOML reads as a tab, a new line or another control character.
+    """LaTeX commands that TOML reads as a tab, a newline or another control character.
 
     Yields:
-        the number of lines after the first one, and the fault.
+        The number of lines before it, and the fault.
     """
     for string in STRING.finditer(content):
         kind = string.lastgroup
@@ -56,7 +56,7 @@ def read_toml(content: str, line: int, kind: type[T], complain: Complain) -> T |
 
 
 def nearest(error: str, kind: Any) -> str:
-    """The field or value of a type that is nearest to the unknown one of an error, as a hint."""
+    """A hint: the field or value of a type nearest to the unknown one in an error."""
     field = re.search(r"unknown field `(.+?)`", error)
     if field:
         return near(field[1], _fields(kind))
@@ -65,7 +65,7 @@ def nearest(error: str, kind: Any) -> str:
 
 
 def _values(kind: Any) -> set[str]:
-    """All strings that a type, or the types in it, name as possible values."""
+    """All strings that a type, or the types in it, allows as values."""
     parts = get_args(kind)
     values = {part for part in parts if isinstance(part, str)}
     values |= {value for part in parts for value in _values(part)}

@@ -1,4 +1,4 @@
-"""The texts of the interface, in the language of its user."""
+"""The texts of the interface in the user's language."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ from onpath.assets.messages import DEFAULT, Catalogue, catalogue, languages
 from onpath.models.errors import Coded, Message
 
 ELSEWHERE = ("parameter.", "machine.", "path.", "law.")
-"""Prefixes of keys whose English texts are in models/; only the other catalogues have them."""
+"""Prefixes of keys whose English texts are in models/; only catalogues of other languages have
+them."""
 
 
 class Words:
-    """The texts of one language; those of the same language are equal, so that caches share them.
+    """The texts of one language. Objects of the same language are equal, so that caches share them.
 
     Args:
         language: code of the language; English if there is no catalogue for it.
@@ -51,22 +52,22 @@ class Words:
         return self(key) if key in self._plain or key in self._catalogue else default
 
     def number(self, value: float, digits: int = 4) -> str:
-        """A number with so many significant digits, with the decimal point of the language."""
+        """A number with some significant digits and the decimal separator of the language."""
         text = f"{float(f'{value:.{digits}g}') + 0.0:g}"
         return self.written(text.replace("-", "−"))
 
     def written(self, number: str) -> str:
-        """A number that is written with a point, with the decimal point of the language."""
+        """A written number with the decimal separator of the language in place of the point."""
         return number.replace(".", self("report.point"))
 
-    def sentence(self, said: Message | Exception) -> str:
+    def sentence(self, source: Message | Exception) -> str:
         """The text of a message or an error; an error without a code is not translated."""
-        message = said.message if isinstance(said, Coded) else said
+        message = source.message if isinstance(source, Coded) else source
         return message.text(self.language) if isinstance(message, Message) else str(message)
 
 
 def language_name(language: str) -> str:
-    """The name of a language in itself; its code if its catalogue does not say."""
+    """The name of a language in that language; its code if its catalogue has none."""
     return Words(language).get(f"language.{language}", language)
 
 

@@ -1,4 +1,4 @@
-"""Errors and reasons as data: a code, which the catalogues translate, and arguments."""
+"""Errors and reasons as data: a code, which the catalogues translate, and its arguments."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Coded(Exception):
 
 
 class CodedError(Coded, ValueError):
-    """What a user wants is not possible; see `Coded`."""
+    """A user's request cannot be met; see `Coded`."""
 
 
 def said_by(error: Exception) -> Message | str:

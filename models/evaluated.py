@@ -1,4 +1,4 @@
-"""One call of a CasADi function on arrays."""
+"""A single call of a CasADi function on arrays."""
 
 from __future__ import annotations
 

@@ -53,7 +53,7 @@ class Layout:
     def pack(self, values: Mapping[str, ArrayLike]) -> Array:
         """The numeric vector with these fields, shape (size,).
 
-        Numbers are taken as they are: what a user sends is checked where it comes in.
+        Numbers are not checked here: users' input is checked where it arrives.
 
         Raises:
             ValueError: a field is missing, unknown, or of the wrong size.
@@ -63,10 +63,10 @@ class Layout:
             raise ValueError(f"missing or unknown: {', '.join(sorted(odd))}")
         numbers = list[float]()
         for name, size in self.fields:
-            own = _numbers(values[name])
-            if len(own) != size:
+            given = _numbers(values[name])
+            if len(given) != size:
                 raise ValueError(f"{name}: expected {size} numbers, got {values[name]}")
-            numbers += own
+            numbers += given
         return np.array(numbers)
 
     def unpack(self, vectors: Array) -> dict[str, Array]:

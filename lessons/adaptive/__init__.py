@@ -1,1 +1,1 @@
-"""What of a lesson depends on the student's answers."""
+"""The parts of a lesson that depend on the student's answers."""

@@ -1,4 +1,4 @@
-"""Steps and texts that are shown for some answers only: `when = "wrong"`.
+"""Steps and texts that are shown only after certain answers: `when = "wrong"`.
 
 They follow the latest question above them that has a right answer: a prediction by choice, a quiz,
 or a question whose answer is a number.
@@ -22,11 +22,11 @@ def question_before(steps: Sequence[Step], index: int, block: int = 0) -> tuple[
     for at in range(index, -1, -1):
         blocks = steps[at].blocks[:block] if at == index else steps[at].blocks
         for place in range(len(blocks) - 1, -1, -1):
-            asked = blocks[place]
-            if isinstance(asked, Choice):
-                return str(at), asked
-            if isinstance(asked, Quiz | NumberQuestion):
-                return f"{at}.{place}", asked
+            question = blocks[place]
+            if isinstance(question, Choice):
+                return str(at), question
+            if isinstance(question, Quiz | NumberQuestion):
+                return f"{at}.{place}", question
     return None
 
 
@@ -44,7 +44,7 @@ def is_shown(when: str, steps: Sequence[Step], notes: Notes, index: int, block: 
 def answers_meant(
     when: str, steps: Sequence[Step], index: int, block: int
 ) -> tuple[str, list[int]] | None:
-    """The question above a text and the answers for which the text is shown, for a page's script.
+    """The question above a text and the answers for which the text is shown, for JavaScript.
 
     An answer is the number of an option, or -1 for a skipped prediction; of a question whose answer
     is a number, it is 1 if right, else 0. None: there is no such question.
@@ -52,17 +52,17 @@ def answers_meant(
     found = question_before(steps, index, block)
     if found is None:
         return None
-    key, asked = found
-    if isinstance(asked, NumberQuestion):
-        return key, [value for value, said in enumerate(("wrong", "right")) if when == said]
+    key, question = found
+    if isinstance(question, NumberQuestion):
+        return key, [value for value, outcome in enumerate(("wrong", "right")) if when == outcome]
     if when == "skipped":
         return key, [-1]
-    options = enumerate(asked.options)
+    options = enumerate(question.options)
     return key, [i for i, o in options if when in ("right" if o.right else "wrong", o.key)]
 
 
 def faults_of_when(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
-    """Line of the step, condition and fault of each condition of a lesson that has one."""
+    """For each faulty condition of a lesson: the line of its step, the condition and the fault."""
     for index, step in enumerate(steps):
         conditions = [(0, step.when)]
         conditions += [(i, b.when) for i, b in enumerate(step.blocks) if isinstance(b, Text)]
@@ -74,8 +74,12 @@ def faults_of_when(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
 def _fault(when: str, found: tuple[str, Judged] | None) -> str:
     if found is None:
         return "no question with a right answer is above it"
-    asked = found[1]
-    keys = () if isinstance(asked, NumberQuestion) else tuple(o.key for o in asked.options if o.key)
+    question = found[1]
+    keys = (
+        ()
+        if isinstance(question, NumberQuestion)
+        else tuple(o.key for o in question.options if o.key)
+    )
     if when in (*OUTCOMES, *keys):
         return ""
     near = get_close_matches(when, (*OUTCOMES, *keys), 1)
@@ -85,21 +89,21 @@ def _fault(when: str, found: tuple[str, Judged] | None) -> str:
     )
 
 
-def _outcomes(key: str, asked: Judged, notes: Notes) -> tuple[str, ...]:
-    """What can be said of the answer to a question; nothing before there is one."""
-    own = second_key(key) if key in notes.asked_again else key
-    if own in notes.unknown:
+def _outcomes(key: str, question: Judged, notes: Notes) -> tuple[str, ...]:
+    """The conditions that the answer to a question meets; none before it is answered."""
+    answer_key = second_key(key) if key in notes.asked_again else key
+    if answer_key in notes.unknown:
         return ()
-    if isinstance(asked, NumberQuestion):
+    if isinstance(question, NumberQuestion):
         given = notes.numbers.get(key)
-        return () if given is None else ("right" if asked.accepts(given) else "wrong",)
+        return () if given is None else ("right" if question.accepts(given) else "wrong",)
     chosen = notes.quiz.get(key)
-    if isinstance(asked, Choice):
+    if isinstance(question, Choice):
         answer = (notes.second if key in notes.asked_again else notes.answers).get(key)
         chosen = None if answer is None else answer.option
         if answer is not None and chosen is None:
             return ("skipped",)
-    if chosen is None or chosen not in range(len(asked.options)):
+    if chosen is None or chosen not in range(len(question.options)):
         return ()
-    option = asked.options[chosen]
+    option = question.options[chosen]
     return "right" if option.right else "wrong", option.key

@@ -27,13 +27,13 @@ WANTED = {
     "choice": "no prediction by choice",
     "best": "no task with `best = …`",
 }
-"""What there must be for a kind, for messages."""
+"""Kind -> what is missing if nothing asks for it, for messages."""
 SINGLE = re.compile(r"\{\s*(your\s|[−+-]?\d+([.,]\d+)?\s*(±[^{}=]*)?=)[^{}]*\}")
 NOTHING = "–"
 
 
 def own_faults(text: str) -> Iterator[str]:
-    """The faults of a text's places for the student's numbers, and of all other double braces."""
+    """Faults in the placeholders of the student's numbers, and all other double braces."""
     for match in OWN.finditer(text):
         if _parts(match[1])[0] not in KINDS:
             yield f"{match[0]}: it is {{{{your …}}}} with one of {', '.join(KINDS)}, and `or …`"
@@ -46,7 +46,7 @@ def own_faults(text: str) -> Iterator[str]:
 
 
 def unanswered(steps: Sequence[Step]) -> Iterator[tuple[int, str, str]]:
-    """Line of the step, first words and fault of a place for an answer that nobody asked for."""
+    """Placeholders of answers that no question asks for: line of the step, first words, fault."""
     asked = set[str]()
     for step in steps:
         for block in step.blocks:
@@ -70,7 +70,7 @@ def _answered(block: Block) -> Iterable[str]:
 
 
 def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> Markup:
-    """A text of a step with the student's numbers, or with what stands there without them.
+    """A text of a step with the student's numbers, or with their substitutes after `or`.
 
     Args:
         notes: the student's answers in this lesson.
@@ -78,39 +78,41 @@ def filled(html: Markup, steps: Sequence[Step], index: int, notes: Notes, words:
     if "{{" not in html:
         return html
 
-    def own(match: re.Match[str]) -> str:
+    def replacement(match: re.Match[str]) -> str:
         kind, other = _parts(match[1])
         return _value(kind, steps, index, notes, words) or other
 
-    return safe(OWN.sub(own, str(html)))
+    return safe(OWN.sub(replacement, str(html)))
 
 
 def marked(html: Markup, steps: Sequence[Step], index: int) -> Markup:
-    """A text whose places for a number of a drawn curve are elements that a page's script fills.
+    """A text in which the numbers of a sketched curve are elements for JavaScript to fill.
 
-    They have `data-own`, the statistic, and `data-step`, the index of the step with the curve.
+    Their attributes are `data-own`, the statistic, and `data-step`, the index of the sketch's step.
     """
-    drawn = [i for i, step in enumerate(steps) if any(isinstance(b, Sketch) for b in step.blocks)]
-    before = [i for i in drawn if i <= index]
+    sketched = [
+        i for i, step in enumerate(steps) if any(isinstance(b, Sketch) for b in step.blocks)
+    ]
+    before = [i for i in sketched if i <= index]
 
-    def own(match: re.Match[str]) -> str:
+    def replacement(match: re.Match[str]) -> str:
         kind, other = _parts(match[1])
         if not kind.startswith("sketch") or not before:
             return match[0]
         stat = kind.removeprefix("sketch ")
         return f'<span data-own="{stat}" data-step="{before[-1]}">{other}</span>'
 
-    return safe(OWN.sub(own, str(html)))
+    return safe(OWN.sub(replacement, str(html)))
 
 
-def _parts(said: str) -> tuple[str, str]:
-    """What is wanted, and what is shown without it, which is part of a safe text."""
-    kind, _, other = said.partition(" or ")
+def _parts(place: str) -> tuple[str, str]:
+    """The kind of number, and its substitute, which is part of a safe text."""
+    kind, _, other = place.partition(" or ")
     return " ".join(kind.split()), other.strip() or NOTHING
 
 
 def _value(kind: str, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> str:
-    """The latest such answer up to a step, as HTML; empty if there is none."""
+    """The latest answer of a kind up to a step, as HTML; empty if there is none."""
     for at in range(index, -1, -1):
         for place, block in enumerate(steps[at].blocks):
             answer = (notes.second if str(at) in notes.asked_again else notes.answers).get(str(at))

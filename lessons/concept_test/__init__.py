@@ -1,1 +1,1 @@
-"""The concept test, and what a class gains between its two sittings."""
+"""The concept test, and the gain of a class between its two sittings."""

@@ -1,8 +1,8 @@
 """The concept test: questions that a class answers before and after the course.
 
 It is written like a lesson, in the folder `inventory` of a course, with `quiz` steps only, and is
-read as two lessons, which `Course.tests` holds. Their questions are the same; the answers are told
-when the second one has been handed in.
+read as two lessons with the same questions, `Course.tests`. The answers are shown when the second
+one has been handed in.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Lesson, Quiz, Step, Text
 
 FOLDER = "inventory"
-"""Name of the folder of the test in a course."""
+"""The folder of the test in a course."""
 BEFORE, AFTER = TESTS = "test-before", "test-after"
 """Names of the two tests."""
 
@@ -37,7 +37,7 @@ def both_tests(versions: Mapping[str, Lesson]) -> dict[str, Mapping[str, Lesson]
     """Name of each test -> language -> lesson.
 
     Args:
-        versions: language -> the test as it is written; empty if there is none.
+        versions: language -> the test; empty if there is none.
     """
     if not versions:
         return {}
@@ -58,9 +58,9 @@ def questions(test: Lesson) -> dict[str, Quiz]:
 
 
 def notes_of(progress: Progress, name: str) -> Notes | None:
-    """A student's notes on a test that has been handed in; None if it has not.
+    """A student's notes on a test that has been handed in.
 
-    None also if it was handed in when the questions were other ones.
+    None if it has not been handed in, or if the questions have changed since.
     """
     notes = progress.notes.get(name)
     return notes if notes is not None and notes.handed_in and not notes.unknown else None

@@ -16,7 +16,7 @@ from onpath.lessons.schema import Lesson
 class ClassGain:
     """The results of a class in both tests, without names.
 
-    Only students count who have handed in both, so that the two means are of the same ones.
+    Only students who have handed in both count, so that both means are over the same students.
 
     Attributes:
         students: their number.
@@ -44,7 +44,7 @@ class ClassGain:
 
 
 def normalised_gain(before: float | None, after: float | None) -> float | None:
-    """The share of what could be gained that was: g = (after - before) / (100 % - before).
+    """The achieved share of the possible gain: g = (after - before) / (100 % - before).
 
     Source: R. R. Hake, Am. J. Phys. 66 (1998) 64.
 
@@ -59,14 +59,14 @@ def normalised_gain(before: float | None, after: float | None) -> float | None:
     return (after - before) / (100 - before)
 
 
-def class_gain(test: Lesson, ways: Iterable[Progress]) -> ClassGain:
+def class_gain(test: Lesson, students: Iterable[Progress]) -> ClassGain:
     """The results of the students who have handed in both tests.
 
     Args:
-        test: either of the two.
-        ways: progress of all students.
+        test: either of the two tests.
+        students: progress of all students.
     """
-    both = [(notes_of(way, BEFORE), notes_of(way, AFTER)) for way in ways]
+    both = [(notes_of(student, BEFORE), notes_of(student, AFTER)) for student in students]
     pairs = [(right_in(test, a), right_in(test, b)) for a, b in both if a and b]
     if not pairs:
         return ClassGain(0, (), ())

@@ -8,7 +8,7 @@ from onpath.lessons.words import Words
 
 
 def titles_of_tests(course: Course, words: Words) -> dict[str, str]:
-    """Name of each test -> what it is called, with its title; empty if the course has none."""
+    """Name of each test -> its displayed title; empty if the course has none."""
     if not course.tests:
         return {}
     title = course.lesson(BEFORE, words.language).front.title

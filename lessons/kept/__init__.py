@@ -1,1 +1,1 @@
-"""What a student chose, kept so that it can be told apart after a lesson has changed."""
+"""Students' choices, kept so that they can be identified after a lesson has changed."""

@@ -1,7 +1,7 @@
-"""Kept choices of lessons that have changed since: found again by their keys, or known to be lost.
+"""Kept choices of lessons that have changed since: identified by their keys, or marked as lost.
 
-Notes from before marks were kept say only at which place an option stood, so it cannot be known
-which option it was. A curve without a mark is shown if the step still asks for a curve.
+Notes without marks, from earlier versions, only have the position of an option, so that the option
+is unknown. A curve without a mark is shown if the step still asks for a curve.
 """
 
 from __future__ import annotations
@@ -17,27 +17,27 @@ from onpath.lessons.schema import Choice, Lesson
 
 
 def marks_of(lesson: Lesson, key: str, answer: Answer, second: bool = False) -> dict[str, str]:
-    """What to keep beside an answer to a prediction, so that it can be found again.
+    """The marks to keep with an answer to a prediction, so that it can be identified later.
 
     Args:
         key: of the prediction in the notes.
         second: whether it is the answer after a discussion.
     """
-    own = second_key(key) if second else key
-    marks = mark_of(lesson, key, 0 if answer.times else answer.option, own)
-    return {**marks, **mark_of(lesson, why_key(key), answer.reason, why_key(own))}
+    mark_key = second_key(key) if second else key
+    marks = mark_of(lesson, key, 0 if answer.times else answer.option, mark_key)
+    return {**marks, **mark_of(lesson, why_key(key), answer.reason, why_key(mark_key))}
 
 
-def mark_of(lesson: Lesson, key: str, index: int | None, own: str = "") -> dict[str, str]:
-    """What to keep beside the index of an option; `own` is its name, by default `key`."""
+def mark_of(lesson: Lesson, key: str, index: int | None, mark_key: str = "") -> dict[str, str]:
+    """The mark to keep with the index of an option, under `mark_key`, by default `key`."""
     keys = lesson.keys.get(key, ())
-    return {own or key: keys[index]} if index is not None and index < len(keys) else {}
+    return {mark_key or key: keys[index]} if index is not None and index < len(keys) else {}
 
 
 def of_today(course: Course, progress: Progress, only: str = "") -> Progress:
-    """The progress with the indices that the options have today; the same object if all have them.
+    """The progress with the present indices of the options; the same object if nothing changes.
 
-    What was chosen in a way that cannot be known any more is in `Notes.unknown`.
+    Choices that can no longer be identified are in `Notes.unknown`.
 
     Args:
         only: name of the one lesson that matters; empty for all.
@@ -52,7 +52,7 @@ def of_today(course: Course, progress: Progress, only: str = "") -> Progress:
 
 
 def known_notes(lesson: Lesson, notes: Notes) -> Notes:
-    """Notes on a lesson with the indices that the options have today; see `of_today`."""
+    """Notes on a lesson with the present indices of the options; see `of_today`."""
     search = _Search(lesson, notes, set(notes.unknown))
     answers = {key: search.answer(key, key, each) for key, each in notes.answers.items()}
     second = {key: search.answer(key, second_key(key), each) for key, each in notes.second.items()}
@@ -65,42 +65,42 @@ def known_notes(lesson: Lesson, notes: Notes) -> Notes:
 
 @dataclass(frozen=True, slots=True)
 class _Search:
-    """Looks for kept choices in a lesson of today.
+    """Looks for kept choices in the present lesson.
 
     Attributes:
-        lost: keys of the choices that cannot be known.
+        lost: keys of the choices that cannot be identified.
     """
 
     lesson: Lesson
     notes: Notes
     lost: set[str] = field(default_factory=set[str])
 
-    def index(self, key: str, own: str, index: int) -> int | None:
-        """The index that a chosen option has today; None if it cannot be known."""
-        keys, mark = self.lesson.keys.get(key), self.notes.marks.get(own)
+    def index(self, key: str, mark_key: str, index: int) -> int | None:
+        """The present index of a chosen option; None if it cannot be identified."""
+        keys, mark = self.lesson.keys.get(key), self.notes.marks.get(mark_key)
         if keys is None:
             return index  # nothing is asked there, so nothing is shown
         return keys.index(mark) if mark in keys else None
 
-    def answer(self, key: str, own: str, answer: Answer) -> Answer:
-        """An answer as it is to be understood today; without choice and curve if it is lost."""
+    def answer(self, key: str, mark_key: str, answer: Answer) -> Answer:
+        """An answer with the present indices; without choice and curve if it is lost."""
         if answer.skipped or key not in self.lesson.keys:
             return answer
         reason = answer.reason
         if reason is not None:
-            reason = self.index(why_key(key), why_key(own), reason)
+            reason = self.index(why_key(key), why_key(mark_key), reason)
         if answer.times:
-            option, here = None, self._fits_a_curve(key, own)
+            option, here = None, self._fits_a_curve(key, mark_key)
         else:
-            option = self.index(key, own, answer.option or 0)
+            option = self.index(key, mark_key, answer.option or 0)
             here = option is not None and isinstance(self._asked(key), Choice)
         if here:
             return replace(answer, option=option, reason=reason)
-        self.lost.add(own)
+        self.lost.add(mark_key)
         return Answer(sure=answer.sure, why=answer.why)
 
-    def _fits_a_curve(self, key: str, own: str) -> bool:
-        mark = self.notes.marks.get(own)
+    def _fits_a_curve(self, key: str, mark_key: str) -> bool:
+        mark = self.notes.marks.get(mark_key)
         return not isinstance(self._asked(key), Choice) and mark in (None, *self.lesson.keys[key])
 
     def _asked(self, key: str) -> object:

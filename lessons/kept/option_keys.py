@@ -1,8 +1,7 @@
-"""Keys of what can be chosen, by which a kept choice is found again when a lesson has changed.
+"""Keys of options, by which a kept choice is identified when the lesson has changed.
 
 The key of an option is given by the author, or else made from its text in the lesson's first
-language (English if there is one). Options can thus be put into another order, and their
-translations can be reworded.
+language (English if there is one). Options can thus be reordered, and translations reworded.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from collections.abc import Sequence
 from onpath.lessons.schema import Choice, Quiz, Sketch, Step
 
 Keys = dict[str, tuple[str, ...]]
-"""Key of the notes -> keys of what could be chosen there, in the author's order."""
+"""Key of the notes -> keys of the options there, in the author's order."""
 
 
 def keys_of(steps: Sequence[Step]) -> Keys:

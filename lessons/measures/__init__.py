@@ -1,1 +1,1 @@
-"""What is measured of a run beyond the values of its quantities."""
+"""Measures of a run beyond the values of its quantities."""

@@ -1,4 +1,4 @@
-"""What was measured before the present instant: in the run before, and once in a step."""
+"""Values measured earlier: in the run before, and once in a step."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from onpath.lessons.task_schema import Better, Once, Task
 
 
 class EarlierRun:
-    """What the checks of some tasks measured.
+    """The values that the checks of some tasks measured.
 
     Attributes:
-        values: by check; the same dictionary all the time. Of `Better`, in the latest run before
-            the present one that was long enough; of `Once`, when it was kept last.
+        values: by check, always in the same dictionary. For `Better`, from the latest earlier run
+            that was long enough; for `Once`, from when the bound was last kept.
     """
 
     def __init__(self) -> None:
@@ -24,7 +24,7 @@ class EarlierRun:
         self._undone: dict[Once, int] = {}  # events that have undone it
 
     def follow(self, record: Record, tasks: Iterable[Task]) -> None:
-        """Measure the present run; call it again and again, until it is reset."""
+        """Measure the present run; to be called repeatedly until the run is reset."""
         if record.run != self._run:
             self.values.update(self._now)
             self._run, self._now = record.run, {}

@@ -11,9 +11,9 @@ from onpath.models.arrays import Array
 BAND = 0.05
 """A quantity has settled when it stays within this share of its largest value."""
 UNITS: dict[Stat, str] = {"settling": "s", "overshoot": "%"}
-"""Statistics with a unit of their own."""
+"""Statistics whose unit is not that of the quantity."""
 WITH_SIGN = ("across", "across_rate", "deflection")
-"""Quantities that can go beyond zero to the other side."""
+"""Quantities that can overshoot zero, because they have a sign."""
 
 
 def unit_of(stat: Stat, quantity: str) -> str:
@@ -36,7 +36,7 @@ def latest_stretch(chosen: Mask) -> Mask:
 def settling_time(times: Array, values: Array) -> float | None:
     """Time from the first instant until a quantity stays within 5 % of its largest value, [s].
 
-    None while it is not within them.
+    None if it is not settled at the end.
 
     Args:
         times, values: shape (n,), n > 0.
@@ -49,7 +49,7 @@ def settling_time(times: Array, values: Array) -> float | None:
 
 
 def overshoot(values: Array) -> float:
-    """How far a quantity has gone beyond zero after its largest value, in percent of that.
+    """How far a quantity goes beyond zero after its largest value, in percent of that value.
 
     Args:
         values: with sign, shape (n,), n > 0.

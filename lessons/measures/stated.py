@@ -1,4 +1,4 @@
-"""Numbers that a text states of a run: `{{47 = max distance tracker during held}}`.
+"""Numbers that a text states about a run: `{{47 = max distance tracker during held}}`.
 
 The text shows the number, and `onpath lessons check` plays the run and compares.
 """
@@ -19,7 +19,7 @@ from onpath.lessons.task_schema import During, Stat
 
 STATED = re.compile(r"\{\{\s*([−+-]?\d+(?:[.,]\d+)?)\s*(?:±\s*(\d+(?:[.,]\d+)?)\s*)?=([^{}]*)\}\}")
 FORM = "{{47 = max distance tracker}}, and if needed: during held, from 3 to 5"
-"""What is expected, for messages."""
+"""The expected form, for messages."""
 KNOWN: dict[str, tuple[str, ...]] = {
     "stat": get_args(Stat),
     "quantity": tuple(QUANTITIES),
@@ -29,11 +29,11 @@ KNOWN: dict[str, tuple[str, ...]] = {
 
 
 class Stated(msgspec.Struct, frozen=True):
-    """A number of a text, and what it is of a run.
+    """A number in a text, and the measure of a run that it states.
 
     Attributes:
-        line: of the file, in which it stands.
-        text: the number as it is shown.
+        line: its line in the file.
+        text: the number as shown.
         tolerance: in the unit of the quantity.
         begin, end: part of the script, [s].
     """
@@ -50,17 +50,17 @@ class Stated(msgspec.Struct, frozen=True):
     end: float = float("inf")
 
     def agrees(self, measured: float) -> bool:
-        """Whether it is what was measured."""
+        """Whether a measured value agrees with the number."""
         return bool(abs(measured - self.value) <= self.tolerance + 1e-9)
 
 
 def take_stated(
     text: str, complain: Callable[[int, str], None], toml: Sequence[tuple[int, int]] = ()
 ) -> tuple[str, list[Stated]]:
-    """The text with plain numbers in place of those that a run must confirm, and these.
+    """The text with plain numbers in place of the stated ones, and the stated ones.
 
     Args:
-        toml: parts of the text, from and to a place, in which numbers are not replaced.
+        toml: parts of the text, as (begin, end), in which numbers are not replaced.
     """
     found = list[Stated]()
 
@@ -83,7 +83,7 @@ def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
     """A stated number.
 
     Raises:
-        ValueError: it is not understood; the message has the nearest name.
+        ValueError: it is not understood; the message suggests the nearest name.
     """
     words = what.split()
     if len(words) < 3:
@@ -126,5 +126,5 @@ def _one_of(word: str, what: str) -> str:
 
 
 def in_span(times: np.ndarray, stated: Stated) -> np.ndarray:
-    """The instants that a number is about, as a mask, shape (n,)."""
+    """The instants to which a number refers, as a mask, shape (n,)."""
     return (times >= stated.begin - 1e-9) & (times <= stated.end + 1e-9)

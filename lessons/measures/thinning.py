@@ -13,7 +13,7 @@ from onpath.models.arrays import Array
 def peaks(curves: Sequence[Array], most: int) -> NDArray[np.intp]:
     """Indices of the points to keep of several curves of equal length, in increasing order.
 
-    If there are at most `most` points, all are kept. Otherwise the first and the last are kept, and
+    At most `most` points are all kept. Otherwise the first and the last are kept, and
     the minimum and maximum of every curve on each of a number of equally long intervals.
 
     Args:

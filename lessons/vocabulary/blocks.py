@@ -1,4 +1,4 @@
-"""Faults of what a student is asked: predictions, questions, and tasks with their checks."""
+"""Faults of predictions, questions, and tasks with their checks."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def _check_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
 
 
 def _limit_faults(below: float | None, above: float | None, equals: object) -> Iterator[str]:
-    """The faults of what a value must be."""
+    """The faults of the limits of a check."""
     if below is None and above is None and equals is None:
         yield "a check needs below or above"
     elif below is not None and above is not None and above > below:
@@ -109,7 +109,7 @@ def _limit_faults(below: float | None, above: float | None, equals: object) -> I
 
 
 def _name_faults(check: Check, entry: RobotEntry | None) -> Iterator[str]:
-    """The names of a check that are unknown."""
+    """The unknown names in a check."""
     parameters = None if entry is None else specs(entry.parameters)
     if isinstance(check, Setting | Once) and check.equals is not None:
         values = {"path": [*presets(), OWN], **{side: [*LAWS, OWN] for side in SIDES}}

@@ -10,18 +10,18 @@ FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open"
 """Blocks of TOML."""
 KNOWN = (*FENCES, "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")
-"""Languages of code whose names are like those of blocks."""
+"""Programming languages with names similar to those of blocks."""
 FIRST = re.compile(r"[^\W\d_]+")
 TOML = re.compile(
     rf"\A\+\+\+\s*$.*?^\+\+\+"
     rf"|^ {{0,3}}(?P<mark>`{{3,}}|~{{3,}})\s*({'|'.join(FENCES)})\s*$.*?^\s*(?P=mark)",
     re.DOTALL | re.MULTILINE,
 )
-"""The facts at the beginning of a lesson's file, or a block of TOML."""
+"""The front matter of a lesson's file, or a block of TOML."""
 
 
 def toml_parts(text: str) -> list[tuple[int, int]]:
-    """Where the parts of a lesson's file that are TOML begin and end."""
+    """Begin and end of each part of a lesson's file that is TOML."""
     return [part.span() for part in TOML.finditer(text)]
 
 
@@ -29,7 +29,7 @@ def fence_faults(info: str) -> Iterator[str]:
     """The fault of a block that would be shown as code although it is meant as one of `KNOWN`.
 
     Args:
-        info: what stands after the marks (```) at its beginning.
+        info: the text after the opening marks (```).
     """
     found = FIRST.match(info.strip())
     word = found[0].lower() if found else ""

@@ -1,4 +1,4 @@
-"""Faults of the kind of a value: a text where a number is meant."""
+"""Faults in the kind of a value: a string in place of a number."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ def latex_faults(latex: str, mathml: str) -> Iterator[str]:
     """The commands and environments of a formula that are unknown, with the nearest known ones.
 
     Args:
-        mathml: what the formula was converted to.
+        mathml: the formula after conversion.
     """
     for name in dict.fromkeys(ENVIRONMENT.findall(latex)):
         if name not in ENVIRONMENTS:
@@ -35,7 +35,7 @@ def latex_faults(latex: str, mathml: str) -> Iterator[str]:
 
 
 def brace_faults(latex: str) -> Iterator[str]:
-    """Braces, and `\\left` or `\\right`, that have no counterpart."""
+    """Braces, `\\left` and `\\right` without a counterpart."""
     bare = latex.replace("\\\\", " ").replace("\\{", " ").replace("\\}", " ")
     depths = [0, *accumulate((char == "{") - (char == "}") for char in bare)]
     if depths[-1] > 0:

@@ -32,18 +32,18 @@ def names_markdown() -> str:
         "during": ((name, "") for name in get_args(During)),
         "events": ((name, "") for name in EVENTS),
     }
-    lines = [f"- **{what}**: {', '.join(map(_told, names))}" for what, names in lists.items()]
+    lines = [f"- **{what}**: {', '.join(map(_listed, names))}" for what, names in lists.items()]
     heads = ["| parameter | | unit | values | in a new lab |", "|---|---|---|---|---|"]
     return "\n".join([*lines, "", *heads, *_parameter_rows()]) + "\n"
 
 
-def _told(each: tuple[str, str]) -> str:
+def _listed(each: tuple[str, str]) -> str:
     name, label = each
     return f"`{name}` {label}".rstrip()
 
 
 def _parameter_rows() -> Iterator[str]:
-    """A row for each parameter; several if it is another one at another robot."""
+    """A row for each parameter, or several if it differs between robots."""
     found = defaultdict[tuple[str, ...], list[str]](list)
     for robot, entry in ROBOTS.items():
         for name, spec in specs(entry.parameters).items():

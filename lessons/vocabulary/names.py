@@ -1,4 +1,4 @@
-"""The names of controls, plots and events, and the answer to one that is unknown."""
+"""The names of controls, drawings and events, limits of numbers, and the fault of unknown names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ RATES = (0.125, 4.0)
 MOST_PLOTS = 2
 MOST_MARKS = 12
 REACH = 500.0
-"""Farthest place of a mark, [mm]."""
+"""Largest coordinate of a mark, [mm]."""
 HIGHEST = 1e6
 """Largest limit of a sketch's axis."""
 LONGEST = 60.0
@@ -28,7 +28,7 @@ LONGEST = 60.0
 
 
 def one_of(name: str, known: Iterable[object], what: str) -> Iterator[str]:
-    """The fault of a name that is none of the known ones, with the nearest one."""
+    """The fault of a name that is not among the known ones; it suggests the nearest."""
     names = [str(each) for each in known]
     if name not in names:
         yield str(unknown_name(name, names, what=what))

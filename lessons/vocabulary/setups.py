@@ -1,4 +1,4 @@
-"""Faults of what a lesson does with the lab: scenes, scripts and actions."""
+"""Faults of scenes, scripts and actions."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
 
 
 def _drawing_faults(scene: StepSetup) -> Iterator[str]:
-    """The faults of what a scene plots and draws."""
+    """The faults of a scene's plots and drawings."""
     for name in scene.plots:
         yield from one_of(name, PLOTS, "plot")
     if len(set(scene.plots)) < len(scene.plots) or len(scene.plots) > MOST_PLOTS:
@@ -93,7 +93,7 @@ def script_faults(script: Script, robot: str) -> Iterator[str]:
 
 
 def release_faults(script: Script) -> Iterator[str]:
-    """The fault of a pull that goes on after the script, when the student cannot end it."""
+    """The fault of a pull that outlasts its script, since the student cannot end it."""
     pulled: Action | None = None
     for action in sorted(script.do, key=lambda action: action.at):
         if action.pull is not None:
@@ -126,7 +126,7 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
 
 
 def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
-    """The faults of a scene's path, and of its start on that."""
+    """The faults of a scene's path, and of its start on that path."""
     name, parameters = scene.path or "circle", entry.parameters()
     design = presets().get(name)
     if design is None:
@@ -147,7 +147,7 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
 def _start_faults(
     start: RunStart, where: tuple[RobotEntry, Parameters, Curve] | None = None
 ) -> Iterator[str]:
-    """Why a start is not possible.
+    """The reason why a start is not possible.
 
     Args:
         where: robot, parameters and path, if they are known.

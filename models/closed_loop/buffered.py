@@ -39,7 +39,7 @@ class Buffered:
         Returns:
             The results, flattened by columns. The next call overwrites them.
         """
-        for own, given in zip(self._arguments, arguments, strict=True):
-            own[:] = given
+        for buffer, given in zip(self._arguments, arguments, strict=True):
+            buffer[:] = given
         self._evaluate()
         return self._results

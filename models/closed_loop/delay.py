@@ -1,9 +1,9 @@
 """Computing delay: the torque that is computed from a measurement takes effect some time later.
 
 The law is evaluated at times t_k, every `hold_ticks` ticks; its torque u_k takes effect at t_k + d.
-d is any multiple of the control interval up to `LONGEST`, not only a whole one; within a tick the
-plant is integrated in two parts, before and after the torque changes. The control law does not know
-of the delay.
+d may be any multiple of the control interval up to `LONGEST`, also a fractional one. Within a tick
+the plant is integrated in two parts, before and after the torque changes. The control law does not
+know about the delay.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class DelayedTorque:
     Attributes:
         parts: (torque (m, 1) [N m], share of the tick) of its consecutive parts.
         mean: over the tick, (m, 1), [N m].
-        memory: "u", the torque at its end, and "queue", the torques that were computed before.
+        memory: "u", the torque at its end, and "queue", the torques computed earlier.
     """
 
     parts: tuple[tuple[ca.SX, ca.SX], ...]

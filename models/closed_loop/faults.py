@@ -1,4 +1,4 @@
-"""Why and when a run has diverged, and what brought it there."""
+"""When and why a run has diverged, and what caused it."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from onpath.models.systems.robots import NOT_FINITE, Robot
 
 TYPED_LAW = Message("stop.typed_law", {"most": f"{LARGEST_NUMBER:g}"})
 BEFORE = 0.1  # [s] before a fault in which its cause is looked for
-OFTEN = 0.5  # share of that time in which the motors must be at their limit
+OFTEN = 0.5  # least share of that time with the motors at their limit
 WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
 PULLED = 1.0  # [N]
 
 
 def not_finite(law: str) -> Message:
-    """Why a state that is not finite stops a run under this law."""
+    """The reason why a state that is not finite stops a run under this law."""
     return TYPED_LAW if is_text(law) else NOT_FINITE
 
 
 def fault_in(
     robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> tuple[int, Message] | None:
-    """The first row in which a run has diverged, and why; None if in none.
+    """The first row in which a run has diverged, and the reason; None if it has not diverged.
 
     Args:
         log: layout of the rows.
@@ -50,7 +50,7 @@ def fault_in(
 def explained(
     reason: Message, robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> Message:
-    """Why a run has diverged, with the cause and what would help, if that can be told.
+    """The reason why a run has diverged, with likely causes and remedies, if any are known.
 
     Args:
         reason: of the fault, from `fault_in`.
@@ -67,7 +67,7 @@ def explained(
 def _causes(
     robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> list[Message]:
-    """What may have brought it there, the most certain first."""
+    """Possible causes, the most certain first."""
     causes, entry = list[Message](), ROBOTS.get(robot.name)
     if entry is not None and (caution := entry.caution(parameters)) is not None:
         causes.append(caution)
@@ -90,7 +90,7 @@ def _causes(
 def foreseen(robot: Robot, law: str, q: Array, parameters: Parameters) -> tuple[Message, ...]:
     """The forecast as the cause of a stop, if there is one; see `forecast`.
 
-    The reasons of a flexible link speak of its zero dynamics themselves.
+    None for a flexible link, whose reasons mention its zero dynamics.
 
     Args:
         q: configuration at rest, shape (n,).
@@ -102,7 +102,7 @@ def foreseen(robot: Robot, law: str, q: Array, parameters: Parameters) -> tuple[
 def _foreseen_at(
     robot: Robot, log: Layout, law: str, rows: Array, parameters: Parameters
 ) -> tuple[Message, ...]:
-    """What could be foreseen with the robot at rest where the rows begin; at home without any."""
+    """The forecast for the robot at rest where the rows begin, or at home if there are no rows."""
     if robot.system.n == robot.system.m:
         return ()
     try:

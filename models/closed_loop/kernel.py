@@ -2,7 +2,7 @@
 
 A tick measures, predicts a little ahead, projects onto the path, evaluates the control law, limits
 the torque, adds external forces, integrates the plant and writes a log row. State, settings and
-curve are inputs of the function, so that no user action requires it to be rebuilt.
+curve are inputs of the function, so that no user action rebuilds it.
 
 A tick lasts dt = 1 ms (0.5 ms at 2 kHz). The control law is evaluated in every `hold_ticks`-th
 tick, and its torque is held in between.
@@ -11,6 +11,7 @@ tick, and its torque is held in between.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import casadi as ca
 
@@ -68,8 +69,14 @@ class Kernel(LoopLayouts):
 
     @property
     def layouts(self) -> LoopLayouts:
-        """The layouts alone: the functions take 0.2 MB."""
-        return LoopLayouts(self.state, self.settings, self.log, self.changed, self.table_shape)
+        """The layouts alone, without the functions, which take 0.2 MB."""
+        return LoopLayouts(
+            state=self.state,
+            settings=self.settings,
+            log=self.log,
+            changed=self.changed,
+            table_shape=self.table_shape,
+        )
 
     def block(self, ticks: int) -> ca.Function:
         """Many ticks, for an interpreter: (state, settings, curve table) -> (state, log columns).
@@ -91,7 +98,7 @@ class Kernel(LoopLayouts):
     def tick(self) -> ca.Function:
         """One tick, for a compiler: (state, settings, table @ basis) -> (state, log row).
 
-        The state is the fields that this loop changes.
+        The state consists of the fields that this loop changes.
         """
         inputs = [ca.SX.sym(f"input{i}", *self.advance.size_in(i)) for i in range(3)]
         after, row, _ = self.advance(*inputs)
@@ -126,13 +133,13 @@ def build_kernel(
         frame = _space(system, frame, kind)
     bases = _bases(system, kind, law)
     advance = _advance(system, frame, kind, law, (substeps, grip), bases)
-    own = loop_layouts(system, kind)
+    layouts = loop_layouts(system, kind)
     return Kernel(
-        state=own.state,
-        settings=own.settings,
-        log=own.log,
-        changed=own.changed,
-        table_shape=own.table_shape,
+        state=layouts.state,
+        settings=layouts.settings,
+        log=layouts.log,
+        changed=layouts.changed,
+        table_shape=layouts.table_shape,
         basis=bases,
         advance=advance,
         law=law.name,
@@ -177,7 +184,7 @@ def _advance(
     values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]
-    q, v = look_ahead(system, state, settings, *measured, h)
+    q, v = look_ahead(system, state, settings, measured_q, measured_v, h)
     beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = law.command(view)
@@ -223,16 +230,16 @@ def _wanted(
         rate = composite.rates(beam, speed, command.acceleration)
         after = {name: x + settings["dt"] * rate[name] for name, x in memory.items()}
         return composite.torques(beam, rate, command.acceleration), after
-    robot = view.system, view.q, view.v, view.model
     acceleration = command.acceleration
+    torque = partial(linearization, view.system, view.q, view.v, view.model)
     if kind.across_first:
         part = command.along or _along(view, acceleration)
         along, direction = part.command, part.direction
-        base = linearization(*robot, acceleration - direction * along)
-        slope = linearization(*robot, acceleration - direction * (along - 1)) - base
+        base = torque(acceleration - direction * along)
+        slope = torque(acceleration - direction * (along - 1)) - base
         reduced = admissible_along(base, slope, along, settings["torque_limit"])
         acceleration = acceleration + direction * (reduced - along)
-    return linearization(*robot, acceleration), memory
+    return torque(acceleration), memory
 
 
 def _along(view: View, acceleration: ca.SX) -> Along:
@@ -260,8 +267,8 @@ def _integral(
 
         I⁺ = I + hold_ticks dt e  in ticks in which the control law is evaluated.
 
-    It stops only while a torque saturates (anti-windup). K3 = 0 switches it off, unless the law
-    always integrates; one whose reference point runs by the clock needs `tracker_integral` besides.
+    It pauses only while a torque saturates (anti-windup). K3 = 0 switches it off, unless the law
+    always integrates; a law whose reference point runs by the clock also needs `tracker_integral`.
 
     Source: eq. (18).
     """
@@ -280,8 +287,8 @@ def _integral(
 def bounded(integral: ca.SX, settings: Fields, command: ControlAction) -> ca.SX:
     """The integral, shortened so that |K3 ∫e dt| <= K1 ρ: it moves the balance by ρ at most.
 
-    Held off its path by a hand, a robot would otherwise learn to push with the hand's force, and
-    that throws it to the other side when the hand lets go.
+    Otherwise a robot that a hand holds off its path would learn to push with the hand's force,
+    which would throw it to the other side when the hand lets go.
     """
     size, most = _size_of_integral(integral, settings), _most_of_integral(settings, command)
     return integral * ca.if_else(size > most, most / size, 1)
@@ -307,7 +314,7 @@ def _most_of_integral(settings: Fields, command: ControlAction) -> ca.SX:
 def _next_places(
     kind: Kind, law: Law, state: Fields, settings: Fields, view: View, command: ControlAction
 ) -> Fields:
-    """The closest point, θ_r, as the law says or by the clock, and ω_ref after the tick."""
+    """After the tick: the closest point, θ_r by the law or else by the clock, and ω_ref."""
     clock = clock_at(kind, law, state, settings, settings["dt"] / 2)
     by_clock = clock.theta + settings["dt"] * clock_rate(clock)
     return {

@@ -1,4 +1,4 @@
-"""What a control law is given in a tick: the output, its coordinates on the path, the reference."""
+"""The arguments of a control law in a tick: the output, its path coordinates, the reference."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 
 def predicted(state: Fields, settings: Fields) -> ca.SX:
-    """The θ at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
+    """The parameter at which the curve is evaluated, θ_0 = θ + dt θ', [rad]."""
     return state["theta"] + settings["dt"] * state["theta_rate"]
 
 
@@ -72,11 +72,12 @@ def measured_output(
     measured: tuple[ca.SX, ca.SX],
 ) -> VirtualOutput:
     """The virtual output of the measured (q, v), at the beginning of the tick."""
-    pair = controlled(system, settings, *measured)
+    q, v = measured
+    y, y_rate = controlled(system, settings, q, v)
     if kind.law == "composite":
-        beam = beam_estimate(system, state, settings, *measured, ca.SX(0))
-        pair = beam.y, beam.y_rate
-    return coordinates(frame, kind, state, settings, values, *pair)[0]
+        beam = beam_estimate(system, state, settings, q, v, ca.SX(0))
+        y, y_rate = beam.y, beam.y_rate
+    return coordinates(frame, kind, state, settings, values, y, y_rate)[0]
 
 
 def interval(kind: Kind, settings: Fields) -> ca.SX:
@@ -85,7 +86,7 @@ def interval(kind: Kind, settings: Fields) -> ca.SX:
 
 
 def lag(system: MechanicalSystem, kind: Kind, settings: Fields) -> ca.SX:
-    """How old what the controller knows is at most when its torque ends, [s]; see `View.lag`."""
+    """Greatest age of the controller's information when its torque ends, [s]: `View.lag`."""
     age = interval(kind, settings)
     if kind.encoder or kind.noise:
         age += settings["encoder_filter"]
@@ -135,7 +136,7 @@ def law_view(
     ahead: tuple[ca.SX, ca.SX],
     beam: composite.Compensation | None,
 ) -> View:
-    """What the law is given; `ahead` is (q, v) at the instant to which the controller looks."""
+    """The view of the law; `ahead` is (q, v) at the instant to which the controller looks."""
     (q, v), h = ahead, settings["look_ahead"]
     y, y_rate = controlled(system, settings, q, v) if beam is None else (beam.y, beam.y_rate)
     output, closest = coordinates(frame, kind, state, settings, values[:, 0], y, y_rate)

@@ -21,10 +21,10 @@ class Kind:
         free: whether the loop may omit external forces, torque limits, dry friction and held
             torques, for speed. It is equivalent to the full loop while none of these act.
         space: whether the path is a space curve.
-        level: with `level_set`, λ of a path that is given by an equation; None: of a conic.
+        level: with `level_set`, λ of a path given by an equation; None for that of a conic.
         law: the controlled output of a flexible robot: "redefined" (with a share α of the
             deflection) or "composite" (the tip, see models/control/composite_control.py).
-        across_first: whether a torque limit takes from the motion along the path first; see
+        across_first: whether a torque limit first reduces the motion along the path; see
             `admissible_along`.
         delay: whether a torque takes effect some time after the measurement (delay.py).
         stiction: whether joints stick, by Karnopp's model (stiction.py).

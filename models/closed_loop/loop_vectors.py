@@ -22,8 +22,8 @@ class LoopLayouts:
     """Layouts of the flat vectors of a closed loop.
 
     Attributes:
-        state, settings, log: of the vectors. The loop takes the leading fields of the state that it
-            changes, and the others stay as they are.
+        state, settings, log: of the vectors. The loop takes the leading fields of the state, those
+            that it changes; the others stay as they are.
         changed: length of the leading part of the state that the loop changes.
         table_shape: shape of the curve's table.
     """
@@ -43,11 +43,11 @@ def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
     """
     memory = law_named(kind.controller).memory
     return LoopLayouts(
-        state_layout(system, memory),
-        settings_layout(system),
-        log_layout(system),
-        kept_layout(system, kind, memory).size,
-        kind.table_shape,
+        state=state_layout(system, memory),
+        settings=settings_layout(system),
+        log=log_layout(system),
+        changed=kept_layout(system, kind, memory).size,
+        table_shape=kind.table_shape,
     )
 
 
@@ -55,8 +55,8 @@ def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
     """The state that a closed loop carries from tick to tick.
 
     Args:
-        memory: what the law keeps besides, `Law.memory`. It comes late, so that the fields before
-            it are at the same places for all laws.
+        memory: fields that the law adds, `Law.memory`. They come late, so that the fields before
+            them have the same positions for all laws.
     """
     n, m, p = system.n, system.m, system.p
     return _layout(

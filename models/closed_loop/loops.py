@@ -91,8 +91,8 @@ class InterpretedLoop(Loop):
         ticks: int,
     ) -> tuple[Array, Array]:
         inputs = zip(states, settings, tables, strict=True)
-        after, rows = zip(*[self.run(*own, ticks) for own in inputs], strict=True)
-        return np.stack(after), np.stack(rows)
+        runs = [self.run(state, given, table, ticks) for state, given, table in inputs]
+        return np.stack([after for after, _ in runs]), np.stack([rows for _, rows in runs])
 
 
 class CompiledLoop(Loop):
@@ -131,11 +131,11 @@ class CompiledLoop(Loop):
     ) -> tuple[Array, Array]:
         layouts, robots = self.layouts, len(states)
         after = _stacked(states, robots, layouts.state.size)
-        own = _stacked(settings, robots, layouts.settings.size)
+        inputs = _stacked(settings, robots, layouts.settings.size)
         curves = _stacked(tables, robots, prod(layouts.table_shape))
         rows = np.empty((robots, ticks, layouts.log.size))
         run = self._short if ticks * robots <= SHORT else self._long
-        run(_address(own), _address(curves), _address(after), _address(rows), ticks, robots)
+        run(_address(inputs), _address(curves), _address(after), _address(rows), ticks, robots)
         return after, rows
 
 
@@ -143,7 +143,7 @@ def _stacked(vectors: Sequence[Array] | Array, count: int, size: int) -> Array:
     """A new array (count, size) of flat vectors; faster than `np.stack`.
 
     Raises:
-        ValueError: there are not so many vectors, or not of this size.
+        ValueError: the number of vectors or their size differs.
     """
     return np.concatenate(vectors, dtype=float).reshape(count, size)
 

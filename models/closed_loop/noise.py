@@ -1,11 +1,12 @@
 """Random numbers inside the closed loop: the same for the same seed, interpreted or compiled.
 
-They are a function of the seed and of the number of the tick, so that no generator's state has to
-be kept. The function is a Feistel network; its rounds take the middle of a square:
+They are a function of the seed and the number of the tick, so that there is no state of a
+generator. The function is a Feistel network; its rounds take the middle of a square:
 
     (L, R) -> (R, L + mid((R + k)²)),   k the key of the round, mid(x) = floor(x / 2^13),
 
-all modulo 2^26. Squares of such words are exact in double precision, so that both tiers agree.
+all modulo 2^26. Squares of such words are exact in double precision, so that both kinds of loop
+agree.
 
 Source: Widynski, Squares: a fast counter-based RNG, 2020, for the idea; the words are shorter here.
 """
@@ -26,7 +27,7 @@ STREAMS = 64  # independent pairs of numbers of one tick
 def standard_normal(seed: ca.SX, tick: ca.SX, count: int) -> ca.SX:
     """Independent numbers with the standard normal distribution, (count, 1).
 
-    By the method of Box and Muller, from two uniform numbers for two; none exceeds 6.1 in size.
+    By the method of Box and Muller, in pairs from pairs of uniform numbers; none exceeds 6.1.
 
     Args:
         seed: whole number from 0 to 2^26 - 1.

@@ -46,7 +46,7 @@ def brake_in(
 
     Args:
         y: shape (p,), [m].
-        theta: of the closest point, whose tangent is taken, [rad].
+        theta: of the closest point, at which the tangent is taken, [rad].
         direction: one of `DIRECTIONS`.
     """
     anchor, tangent = brake_at(robot, curve, y, theta)
@@ -59,7 +59,7 @@ def brake_in(
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """A wall in the path's plane, solid on one side; it goes on for ever to both sides.
+    """A straight wall of infinite length in the path's plane, solid on one side.
 
     Attributes:
         z1, z2: a point of its surface, [m].
@@ -104,7 +104,8 @@ def wall_force(
         q, v: shape (n,).
         lifted: point and normal of the wall, see `Wall.lifted`.
     """
-    return float(np.linalg.norm(_wall_force(robot)(q, v, plant, *lifted).full()))
+    place, normal = lifted
+    return float(np.linalg.norm(_wall_force(robot)(q, v, plant, place, normal).full()))
 
 
 @lru_cache(maxsize=64)

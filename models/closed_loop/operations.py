@@ -1,4 +1,4 @@
-"""CasADi's scalar operations, and what each is in the languages to which loops are translated.
+"""CasADi's scalar operations in the languages to which loops are translated.
 
 In LLVM each gives the same bits as in CasADi's virtual machine, since both call the same C library.
 In WebAssembly all but the functions of `LIBRARY` do; those are the browser's, and may differ in the
@@ -28,7 +28,7 @@ class Operation:
 
     @property
     def operands(self) -> int:
-        """How many operands it has, one or two."""
+        """Number of operands, one or two."""
         return 2 if "{1}" in self.llvm else 1
 
 
@@ -36,9 +36,9 @@ _CIRCULAR = ("sin", "cos", "tan", "asin", "acos", "atan")
 _OTHERS = ("sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "expm1", "log1p", "erf")
 _OF_TWO = ("atan2", "pow", "hypot", "fmod", "remainder")
 LIBRARY = {**{name: 1 for name in (*_CIRCULAR, *_OTHERS)}, **{name: 2 for name in _OF_TWO}}
-"""Functions of the C library, and how many arguments each takes."""
+"""Function of the C library -> number of its arguments."""
 MATHEMATICS = tuple(name for name in LIBRARY if name != "erf")
-"""Those that a page provides to WebAssembly: `mathematics` in assets/standalone/mathematics.ts."""
+"""The functions that a page provides to WebAssembly: assets/standalone/mathematics.ts."""
 
 
 def _called(name: str) -> Operation:
@@ -56,7 +56,7 @@ def _compared(llvm: str, wasm: str) -> Operation:
 
 
 def _connected(word: str) -> Operation:
-    """Two operands, connected by "and" or "or"; whatever is not 0 is true, also NaN."""
+    """Two operands connected by "and" or "or"; all numbers but 0 are true, and so is NaN."""
     llvm = [f"{{v}}.{i} = fcmp une double {{{i}}}, 0.0" for i in (0, 1)]
     llvm += [f"{{v}}.is = {word} i1 {{v}}.0, {{v}}.1", "{v} = uitofp i1 {v}.is to double"]
     return Operation("\n  ".join(llvm), f"0 =0 f64.ne 1 =0 f64.ne i32.{word} f64.convert_i32_u")
@@ -86,7 +86,7 @@ OPERATIONS = {
         "{v} = call double @llvm.copysign.f64(double {0}, double {1})", "0 1 f64.copysign"
     ),
     ca.OP_SIGN: Operation(_SIGN, "=-1 =1 0 =0 0 f64.lt select 0 =0 f64.lt select"),
-    # of a NaN and a number the number, of equal ones the first
+    # of a NaN and a number, the number; of equal ones, the first
     ca.OP_FMIN: Operation(
         "{v} = call double @llvm.minnum.f64(double {0}, double {1})",
         "0 1 0 1 f64.le 1 1 f64.ne i32.or select",
@@ -106,8 +106,7 @@ OPERATIONS = {
     ca.OP_CONSTPOW: _called("pow"),
     **{getattr(ca, f"OP_{name.upper()}"): _called(name) for name in LIBRARY},
 }
-"""CasADi's number of an operation -> the operation. Of those on scalars, erfinv and printme are
-lacking."""
+"""CasADi's number of an operation -> the operation: all on scalars except erfinv and printme."""
 
 
 def no_translation(owner: str, operation: int, target: str) -> CodedError:
@@ -115,8 +114,8 @@ def no_translation(owner: str, operation: int, target: str) -> CodedError:
 
     Args:
         owner: the law or function that contains it.
-        operation: CasADi's number of it, one of `ca.OP_*`.
-        target: what it would be translated to.
+        operation: its number in CasADi, one of `ca.OP_*`.
+        target: language to which it would be translated.
     """
     names = (name for name, code in vars(ca).items() if name[:3] == "OP_" and code == operation)
     name = next(names, str(operation))

@@ -1,7 +1,7 @@
-"""What a page without a server computes besides closed loops: geometry, distance, hand and brake.
+"""Computations of a page without a server besides closed loops: geometry, distance, hand, brake.
 
-CasADi functions, which `wasm_loop.py` translates, so that such a page holds no mathematics. Places
-in the picture are (right, up), [m], seen from far away.
+They are CasADi functions, which `wasm_loop.py` translates, so that such a page contains no
+mathematics. Positions in the picture are (right, up), [m], seen from far away.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
 
         picture: q -> ends of the bars, (2, 2 n), begin and end as columns; joints (2, m)
         tip: q -> y of the actual end-point
-        place: y -> where it is in the picture, (2, 1)
+        place: y -> its position in the picture, (2, 1)
         arrow: (y, force on it) -> the end of the arrow in the picture
         aim: (table, θ) -> σ(θ) in the picture
         distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m]
         brake: (table, y, θ) -> the unit tangent at θ, (p, 1), see `brake_at`
-        fault: (q, v, θ_r) -> why a run has stopped: 0 for not at all, or the place in
-            `stop_reasons`, counted from 1
+        fault: (q, v, θ_r) -> 0, or the number of the reason why a run has stopped: its position
+            in `stop_reasons`, counted from 1
         hand: (y, from, to) -> y moved in the path's plane as the picture's point moves
     """
     system = robot.system
@@ -68,7 +68,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
 
 
 def measurements(robot: Robot, parameters: Parameters) -> dict[str, ca.Function]:
-    """Of a robot with a flexible link, measured: (q, v) -> the tip's deflection [m], energy [J]."""
+    """For a robot with a flexible link: (q, v) -> its tip's deflection [m], modes' energy [J]."""
     if not robot.extras.keys() >= {"deflection", "internal_energy"}:
         return {}
     system = robot.system
@@ -84,7 +84,7 @@ def grid_of(robot: Robot, curve_points: Array) -> Array:
 
 
 def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
-    """The direction of view: (2, 3) from the robot's frame to the picture; and `place` of y = 0.
+    """The projection from the robot's frame to the picture, (2, 3), and `place` of y = 0.
 
     A robot that moves in the vertical plane is seen at right angles to it.
     """
@@ -107,7 +107,7 @@ def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
 
 
 def lift_of(robot: Robot, kind: Kind) -> Lift:
-    """From coordinates of the curve to the output space; vectors with `rate`."""
+    """The map from the curve's coordinates to the output space; with `rate`, of vectors."""
     frame = robot.frame.space if kind.space and robot.frame.space else robot.frame
     plane, size = frame.at(ca.SX(ca.DM(list(frame.numbers)))), kind.table_shape[0] // 4
     zeta = ca.SX.zeros(robot.system.p - size, 1)
@@ -115,7 +115,7 @@ def lift_of(robot: Robot, kind: Kind) -> Lift:
 
 
 def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
-    """The smaller one of the distances that are found from the guess and from the grid."""
+    """The smaller of the distances found from the guess and from the grid."""
     grid, guess = ca.SX.sym("grid", y.numel(), GRID), ca.SX.sym("guess")
     span = 2 * np.pi / (GRID if kind.closed else GRID - 1)
     squared = ca.sum1((grid - y @ ca.DM.ones(1, GRID)) ** 2)
@@ -132,7 +132,7 @@ def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
 
 
 def _beyond(lift: Lift, table: ca.SX, y: ca.SX, end: float) -> ca.SX:
-    """Distance to the half-line by which an open curve goes on from an end."""
+    """Distance to the half-line by which an open curve continues beyond an end."""
     local = LocalCurve.from_values(ca.SX(end), False, table @ basis(ca.SX(end), False))
     gap, away = y - lift(local.sigma, False), np.sign(end) * lift(local.first, True)
     return _length(gap - ca.fmax(ca.dot(gap, away), 0) / ca.dot(away, away) * away)
@@ -154,15 +154,15 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
 
 
 def _fault(robot: Robot) -> ca.Function:
-    """See `fault_in`: the first reason that holds."""
+    """The function "fault": the number of the first reason that applies, as in `fault_in`."""
     q, v, theta_ref = robot.system.q, robot.system.v, ca.SX.sym("theta_ref")
-    own, last = stop_code(robot), len(stops_of(robot)) + 3
-    code = ca.if_else(own, own, ca.if_else(theta_ref != theta_ref, last, 0))
+    stop, last = stop_code(robot), len(stops_of(robot)) + 3
+    code = ca.if_else(stop, stop, ca.if_else(theta_ref != theta_ref, last, 0))
     return ca.Function("fault", [q, v, theta_ref], [code])
 
 
 def stop_reasons(robot: Robot, parameters: Parameters, q: Array | None, law: str) -> list[Message]:
-    """Why a run may stop, in the order of `fault`.
+    """The reasons why a run may stop, in the order of `fault`.
 
     Args:
         q: a configuration of the run, or None; see `Robot.reasons`.
@@ -174,7 +174,7 @@ def stop_reasons(robot: Robot, parameters: Parameters, q: Array | None, law: str
 
 
 def _hand(robot: Robot, kind: Kind, seen: ca.DM, y: ca.SX) -> ca.Function:
-    """See `page_functions`; also on a space curve the hand moves in the path's plane."""
+    """The function "hand", which moves in the path's plane also on a space curve."""
     frame = robot.frame
     plane, zeta = frame.at(ca.SX(ca.DM(list(frame.numbers)))), ca.SX.zeros(robot.system.p - 2, 1)
     axes = ca.horzcat(*(plane.join(ca.SX(ca.DM(e)), zeta, True) for e in ([1, 0], [0, 1])))

@@ -70,8 +70,8 @@ def push(
     where, active = settings["hold_anchor"], settings["hold_active"]
     brake = forces.hold(y, y_rate, where, settings["hold_tangent"], active, grip.hold)
     brake += forces.hold(y, y_rate, where, settings["hold_normal"], active, grip.hold)
-    solid = settings["wall_place"], settings["wall_normal"], settings["wall_active"]
-    outside = pull + brake + forces.wall(y, y_rate, *solid, grip.wall)
+    place, normal, solid = (settings[f"wall_{name}"] for name in ("place", "normal", "active"))
+    outside = pull + brake + forces.wall(y, y_rate, place, normal, solid, grip.wall)
     force = ca.SX.sym("force", system.p)
     transposed = ca.Function(
         "transposed",
@@ -79,7 +79,7 @@ def push(
         [ca.jtimes(system.output, system.q, force, True)],
     )
     pushed = transposed(state["q"], settings["plant"], outside)
-    if not kind.stiction:  # which has dry friction of its own
+    if not kind.stiction:  # stiction includes dry friction
         rates = system.input_rates(state["q"], state["v"], settings["plant"])
         compliance = system.compliance(state["q"], settings["plant"])
         u = u + forces.dry_friction(rates, settings["coulomb"], compliance, settings["dt"])

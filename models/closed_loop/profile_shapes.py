@@ -1,4 +1,4 @@
-"""The speed profiles that parameters can choose: shapes whose scale is the wanted speed."""
+"""The speed profiles among the parameters: shapes that are scaled by the wanted speed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from onpath.models.systems.parameters import Parameters
 SWING = 0.5
 """Amplitude of the sine, as a share of its mean."""
 PIECES = 32
-"""Straight pieces of a period of the sine; they are within 0.5 % of its amplitude."""
+"""Straight pieces per period of the sine; their error is within 0.5 % of its amplitude."""
 SHAPES = {
     "ramp_up": ((0.0, 1.0), (0.0, 1.0)),
     "sine": (

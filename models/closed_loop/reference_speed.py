@@ -28,5 +28,10 @@ def task_at(state: Fields, settings: Fields, h: ca.SX) -> PathReference:
     """The wanted motion along the path, the time h [s] ahead."""
     speed, rate = wanted_speed(state, settings)
     ahead = speed + h * rate
-    goal = settings["position"], settings["target"]
-    return PathReference(*goal, ahead, settings["speed_limit"], rate)
+    return PathReference(
+        position=settings["position"],
+        target=settings["target"],
+        speed=ahead,
+        limit=settings["speed_limit"],
+        acceleration=rate,
+    )

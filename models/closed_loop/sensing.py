@@ -51,7 +51,7 @@ def readings(
     """What the encoders read in a run from its first tick on, (ticks, joints), [rad].
 
     Args:
-        settings: flat vector of the run, of which the sensors' settings count.
+        settings: flat vector of the run; only the settings of the sensors matter.
         q: true coordinates in each tick, (ticks, n).
     """
     joints = system.joints
@@ -76,8 +76,8 @@ def _noise(system: MechanicalSystem, state: Fields, settings: Fields) -> ca.SX:
     modes = system.modes
     deviation = settings["sensor_noise"] * ca.SX.ones(system.joints)
     if modes:
-        own = system.parameter_names.index("l")
-        tip = ca.DM(beam_modes(modes, 1.0).tip) / ca.sqrt(settings["model"][own])
+        length = settings["model"][system.parameter_names.index("l")]
+        tip = ca.DM(beam_modes(modes, 1.0).tip) / ca.sqrt(length)
         deviation = ca.vertcat(deviation, settings["strain_noise"] / (tip * sqrt(modes)))
     return deviation * standard_normal(settings["seed"], state["ticks"], system.n)
 

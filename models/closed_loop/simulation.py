@@ -85,7 +85,7 @@ def kind_of(
         controller: name of a law of `models/control/laws`.
         curve: the path. While one path blends into another, which may have no level set, λ is the
             signed distance; elsewhere `check_level_set` refuses such a path.
-        push: what acts from outside. If given and nothing acts, the kind may be a `free` one; not
+        push: the external action. If it is given and nothing acts, the kind may be `free`, except
             under a typed law, which would have to be compiled twice.
     """
     plain = parameters.torque_limit == 0 == parameters.coulomb
@@ -119,7 +119,7 @@ def _gives_way(controller: str, parameters: Parameters) -> bool:
 def kernel_of(robot: Robot, kind: Kind) -> Kernel:
     """The kernel for a robot and a kind, built once for all robots with the same `core`.
 
-    Only those asked for last are kept: a compiled loop does not need its kernel any more.
+    Only the latest ones are kept: a compiled loop no longer needs its kernel.
     """
     return (_typed_kernel if is_text(kind.controller) else _kernel)(robot.core, kind)
 
@@ -129,7 +129,7 @@ def _built(robot: Robot, kind: Kind) -> Kernel:
 
 
 _kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST)(_built)
-"""Apart, so that no number of typed laws displaces the kernels of the registry's."""
+"""Separate caches, so that typed laws cannot displace the kernels of the registry's laws."""
 
 
 def settings_vector(
@@ -139,7 +139,7 @@ def settings_vector(
 
     Args:
         curve: for its level set only.
-        push: what acts from outside.
+        push: the external action.
 
     Returns:
         Shape (layouts.settings.size,).
@@ -191,7 +191,7 @@ def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:
 def pushed(layouts: LoopLayouts, settings: Array, push: Push) -> Array:
     """The same settings with another push.
 
-    Much cheaper than `settings_vector`, because it runs for every movement of a hand.
+    It runs for every movement of a hand and is much cheaper than `settings_vector`.
     """
     result, slices = settings.copy(), layouts.settings.slices
     for name, value in _push_fields(push, result[slices["hand_target"]].size).items():
@@ -266,7 +266,7 @@ def first_state(
 
 
 def primed(layouts: LoopLayouts, state: Array) -> Array:
-    """The state of a loop without delay for one with delay: the torque has been the same so far."""
+    """The state for a loop with delay from that of one without: the torque has been constant."""
     result, slices = state.copy(), layouts.state.slices
     result[slices["queue"]] = np.tile(state[slices["u"]], LONGEST)
     return result
@@ -282,7 +282,7 @@ def brake_at(robot: Robot, curve: Curve, y: Array, theta: float) -> tuple[Array,
 
     Args:
         y: shape (p,), [m].
-        theta: of the closest point, whose tangent is taken, [rad].
+        theta: of the closest point, at which the tangent is taken, [rad].
     """
     first = robot.frame.lift(curve.at(np.array(theta), 1)) - robot.frame.lift(np.zeros(2))
     return np.array(y), first / np.linalg.norm(first)

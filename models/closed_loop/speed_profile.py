@@ -1,4 +1,4 @@
-"""A wanted speed η₂ref(t) that is linear between given times, once or again and again."""
+"""A wanted speed η₂ref(t) that is linear between given times, once or periodically."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Leg:
     """A part of a profile in which the speed is linear.
 
     Attributes:
-        begin, end: first tick, and that of the next part; None: for ever.
+        begin, end: first tick, and first tick of the next part; None if there is no next part.
         first, last: speeds there, [rad/s].
         rate: size of the speed's rate, [rad/s²].
     """
@@ -48,7 +48,7 @@ class SpeedProfile:
     Attributes:
         times: not decreasing, [s].
         speeds: [rad/s].
-        period: time after which it begins again, not before its last point, [s]; 0: never.
+        period: time after which it repeats, not before its last point, [s]; 0: never.
 
     Raises:
         ValueError: no points or too many, times that decrease, or numbers that are not finite.
@@ -80,12 +80,16 @@ class SpeedProfile:
         base = tick // lap * lap if lap else 0
         here = bisect_right(ticks, tick - base)
         if here == 0:
-            return Leg(base, base + ticks[0], speeds[0], speeds[0], 0.0)
+            first = speeds[0]
+            return Leg(begin=base, end=base + ticks[0], first=first, last=first, rate=0.0)
         begin, first = base + ticks[here - 1], speeds[here - 1]
         if here == len(ticks):
-            return Leg(begin, base + lap if lap else None, first, first, 0.0)
+            return Leg(
+                begin=begin, end=base + lap if lap else None, first=first, last=first, rate=0.0
+            )
         end, last = base + ticks[here], speeds[here]
-        return Leg(begin, end, first, last, abs(last - first) / ((end - begin) * dt))
+        rate = abs(last - first) / ((end - begin) * dt)
+        return Leg(begin=begin, end=end, first=first, last=last, rate=rate)
 
 
 @lru_cache(maxsize=64)

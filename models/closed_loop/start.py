@@ -1,8 +1,8 @@
-"""The initial state of a run: place by the path, velocity, and lead of the reference point."""
+"""The initial state of a run: position, velocity, and lead of the reference point."""
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, dataclass, fields, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -25,12 +25,12 @@ BOUNDS = {"theta": np.pi, "beside": 0.2, "along": 2.0, "across": 2.0, "clock_off
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """Where and how a run starts, by the path.
+    """The start of a run, relative to the path.
 
     Attributes:
         theta: parameter of a point of the path, [rad].
-        beside: distance of the end-point from there, along the normal, to the left of the path
-            positive, [m].
+        beside: distance of the end-point from that point along the normal, positive to the left of
+            the path, [m].
         along, across: velocity of the end-point along the path's tangent, and along its normal to
             the left, [m/s].
         clock_offset: how far the reference point of a law with a clock is ahead of the closest
@@ -53,7 +53,7 @@ class Start:
                 raise out_of_range(field.name, f"{value:g}", f"{-most:g}", f"{most:g}")
 
     def place(self, curve: Curve) -> Array:
-        """The point of the path's plane, or of space, where it is, (2,) or (3,), [m]."""
+        """The starting point in the path's plane or in space, (2,) or (3,), [m]."""
         here = curve.at(np.array(self.theta))
         return here + self.beside * left_of(curve, self.theta) if self.beside else here
 
@@ -70,10 +70,10 @@ def left_of(curve: Curve, theta: float) -> Array:
 
 
 def nearest_start(curve: Curve, z: Array, start: Start = ON_PATH) -> Start:
-    """A start at a point z of the path's plane, shape (2,), as near to it as a start can be.
+    """The start nearest to a point z of the path's plane, shape (2,).
 
     Args:
-        start: whose velocity and clock offset are kept.
+        start: its velocity and clock offset are kept.
     """
     theta = float(curve.plan.nearest(z[None])[0][0])
     theta = float(
@@ -81,13 +81,13 @@ def nearest_start(curve: Curve, z: Array, start: Start = ON_PATH) -> Start:
     )
     beside = float((z - curve.at(np.array(theta))[:2]) @ left_of(curve, theta)[:2])
     beside = float(np.clip(beside, -BOUNDS["beside"], BOUNDS["beside"]))
-    return Start(theta, beside, start.along, start.across, start.clock_offset)
+    return replace(start, theta=theta, beside=beside)
 
 
 def velocity_at(
     robot: Robot, parameters: Parameters, curve: Curve, q: Array, along: float, across: float
 ) -> Array:
-    """Joint velocities for a velocity of the end-point by the path, shape (n,).
+    """Joint velocities for a velocity of the end-point relative to the path, shape (n,).
 
     Coordinates without a motor are at rest: v = B w.
 
@@ -129,7 +129,7 @@ def _matrices(robot: Robot) -> ca.Function:
 
 
 def lead(state: Array, layouts: LoopLayouts, curve: Curve, offset: float) -> Array:
-    """Put the reference point of a first state ahead by an offset, [rad], or at a path's end."""
+    """Move a first state's reference point ahead by an offset, [rad], at most to a path's end."""
     theta_ref = layouts.state.unpack(state)["theta_ref"]
     theta_ref += offset
     if not curve.closed:

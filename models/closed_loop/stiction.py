@@ -1,9 +1,9 @@
 """Joints that stick: dry friction with a static level, by Karnopp's model.
 
-A joint at rest stays exactly at rest as long as the friction torque that this takes does not exceed
-the static level; then it slides against the Coulomb level. It comes to rest where it slows down to
-less than `BAND`, or its velocity changes its sign during a tick, and the static level suffices to
-hold it there.
+A joint at rest stays exactly at rest as long as the friction torque that holds it does not exceed
+the static level. Beyond that it slides against the Coulomb level. It comes to rest where it slows
+down to less than `BAND`, or its velocity changes its sign during a tick, and the static level
+suffices to hold it there.
 
 The joints are the first m coordinates. Their friction is held constant over a tick, like all
 forces.
@@ -34,7 +34,7 @@ class Friction:
     Attributes:
         torque: [N m].
         rests: 1 for joints that stay at rest.
-        stops: 1 for joints that would stay at rest, if they came to rest.
+        stops: 1 for joints that would stay at rest if they came to rest.
     """
 
     torque: ca.SX

@@ -32,7 +32,7 @@ class Trajectory:
         speed: along the path, shape (n,), [m/s].
         held: whether the brake was on, shape (n,).
         stopped_at: time at which the run was stopped as diverged, [s], or None.
-        reason: why it was stopped, or "".
+        reason: the reason for the stop, or "".
         level_set: whether the first component of ξ is s(y), [m²], instead of a distance, [m].
     """
 
@@ -117,7 +117,7 @@ def record(
 
 
 def measured_names(robot: Robot) -> list[str]:
-    """Names of the columns of the joint angles as measured."""
+    """Names of the columns of the measured joint angles."""
     units = (name.rpartition("_") for name in robot.system.coordinate_names[: robot.system.joints])
     return [f"{name}_measured_{unit}" for name, _, unit in units]
 
@@ -128,13 +128,13 @@ def header(
     """Column names of the CSV, with units.
 
     xi1 is in [m], or in [m²] with `level_set`, and its rate accordingly. The references
-    are the point of the laws that have a clock, and the wanted speed. The distance is that of the
-    actual end-point, apart from any law.
+    are the reference point of laws with a clock, and the wanted speed. The distance is that of the
+    actual end-point and does not depend on the law.
 
     Args:
         level_set: whether xi1 is a level set.
-        sides: whether the rows name the side.
-        measured: whether there are columns of the joint angles as measured.
+        sides: whether there is a column for the side.
+        measured: whether there are columns for the measured joint angles.
     """
     p, m = robot.system.p, robot.system.m
     units = (name.rpartition("_") for name in robot.system.coordinate_names)
@@ -171,7 +171,7 @@ def write_csv(
     The same trajectories give the same bytes.
 
     Args:
-        sides: of a lab, one for each trajectory; they get a column. None: there are none.
+        sides: the side of each trajectory, for a column of its own; None for no such column.
     """
     writer = csv.writer(file, lineterminator="\n")
     runs = list(trajectories)

@@ -1,8 +1,8 @@
 """Compiles a kernel to machine code in this process, with LLVM.
 
 The scalar instructions of a tick are translated one by one to LLVM's intermediate language. The
-product of the curve's table with its basis functions, up to half of all operations, is made of
-vector instructions, which sum the rows of the table side by side. Each operation rounds exactly as
+product of the curve's table and its basis functions, up to half of all operations, uses vector
+instructions, which sum the rows of the table in parallel. Each operation rounds exactly as
 in CasADi's virtual machine, and sums are taken in its order, so that both loops agree bit by bit.
 """
 
@@ -111,7 +111,7 @@ def instructions(
     Args:
         inputs, outputs: names of pointers to dense matrices, stored by columns.
         prefix: of the names of all values.
-        owner: to whom the function belongs, for messages.
+        owner: name of the law or function, for messages.
 
     Raises:
         CodedError: see `translate`.
@@ -139,7 +139,7 @@ def instructions(
 
 
 def _product(rows: int, terms: int, column: int) -> list[str]:
-    """LLVM instructions for a column of %values, the table %curve times that of %basis.
+    """LLVM instructions for a column of %values: the table %curve times the same column of %basis.
 
     The interpreter, too, begins with 0 and adds the terms in their order.
     """

@@ -19,7 +19,7 @@ from onpath.models.closed_loop.wasm_module import Part, WasmFunction, wasm_modul
 
 DOUBLE = 8  # bytes
 _CODES = {code: each.wasm.split() for code, each in OPERATIONS.items() if each.wasm}
-_PLACES = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)  # what is no operation
+_PLACES = (ca.OP_CONST, ca.OP_INPUT, ca.OP_OUTPUT)  # instructions that are not operations
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class Scan:
 
     Attributes:
         step: (state, constants, rows) -> (state, result row).
-        stride: how many numbers further the rows begin at the next step.
+        stride: distance between the beginnings of the rows of consecutive steps, in numbers.
     """
 
     step: ca.Function
@@ -49,19 +49,18 @@ def wasm_of(
     least one step; results may be the rows themselves.
 
     Raises:
-        CodedError: an operation has no translation; the message names it and the law, or the
-            function that is of no law.
+        CodedError: an operation has no translation; the message names it and its law or function.
     """
     repeated = {name: Scan(_tick(kernel), 0) for name, kernel in loops.items()} | dict(scans)
-    laws = {name: kernel.law for name, kernel in loops.items()}  # refused before what is of none
+    laws = {name: kernel.law for name, kernel in loops.items()}  # their faults are reported first
     steps = {
         name: _translated(f"{name}.step", scan.step, laws.get(name, name))
         for name, scan in repeated.items()
     }
-    own = [_translated(name, function, name) for name, function in functions.items()]
+    translated = [_translated(name, function, name) for name, function in functions.items()]
     for name, scan in repeated.items():
-        own += [steps[name], _repeated(name, len(MATHEMATICS) + len(own), scan)]
-    return wasm_module(own)
+        translated += [steps[name], _repeated(name, len(MATHEMATICS) + len(translated), scan)]
+    return wasm_module(translated)
 
 
 def _tick(kernel: Kernel) -> ca.Function:
@@ -74,12 +73,12 @@ def _tick(kernel: Kernel) -> ca.Function:
 
 
 def _translated(name: str, function: ca.Function, owner: str) -> WasmFunction:
-    """All inputs are read before any output is written, so that an output may overwrite one.
+    """Translate a function. All inputs are read before any output is written: they may overlap.
 
-    What is used once is computed where it is used; everything else in a local variable.
+    A value that is used once is computed in place; all others are kept in local variables.
 
     Args:
-        owner: to whom the function belongs, for messages.
+        owner: name of the law or function, for messages.
     """
     for i in range(function.n_instructions()):
         if (code := function.instruction_id(i)) not in (*_PLACES, *_CODES):
@@ -125,8 +124,8 @@ def _filled(code: int, operands: list[list[Part]]) -> list[Part]:
 
 
 def _uses(function: ca.Function) -> Counter[int]:
-    """How often the result of each instruction is needed, by its number."""
-    made, uses = dict[int, int](), Counter[int]()  # made: by which instruction each register was
+    """Number of an instruction -> how often its result is used."""
+    made, uses = dict[int, int](), Counter[int]()  # register -> the instruction that made it
     for i in range(function.n_instructions()):
         code, operands = function.instruction_id(i), function.instruction_input(i)
         if code == ca.OP_OUTPUT:
@@ -139,7 +138,7 @@ def _uses(function: ca.Function) -> Counter[int]:
 
 
 def _repeated(name: str, step: int, scan: Scan) -> WasmFunction:
-    """Calls the function `step` again and again, as `wasm_of` says of loops and scans."""
+    """The loop that calls the function `step` repeatedly, see `wasm_of`."""
     state, constants, rows, results, left = (("local.get", i) for i in range(5))
     each = [state, constants, rows, state, results, ("call", step)]
     on = list[Part]()

@@ -1,4 +1,4 @@
-"""The binary format of WebAssembly, as far as functions of numbers in memory need it.
+"""The part of WebAssembly's binary format that functions of numbers in memory need.
 
 A function is a list of `Part`s in the textual format's words: "f64.add", ("local.get", 3).
 
@@ -78,13 +78,13 @@ def wasm_module(functions: Sequence[WasmFunction]) -> bytes:
     imports = [
         _name("Math") + _name(name) + b"\x00" + _whole(LIBRARY[name] - 1) for name in MATHEMATICS
     ]
-    own = [_whole(2 + kinds.index(function.pointers)) for function in functions]
+    signatures = [_whole(2 + kinds.index(function.pointers)) for function in functions]
     exports = [
         _name(function.name) + b"\x00" + _whole(len(MATHEMATICS) + i)
         for i, function in enumerate(functions)
     ]
     types, bodies = [unary, binary, *taken], map(_code, functions)
-    sections = {1: types, 2: [*imports, memory], 3: own, 7: exports, 10: bodies}
+    sections = {1: types, 2: [*imports, memory], 3: signatures, 7: exports, 10: bodies}
     parts = (bytes([number]) + _sized(_list(content)) for number, content in sections.items())
     return b"\0asm\x01\0\0\0" + b"".join(parts)
 

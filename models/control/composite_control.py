@@ -16,12 +16,12 @@ mode without its predicted part f̂_1, gives the mode and the absorber the dampi
 
     m'' + 4 ζ ω_1 m' + ω_1² m = 4 ζ² ω_1² (f_1 - f̂_1) / b_1.
 
-Progress along the path is free: the wanted speed passes a third-order filter, so that the beam
-bends gently, and it is reduced while the tip is held back.
+Progress along the path is free: the wanted speed passes through a third-order filter, so that the
+beam bends gently, and it is reduced while the tip is held back.
 
 Measured on an independent model (a chain of 20 rigid segments), rms distance after the first 2 s:
-0.023 mm; with EI wrong by ±20 %, 0.07 mm; with an unknown 100 g at the tip, 1.2 mm, and 10 mm
-if its weight, 1 N, acts too: K3 = 0, so that nothing removes the lasting offset.
+0.023 mm; with EI wrong by ±20 %, 0.07 mm; with an unknown 100 g at the tip, 1.2 mm, and 10 mm if
+its weight, 1 N, acts too: with K3 = 0 nothing removes the lasting offset.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The mass that a hand feels at the end-point, which depends on the direction.
 
-A force f on the end-point of a robot at rest, without motors, accelerates it by J M⁻¹ Jᵀ f. Along a
-unit vector n that is f / m(n) for f along n, with the effective mass m(n) = 1 / (nᵀ J M⁻¹ Jᵀ n).
-The points sqrt(m(n)) n are an ellipse.
+A force f on the end-point of a robot at rest, without motors, accelerates it by J M⁻¹ Jᵀ f. For a
+force along a unit vector n, the acceleration along n is f / m(n), with the effective mass m(n) = 1
+/ (nᵀ J M⁻¹ Jᵀ n). The points sqrt(m(n)) n are an ellipse.
 
 Source: O. Khatib, Inertial properties in robotic manipulation, Int. J. Robotics Research 14 (1995).
 """
@@ -19,15 +19,15 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 
-def effective_masses(robot: Robot, q: Array, parameters: Parameters, ways: Array) -> Array:
-    """Effective masses at a configuration in some directions of the path's plane, (k,), [kg].
+def effective_masses(robot: Robot, q: Array, parameters: Parameters, directions: Array) -> Array:
+    """Effective masses at a configuration in several directions of the path's plane, (k,), [kg].
 
     Args:
         q: shape (n,).
-        ways: unit vectors of the plane, shape (k, 2).
+        directions: unit vectors of the plane, shape (k, 2).
     """
     frame = robot.frame
-    lifted = frame.lift(ways) - frame.lift(np.zeros(2))
+    lifted = frame.lift(directions) - frame.lift(np.zeros(2))
     mobility = _mobility(robot)(q, robot.plant(parameters)).full()
     return 1.0 / np.einsum("ki,ij,kj->k", lifted, mobility, lifted)
 

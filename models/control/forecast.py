@@ -1,10 +1,10 @@
-"""What will happen to a robot with coordinates without a motor, said before it runs.
+"""A forecast, before a run, for a robot with coordinates that have no motor.
 
-Laws that command y'' turn it into torques by D = J g_v. If D loses rank at the start, there are no
-such torques: the rank test (11). If it has full rank, the output moves as commanded, and it remains
-to ask what the other coordinates do meanwhile: the zero dynamics.
+Laws that command y'' find the torques by D = J g_v. If D loses rank at the start, there are no such
+torques: this is the rank test (11). If D has full rank, the output moves as commanded, and the zero
+dynamics tell what the other coordinates do meanwhile.
 
-All of it is for the robot at rest, and for the controller's model.
+All of this is for the robot at rest, by the controller's model.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ LEAST_RANK = 1e-6
 AT_REST = 1e-3
 """Acceleration of the internal motion, SI, up to which a configuration is an equilibrium."""
 SLOWEST = 0.01
-"""Smallest growth rate that is told, [1/s]: less cannot be seen in a run."""
+"""Smallest growth rate that is reported, [1/s]: a smaller one cannot be seen in a run."""
 NEUTRAL = 1e-7
-"""The same relative to the largest exponent: rounding error of undamped motion."""
+"""Rounding error of undamped motion, relative to the largest exponent."""
 
 
 def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Message | None:
-    """What will go wrong under a law if the robot starts at rest at q; None if nothing is foreseen.
+    """The problem under a law if the robot starts at rest at q; None if none is foreseen.
 
     Args:
         law: name of the control law. Nothing is foreseen of laws that command torques.
@@ -87,12 +87,12 @@ def growth_rate(robot: Robot, parameters: Parameters, q: Array) -> float | None:
 
 def forecasts(robot: Robot, laws: Iterable[str], parameters: Parameters, q: Array) -> list[Message]:
     """The forecasts under several laws, each once."""
-    told = list[Message]()
+    messages = list[Message]()
     for law in laws:
-        found = forecast(robot, law, parameters, q)
-        if found is not None and found not in told:
-            told.append(found)
-    return told
+        message = forecast(robot, law, parameters, q)
+        if message is not None and message not in messages:
+            messages.append(message)
+    return messages
 
 
 def check_possible(robot: Robot, law: str, parameters: Parameters, q: Array) -> None:
@@ -116,7 +116,7 @@ def _jacobian(system: MechanicalSystem) -> ca.Function:
 
 
 def _following(system: MechanicalSystem, q: Array, model: Array) -> tuple[int, ...]:
-    """The coordinates that follow the output at q: the first m, or those that do so best."""
+    """The coordinates that follow the output at q: the first m, or the best conditioned ones."""
     jacobian = np.array(_jacobian(system)(q, model))
     first = tuple(range(system.m))
     if conditioning(jacobian[:, first]) > LEAST_RANK:

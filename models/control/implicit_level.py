@@ -1,11 +1,11 @@
-"""The polynomial of an implicit path as what is measured across it, as in eq. (15) for a circle.
+"""The polynomial of an implicit path as the output across it, as eq. (15) for a circle.
 
-λ = s(z) / g, with the constant g that makes λ the distance to first order, on the mean of the path:
+λ = s(z) / g. With the constant g, λ is the distance to first order, on average over the path:
 
     g = mean of |∇s| over the path, with the sign for which λ is positive on the left.
 
 The virtual output (θ, λ) exists where ∇s is not orthogonal to the normal at the closest point of
-the path. `check_level` wants that in the whole tube in which the closest point is unique.
+the path. `check_level` requires that in the whole tube in which the closest point is unique.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from onpath.models.paths.curves import Curve
 from onpath.models.paths.tube import curve_frames, offset, tube_width
 
 INSIDE = 0.9
-"""Share of the tube that is looked at: at its border the closest point is not unique."""
+"""Share of the tube that is checked: at its border the closest point is not unique."""
 WIDEST = 0.1
-"""Half of the strip that is looked at, if the tube is wider, [m]."""
+"""Half the width of the strip that is checked, if the tube is wider, [m]."""
 SAMPLES, LINES = 240, 41
 LEAST = 0.02
 """Least slope of λ along the normal of the closest point; near the path it is 1."""
@@ -54,7 +54,7 @@ class ImplicitLevel:
         return s / self.scale, gradient / self.scale
 
     def bent(self, z: ca.SX, z_rate: ca.SX) -> ca.SX:
-        """The part z'ᵀ (∂²λ/∂z²) z' of λ'' that is there at z'' = 0, (1, 1), [m/s²]."""
+        """λ'' at z'' = 0, which is z'ᵀ (∂²λ/∂z²) z', (1, 1), [m/s²]."""
         hessian = _derivatives(self.text)(z)[2]
         return ca.dot(z_rate, hessian @ z_rate) / self.scale
 
@@ -81,7 +81,7 @@ def _derivatives(text: str) -> ca.Function:
 
 @lru_cache(maxsize=64)
 def implicit_level(curve: Curve) -> ImplicitLevel | None:
-    """λ of a curve that is given by an equation; None for another."""
+    """λ of a curve that is given by an equation; None for any other curve."""
     if curve.equation is None:
         return None
     frames = curve_frames(curve, curve.sample(SAMPLES))
@@ -110,7 +110,7 @@ def check_level(curve: Curve) -> None:
 
 
 def _is_polynomial(text: str) -> bool:
-    """Whether s is one; the text is one that `level_function` has read, with constant exponents."""
+    """Whether s is a polynomial; `level_function` has read the text, so exponents are constant."""
     parts = list(ast.walk(syntax_tree(text.partition("=")[2].strip())))
     divisors = [p.right for p in parts if isinstance(p, ast.BinOp) and isinstance(p.op, ast.Div)]
     in_divisors = [part for each in divisors for part in ast.walk(each)]

@@ -1,6 +1,6 @@
 """The channels of any control law, if its closed loop along the path has poles.
 
-A law of the registry says whether it is `linear`, or what its `channels` are at a place. The
+A law of the registry declares whether it is `linear`, or what its `channels` are at a place. The
 commands of a typed law are linearized about the motion on the path at the wanted speed. Its poles
 are constant if the commands depend on ξ, ξ', ∫ξ dt, θ' and the wanted speed only; if they depend on
 the place or on the time, it has none.
@@ -21,7 +21,7 @@ from onpath.models.errors import Message
 from onpath.models.systems.parameters import Parameters
 
 MOTION = ("xi", "dxi", "int_xi", "dtheta", "speed")
-"""What the commands of a law with poles may depend on, besides the gains."""
+"""The quantities on which the commands of a law with poles may depend, besides the gains."""
 STEP, ASIDE = 1e-6, np.array([0.01, 0.1, 0.01, 1.0, 0.5])
 """Steps of the tests for smoothness and for linearity, in SI units."""
 LARGEST_BEND = 1e-3
@@ -31,7 +31,7 @@ LARGEST_BEND = 1e-3
 def channels_of(
     law: str, parameters: Parameters, place: Place | None = None
 ) -> tuple[Channel, Channel] | Message:
-    """The channels of a law across and along the path, or why it has none.
+    """The channels of a law across and along the path, or the reason why it has none.
 
     Args:
         law: a name of the registry, or a typed law.
@@ -42,12 +42,12 @@ def channels_of(
     """
     if is_text(law):
         return _of_typed(law, parameters)
-    own = law_named(law)
-    if own.linear:
+    entry = law_named(law)
+    if entry.linear:
         return channels(parameters)
-    if own.channels is None or place is None:
+    if entry.channels is None or place is None:
         return Message("behaviour.no_poles")
-    return own.channels(parameters, place)
+    return entry.channels(parameters, place)
 
 
 def _of_typed(text: str, parameters: Parameters) -> tuple[Channel, Channel] | Message:
@@ -83,9 +83,9 @@ def _of_typed(text: str, parameters: Parameters) -> tuple[Channel, Channel] | Me
 
 
 def _slopes(law: ca.Function, on_path: Array) -> Array | None:
-    """The slopes of the commands there, (2, 5); None if the law has none or does not go on there.
+    """The slopes of the commands on the path, (2, 5); None if the law is not smooth or leaves it.
 
-    A law that does not command 0 goes on elsewhere, with the same slopes if it is linear.
+    A law that does not command 0 leaves the motion, but has the same slopes there if it is linear.
     """
 
     def at(x: Array) -> tuple[Array, Array]:

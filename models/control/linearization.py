@@ -51,7 +51,7 @@ def linearization(
 
 
 def _least_solution(system: MechanicalSystem, gain: ca.SX, rhs: ca.SX) -> ca.SX:
-    """The solution of D u = r; if there are many, that of the least norm: see `linearization`."""
+    """The solution of D u = r; if there are many, the one of least norm: see `linearization`."""
     if system.m == system.p:
         return _solve(gain, rhs)
     spread = gain.T  # W⁻¹ D^T
@@ -72,9 +72,9 @@ def admissible_along(base: ca.SX, per_along: ca.SX, along: ca.SX, limit: ca.SX) 
 
         lower = max_i min((±limit - B_i) / A_i),   upper = min_i max((±limit - B_i) / A_i)
 
-    So a torque limit takes from the motion along the path first, and leaves the motion across it as
-    commanded while it can. If no v_par is admissible, the middle of the two bounds is taken, and
-    the torques are clipped afterwards.
+    So a torque limit first reduces the motion along the path, and leaves the motion across it as
+    commanded as long as possible. If no v_par is admissible, the middle of the two bounds is taken,
+    and the torques are clipped afterwards.
 
     Args:
         base: B, the torques at v_par = 0, (m, 1), [N m].

@@ -1,4 +1,4 @@
-"""What varies along a path and matters for the poles of some laws: its turning, and the inertia."""
+"""Quantities along a path on which the poles of some laws depend: its turning, and the inertia."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Place:
             dA/dθ = A Ω, (2, 2) or (3, 3).
         turns_evenly: whether Ω is the same at all places of the path.
         slope, bend: g = m' / (2 m) [1/rad] and dg/dθ [1/rad²], with m(θ) = M dq/dθ · dq/dθ the
-            robot's inertia along the path; 0 if it has not as many outputs and motors as
+            robot's inertia along the path; 0 unless there are as many outputs and motors as
             coordinates.
     """
 
@@ -44,7 +44,7 @@ class Place:
 def place_at(
     robot: Robot, parameters: Parameters, curve: Curve, theta: float, rate: float
 ) -> Place:
-    """A place on a path, for the robot as its controller's model has it.
+    """A place on a path, with the robot of the controller's model.
 
     Args:
         theta, rate: [rad], [rad/s].
@@ -57,7 +57,14 @@ def place_at(
         near = at + STEP * np.array([-1.0, 0.0, 1.0])
         before, here, after = (np.log(_inertia(robot, parameters, curve, near)) / 2).tolist()
         slope, bend = (after - before) / (2 * STEP), (after - 2 * here + before) / STEP**2
-    return Place(theta, rate, _turn(curve, at)[0], _turns_evenly(curve), slope, bend)
+    return Place(
+        theta=theta,
+        rate=rate,
+        turn=_turn(curve, at)[0],
+        turns_evenly=_turns_evenly(curve),
+        slope=slope,
+        bend=bend,
+    )
 
 
 def _turn(curve: Curve, theta: Array) -> Array:

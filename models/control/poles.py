@@ -3,8 +3,8 @@
 After exact linearization every channel of the normal form (17) is a double integrator under the
 laws (18) or (19). Its poles are computed for an acceleration that is held over the sampling
 interval, so they follow from the gains, the control rate and the delay alone. What a robot holds is
-torque: over the interval, friction and the other terms that the model cancels go on changing. At 50
-and 100 Hz the largest K2 of the five-bar is therefore 1 to 3 % above the one of the poles, and 3 to
+torque: over the interval, friction and the other terms that the model cancels keep changing. At 50
+and 100 Hz the largest K2 of the five-bar is therefore 1 to 3 % larger than by the poles, and 3 to
 7 % with a look-ahead of half an interval.
 """
 
@@ -35,7 +35,7 @@ class Channel:
         stable: whether all of them decay. The position of a speed loop is not part of the channel.
         integral: whether the channel has integral action.
         at: θ at which these are the poles, if they vary along the path, [rad].
-        said: what the channel does, in place of what its poles say.
+        said: the behaviour of the channel, if its poles do not tell it.
     """
 
     name: str
@@ -48,9 +48,9 @@ class Channel:
     def behaviour(self) -> Message:
         """Stability, settling time (4 / |Re s| of the slowest pole) and damping, for a user.
 
-        The damping ratio is that of the least damped poles. With integral action there is no
-        promise of no overshoot: the integral, empty at the start, is empty at the end as well, so
-        that an initial error must change its sign.
+        The damping ratio is that of the least damped poles. With integral action an
+        initial error overshoots: the integral is 0 at the start and at the end, so that the error
+        must change its sign.
         """
         if self.said is not None:
             return self.said
@@ -98,11 +98,11 @@ def channels(parameters: Parameters) -> tuple[Channel, Channel]:
     Source: eqs. (17)-(19).
     """
     k1, k2, k3 = parameters.K1, parameters.K2, parameters.K3
-    along = (0.0, parameters.K5, 0.0), "va"
+    gains, kept = (0.0, parameters.K5, 0.0), "va"
     if parameters.task == "position":
-        along = (parameters.K4, parameters.K5, 0.0), "xva"
+        gains, kept = (parameters.K4, parameters.K5, 0.0), "xva"
     across = channel("across", parameters, (k1, k2, k3), "xvia" if k3 else "xva")
-    return across, channel("along", parameters, *along)
+    return across, channel("along", parameters, gains, kept)
 
 
 def channel(
@@ -112,8 +112,8 @@ def channel(
 
     Args:
         gains: (k1, k2, k3).
-        kept: the states of `_sampled` that the channel has, a subset of "xvia"; "a" stands for
-            all of a_j.
+        kept: the states of `_sampled` that the channel has, a subset of "xvia"; "a" stands for all
+            a_j.
     """
     times = 1 / parameters.control_rate, look_ahead_time(parameters), parameters.delay
     return _channel(name, times, gains, kept)
@@ -135,13 +135,13 @@ def turning_channel(
     """The channel across the path, if its integral is kept in axes that do not turn.
 
     The axes A = (T, N), or (T, n1, n2), turn as A' = A Ω. In these axes the integral of the error
-    across the path moves as I' = (0, e) - Ω I, so that it comes in as well along T, and the
-    directions across act on one another.
+    across the path obeys I' = (0, e) - Ω I, so that it also has a component along T, and the
+    directions across are coupled.
 
     Args:
         gains: (k1, k2, k3).
         turn: Ω, (2, 2) or (3, 3), [rad/s].
-        at: θ at which this is so, [rad]; NaN: everywhere.
+        at: θ of this place, [rad]; NaN if Ω is the same everywhere.
     """
     from scipy.linalg import block_diag, expm  # slow to import; see app/server/warm_up.py
 
@@ -159,7 +159,7 @@ def _from_matrix(name: str, t: float, matrix: Array, count: int, integral: bool)
 
     Args:
         t: sampling interval, [s].
-        count: of its states, without the accelerations that are on their way.
+        count: number of its states, without pending accelerations.
     """
     roots: Complex = np.linalg.eigvals(matrix).astype(np.complex128)
     decay = np.log(np.abs(roots) + 1e-300) / t

@@ -1,14 +1,13 @@
 """The rank test (11): where the virtual output has a well-defined relative degree.
 
-The test asks whether D = J g_v, with J = dh/dq of the controlled output, has rank p. Two numbers
-say how far it is from failing, and both are 0 exactly where it fails:
+The test is whether D = J g_v, with J = dh/dq of the controlled output, has rank p. Two numbers tell
+how far it is from failing; both are 0 exactly where it fails:
 
     σ_min / σ_max    without a unit: 1 if all directions are alike,
     σ_min            in (m/s²)/(N m): the acceleration of the output that torques of norm 1 give it
                      in the direction in which they give it least.
 
-The maps take the robot at rest, in the branch of the inverse kinematics that it uses
-(`Robot.rest`), with flexible links straight.
+The maps are for the robot at rest, in the pose of `Robot.rest`, with flexible links straight.
 """
 
 from __future__ import annotations

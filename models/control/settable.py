@@ -1,4 +1,4 @@
-"""What a user may set by name: the parameters of a robot, and the gains of single laws."""
+"""Everything a user may set by name: the parameters of a robot, and the gains of single laws."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ P = TypeVar("P", bound=Parameters)
 
 
 def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
-    """Name -> declaration of all that can be set; the gains of single laws come last."""
+    """Name -> declaration of everything that can be set; the gains of single laws come last."""
     return _specs(kind if isinstance(kind, type) else type(kind))
 
 
 @cache
 def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
-    own = {name: gain.spec for name, gain in OWN_GAINS.items()}
-    return MappingProxyType({**declared(kind), **own})
+    gains = {name: gain.spec for name, gain in OWN_GAINS.items()}
+    return MappingProxyType({**declared(kind), **gains})
 
 
 def value_of(parameters: Parameters, name: str) -> Any:
@@ -40,8 +40,8 @@ def values_of(parameters: Parameters) -> dict[str, Any]:
 def parameters_from(kind: type[P], values: Mapping[str, Any]) -> P:
     """Inverse of `values_of`; the values are not checked again."""
     shared = {name: value for name, value in values.items() if name not in OWN_GAINS}
-    own = {name: value for name, value in values.items() if name in OWN_GAINS}
-    return kind(**shared, own_gains=_kept(own))
+    gains = {name: value for name, value in values.items() if name in OWN_GAINS}
+    return kind(**shared, own_gains=_kept(gains))
 
 
 def changed(parameters: P, name: str, value: Any) -> P:
@@ -57,8 +57,8 @@ def changed(parameters: P, name: str, value: Any) -> P:
     if value_of(parameters, name) == value:
         return parameters
     if name in OWN_GAINS:
-        own = _kept({**dict(parameters.own_gains), name: value})
-        return dataclasses.replace(parameters, own_gains=own)
+        gains = _kept({**dict(parameters.own_gains), name: value})
+        return dataclasses.replace(parameters, own_gains=gains)
     return dataclasses.replace(parameters, **{name: value})
 
 
@@ -74,5 +74,5 @@ def with_values(parameters: P, values: Mapping[str, Any]) -> P:
 
 
 def _kept(gains: Mapping[str, float]) -> tuple[tuple[str, float], ...]:
-    """`LawParameters.own_gains`, the same for the same gains."""
+    """`LawParameters.own_gains` in a normal form: equal gains give equal tuples."""
     return tuple(sorted(each for each in gains.items() if each[1] != OWN_GAINS[each[0]].default))

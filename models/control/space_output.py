@@ -5,7 +5,7 @@
     n1 = e3 × σ' / |e3 × σ'|    to the left in the plan view,
     n2 = T × n1                 as far up as a normal can point.
 
-They exist where the tangent is not vertical, that is wherever the plan view has no cusp, and they
+They exist where the tangent is not vertical, that is, wherever the plan view has no cusp, and they
 return to themselves on every closed curve. A rotation-minimising frame does not: after one turn it
 is rotated by an angle that depends on the whole curve (its holonomy), so that ξ would have several
 values. The price is a rotation about T, at the rate w per radian of θ, whose terms appear below.
@@ -71,7 +71,15 @@ def normals(curve: LocalCurve) -> Normals:
     growth = 2 * ca.dot(first[:2], second[:2]) / plan2 + ca.dot(first, second) / length2
     twist_rate = (second[2] * turn + first[2] * turn_rate) / scale - growth * twist
     bends = ca.dot(left, second) / length, ca.dot(up, second) / length
-    return Normals(length, tangent, left, up, bends, twist, twist_rate)
+    return Normals(
+        length=length,
+        tangent=tangent,
+        left=left,
+        up=up,
+        bends=bends,
+        twist=twist,
+        twist_rate=twist_rate,
+    )
 
 
 def space_output(

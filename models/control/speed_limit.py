@@ -14,7 +14,7 @@ from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import MechanicalSystem
 
 POINTS = 64  # of the path
-SHARE = 0.75  # of the torque limit that the motion may take; the rest is for the laws
+SHARE = 0.75  # of the torque limit for the motion; the rest is left to the laws
 NO_SPEED_LIMIT = 1000.0  # [rad/s], far above any speed that can be asked for, but finite
 
 
@@ -50,7 +50,7 @@ def speed_limit(
 
 
 def prepare_speed_limit(robot: Robot) -> None:
-    """Make what the first call of `speed_limit` would take tens of milliseconds to make."""
+    """Build the function of `speed_limit` in advance; it takes tens of milliseconds."""
     if _is_square(robot.system):
         _on_path(robot.system)
 

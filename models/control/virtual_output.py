@@ -41,7 +41,7 @@ class LevelSet:
         return ca.dot(centred, half) - self.constant, 2 * half
 
     def bent(self, z: ca.SX, z_rate: ca.SX) -> ca.SX:
-        """The part z'ᵀ 2 G z' of the second derivative of s that is there at z'' = 0, [m²/s²]."""
+        """The second derivative of s at z'' = 0, which is z'ᵀ 2 G z', [m²/s²]."""
         return 2 * ca.dot(z_rate, self._turned(z_rate))
 
     def _turned(self, z: ca.SX) -> ca.SX:
@@ -58,7 +58,7 @@ class VirtualOutput:
 
         z'' = inverse @ ((θ'', λ'') - offset).
 
-    That of a space curve has z = y and both components of ξ in the place of λ.
+    For a space curve, z = y, and both components of ξ take the place of λ.
 
     Attributes:
         theta, theta_rate: η2 = (θ, θ'), [rad], [rad/s].
@@ -69,9 +69,9 @@ class VirtualOutput:
         per_radian: |σ'|, [m/rad].
         gap: y - σ, from the closest point to the output, (p, 1), [m].
         spread: 1 - λκ with the signed distance λ: 1 on the path and 0 at its centre of curvature,
-            where the closest point is not unique. Of a level set, at most ∇s·N as a share of what
-            it is on the path: 0 where (θ, s) are no coordinates. Not below `LEAST_SLOPE`.
-        xi_per_metre: |∂ξ1/∂z|: 1 of a distance, |∇s| [m] of a level set.
+            where the closest point is not unique. For a level set, at most ∇s·N as a share of its
+            value on the path: 0 where (θ, s) are no coordinates. At least `LEAST_SLOPE`.
+        xi_per_metre: |∂ξ1/∂z|: 1 for a distance, |∇s| [m] for a level set.
         frame: how the plane of the path lies in the output space.
     """
 

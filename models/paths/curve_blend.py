@@ -1,4 +1,4 @@
-"""From one curve to another: a blend of the two, and the shift of the parameter that it needs."""
+"""A blend of two curves, and the shift of the parameter that it needs."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ REASONS: Mapping[str, Message] = MappingProxyType(
         "narrow": Message("fault.narrow", {"least": f"{2 * TUBE * 1e3:.0f}"}),
     }
 )
-"""What a user is told of a check that fails."""
+"""Check -> what a user is told if it fails."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,8 +49,8 @@ class Fault:
 
     Attributes:
         check: the check that fails, a key of `REASONS`.
-        points: where the fault is, shape (n, 2), or (n, 3) on a space curve, [m]; empty if it has
-            no place.
+        points: location of the fault, shape (n, 2), or (n, 3) on a space curve, [m]; empty if it
+            has none.
     """
 
     check: str
@@ -84,12 +84,12 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
 
 
 def own_faults(curve: Curve) -> list[Fault]:
-    """The faults that a curve has as a path for any robot, wherever it can reach."""
+    """The faults of a curve as a path for any robot, whatever its reach."""
     return curve_faults(lambda z: np.ones(len(z)), curve)
 
 
 def strand_faults(z: Array, closed: bool) -> list[Fault]:
-    """Where strands cross each other or, if none do, where they are too close to each other.
+    """The places where strands cross or, if none do, where they are too close to each other.
 
     Args:
         z: corners of a polyline, shape (n, d), [m].
@@ -113,7 +113,7 @@ def strand_faults(z: Array, closed: bool) -> list[Fault]:
 
 
 def _checked(pairs: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_], Array]:
-    """Which pairs of segments are too close, which cross, and where, shape (k, 4 d + 1)."""
+    """Which pairs of segments, (k, 4 d + 1), are too close, and which cross, and where."""
     count, d = len(pairs), pairs.shape[1] // 4
     found = np.zeros((count, 2 + d))
     for begin in range(0, count, BATCH):
@@ -145,7 +145,7 @@ def _strand_checks(d: int) -> ca.Function:
     """a, d, b, e and arc of `BATCH` pairs, as columns -> 1 or 0 for `STRAND_CHECKS`, and place."""
     numbers = ca.SX.sym("pair", 4 * d + 1)
     a, along, b, other, arc = ca.vertsplit(numbers, d)
-    pair = StrandPair(a, along, b, other, arc)
+    pair = StrandPair(a=a, d=along, b=b, e=other, arc=arc)
     found = [check(pair) for check in STRAND_CHECKS.values()]
     result = ca.densify(ca.vertcat(*found, pair.place))
     return ca.Function("strands", [numbers], [result]).map(BATCH)

@@ -21,11 +21,11 @@ from onpath.models.paths.curves import HARMONICS, Curve, chebyshev_curve, fourie
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-SAMPLES = 256  # points at equal arc length that a series is fitted to
+SAMPLES = 256  # points at equal arc length to which a series is fitted
 SHORTEST = 0.02  # [m], shortest total length of a path
-DENSE = 2048  # points that stand for a curve or a line
-APART = 1e-4  # [m], least distance of two points, one after the other
-FAR = 4e-3  # [m], deviation of a curve that its user is told
+DENSE = 2048  # points that represent a curve or a line
+APART = 1e-4  # [m], least distance of consecutive points
+FAR = 4e-3  # [m], deviation of a curve above which its user is told
 
 
 def closed_through(points: Array) -> Curve:
@@ -59,8 +59,9 @@ def fitted(points: Array, closed: bool) -> Curve:
 def with_deviation(curve: Curve, points: Array) -> Curve:
     """The curve with its `deviation` from the straight lines between points.
 
-    It is the larger one of the largest distance of the curve from the lines and that of the lines
-    from the curve, both taken as `DENSE` points. On a path of 0.4 m it is at most 0.1 mm too large.
+    It is the larger of two distances: the largest from the curve to the lines, and the largest from
+    the lines to the curve, each represented by `DENSE` points. On a path of 0.4 m it is at most 0.1
+    mm too large.
 
     Args:
         points: shape (n, 2), [m]; a closed curve has a line from the last to the first.
@@ -78,7 +79,7 @@ def with_deviation(curve: Curve, points: Array) -> Curve:
 
 
 def deviation_remark(curve: Curve) -> Message | None:
-    """What a user is told of a curve that is `FAR` from what was given."""
+    """A remark for the user if a curve is more than `FAR` from the given points; else None."""
     if curve.deviation <= FAR:
         return None
     return Message("say.deviates", {"deviation": f"{1e3 * curve.deviation:.1f}"})
@@ -126,8 +127,8 @@ def through_samples(samples: Array, closed: bool) -> Curve:
     A curve of this project is recovered from its own samples up to rounding.
 
     Args:
-        samples: shape (n, d), [m], with n - 1 > 2 HARMONICS; a closed curve's last point is its
-            first one.
+        samples: shape (n, d), [m], with n - 1 > 2 HARMONICS; the last point of a closed curve is
+            its first.
         closed: whether the curve is closed.
     """
     if closed:
@@ -184,7 +185,7 @@ def control_points(curve: Curve, count: int) -> Array:
 
 
 def _distinct(points: Array, least: int) -> Array:
-    """Those points that are `APART` from the last one before them, shape (n, 2) -> (k, 2).
+    """The points that are `APART` from the one kept before them, shape (n, 2) -> (k, 2).
 
     A last point that coincides with the first is dropped.
 

@@ -38,9 +38,9 @@ class Curve:
         series: coefficients of σ, σ', σ'' and σ''', shape (ORDERS, TERMS, d). For each order: the
             constant, K rows for C_k and K rows for S_k; [m] for σ, [m/rad^i] for its i-th
             derivative.
-        equation: s = ... in z1 and z2, if the curve was made of the points where s is 0.
-        deviation: largest distance between the curve and the straight lines between the points
-            that it was fitted to, [m]; 0 if it was not fitted.
+        equation: s = ... in z1 and z2, if the curve consists of the points where s is 0.
+        deviation: largest distance between the curve and the straight lines between the points to
+            which it was fitted, [m]; 0 if it was not fitted.
     """
 
     closed: bool
@@ -112,8 +112,8 @@ class Curve:
     def table(self) -> Array:
         """The coefficients for the compiled loop: a (d ORDERS, TERMS) matrix, flat, by columns.
 
-        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each. It shares the memory of
-        `series` if that was laid out for it.
+        Its product with the basis at θ is (σ, σ', σ'', σ'''), d rows each. It shares the memory
+        of `series` if possible.
         """
         return np.ascontiguousarray(self.series.transpose(1, 0, 2)).ravel()
 
@@ -156,11 +156,11 @@ class Curve:
     def nearest(self, z: Array, samples: int = 256) -> tuple[Array, Array]:
         """Closest points of the curve, ϖ(z) = argmin |z - σ(θ)|, by global search.
 
-        This search is the reference that all faster projections are tested against.
+        This search is the reference for tests of all faster projections.
 
         Args:
             z: points, shape (n, d), [m].
-            samples: size of the grid that the search starts from.
+            samples: size of the grid on which the search starts.
 
         Returns:
             θ, shape (n,), [rad], and the distances, shape (n,), [m].
@@ -170,7 +170,7 @@ class Curve:
         return nearest(self.at, self.sample(samples), z)
 
     def conic(self) -> tuple[Array, Array, float] | None:
-        """The level set s(z) of an ellipse, or None if the curve is none.
+        """The level set s(z) of an ellipse; None for any other curve.
 
         The ellipse σ(θ) = c + A (cos θ, sin θ), with any centre, half-axes and directions, is where
 
@@ -295,7 +295,7 @@ def chebyshev_curve(coefficients: Array) -> Curve:
 
 
 def _by_terms(orders: list[Array]) -> Array:
-    """The series of a curve from its orders, in memory as `Curve.table` needs it without a copy."""
+    """The series of a curve from its orders, laid out so that `Curve.table` needs no copy."""
     return np.stack(orders, axis=1).transpose(1, 0, 2)
 
 

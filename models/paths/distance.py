@@ -61,7 +61,7 @@ def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     is_lowest[:, :-1] &= rising
     is_lowest[:, 1:] &= squared[:, 1:] <= squared[:, :-1]
     count = is_lowest.sum(axis=1)
-    alone = len(squared) == 1  # BLAS computes one row otherwise, to another last bit
+    alone = len(squared) == 1  # for one row, BLAS differs in the last bit
     if not alone and count.min() > 0 and count.max() <= MOST:
         row, column = np.nonzero(is_lowest)
         return row, column
@@ -101,20 +101,20 @@ def closest_parameter(frame: Frame, curve: Curve, y: Array) -> float:
 
 
 def closest_parameters(frame: Frame, curve: Curve, y: Array) -> Array:
-    """The same of several y, shape (n, p) -> (n,), [rad], by Newton steps as in `path_distance`.
+    """`closest_parameter` of several y, (n, p) -> (n,), [rad], by the method of `path_distance`.
 
     On an open curve, θ is between its ends.
     """
     if curve.dimension == 2:
         frame, y = Plane(), frame.planar(y)
     row, theta, distance = _minima(frame, curve, y, 256)
-    own = [np.flatnonzero(row == number) for number in range(len(y))]
-    found = np.array([theta[each[distance[each].argmin()]] for each in own])
+    rows = [np.flatnonzero(row == number) for number in range(len(y))]
+    found = np.array([theta[each[distance[each].argmin()]] for each in rows])
     return found if curve.closed else np.clip(found, -np.pi, np.pi)
 
 
 def near_distance(frame: Frame, curve: Curve, y: Array, theta: Array) -> Array:
-    """The same distance from guesses of the closest points; faster, for live display.
+    """`path_distance` from guesses of the closest points: faster, for live display.
 
     Where Newton's method moves a guess by more than `NEAR`, or makes it worse, the search is
     global.
@@ -145,8 +145,8 @@ def near_distances(frame: Frame, curves: Sequence[Curve], y: Array, theta: Array
     guessed = np.sqrt(((frame.lift(every.at(theta)) - y) ** 2).sum(-1))
     astray = ~((np.abs(better - theta) < NEAR) & (distances <= guessed + 1e-12))
     for i in np.flatnonzero(astray.any(axis=1)).tolist():
-        own = astray[i]
-        distances[i, own] = path_distance(frame, curves[i], y[i, own], 64)
+        failed = astray[i]
+        distances[i, failed] = path_distance(frame, curves[i], y[i, failed], 64)
     return distances
 
 

@@ -42,7 +42,7 @@ class PlaneCoordinates(Protocol):
 
 
 class Frame(PlaneCoordinates, Protocol):
-    """The plane of the path: its coordinates, also of arrays, and where it is."""
+    """The plane of the path: its coordinates, also for arrays, and its position."""
 
     def planar(self, y: Array) -> Array:
         """Planar coordinates z of points y, shape (..., p) -> (..., 2), [m]."""
@@ -57,7 +57,7 @@ class Frame(PlaneCoordinates, Protocol):
 
     @property
     def numbers(self) -> tuple[float, float, float]:
-        """Where the plane is, if that is a choice of the user: b, d and the centre; else zeros."""
+        """The numbers b, d and the centre of a plane that the user can move; else zeros."""
         ...
 
     def at(self, numbers: ca.SX) -> PlaneCoordinates:
@@ -66,7 +66,7 @@ class Frame(PlaneCoordinates, Protocol):
 
     @property
     def axes(self) -> tuple[int, int]:
-        """Numbers of the output coordinates that z shows, counted from 1."""
+        """Numbers of the output coordinates that are those of z, counted from 1."""
         ...
 
     @property
@@ -79,11 +79,11 @@ class Frame(PlaneCoordinates, Protocol):
 
 
 class _FixedPlane(Frame, Protocol):
-    """Common parts of frames whose place is no choice of the user; z shows y1 and y2."""
+    """Common parts of frames that the user cannot move; z consists of y1 and y2."""
 
     @property
+    @override
     def numbers(self) -> tuple[float, float, float]:
-        """See `Frame.numbers`: there are none."""
         return 0.0, 0.0, 0.0
 
     @override
@@ -119,9 +119,9 @@ class Plane(_FixedPlane):
         return z
 
     @property
+    @override
     def space(self) -> None:
-        """See `Frame.space`: the output space has no third dimension."""
-        return
+        return  # the output space has no third dimension
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +180,7 @@ class Space(_FixedPlane):
         return self
 
 
-_SPACE = Space()  # shared, because kernels are kept by it
+_SPACE = Space()  # shared, because it is part of a key of kept kernels
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,9 +240,9 @@ class SlantedPlane(Frame):
         return 2, 3
 
     @property
+    @override
     def space(self) -> None:
-        """See `Frame.space`: none, because ζ is not measured at right angles to the plane."""
-        return
+        return  # ζ is not measured at right angles to the plane
 
 
 @dataclass(frozen=True, slots=True, eq=False)

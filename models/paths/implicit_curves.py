@@ -26,10 +26,10 @@ MOST_APART = 2e-4  # [m], largest distance of the curve from the zero set
 
 
 def implicit_curve(s: ca.Function) -> Curve:
-    """The closed curve on which s vanishes.
+    """The closed curve on which a function s vanishes.
 
     Args:
-        s: of z, (2, 1) [m], to a scalar.
+        s: z -> s(z), (2, 1) -> (1, 1), with z in [m].
 
     Raises:
         ValueError: s does not vanish on exactly one closed line within `REGION`, or a Fourier

@@ -1,4 +1,4 @@
-"""The checks of a path, each of them one CasADi expression.
+"""The checks of a path, each as one CasADi expression.
 
 A path must lie in the workspace, stay away from singular configurations (14), and have a unique
 closest point (7) at every point of the tube of radius TUBE around it (section II.D of the paper);
@@ -9,8 +9,8 @@ the control laws need that uniqueness. A closed curve has such a tube if and onl
 
 Points so far apart along the path are in different strands. The first condition forbids sharp
 bends; by Schur's theorem it implies that points with less arc length between them do not meet. The
-second one forbids two strands side by side, and those that cross. Strands of a space curve may
-cross in the plan view, 2 TUBE above each other.
+second condition forbids strands that run too close to each other or cross. In the plan view,
+strands of a space curve may cross if they are 2 TUBE above each other.
 
 `curve_faults.py` evaluates the expressions for the lab, and `models/web_export/edit.py` translates
 them for pages without a server: same path, same verdict.
@@ -67,7 +67,7 @@ def bends(at: PathPoint) -> ca.SX:
 
 
 def cusp(at: PathPoint) -> ca.SX:
-    """|z'| nearly 0; on a space curve z is its plan view, so that no tangent is vertical."""
+    """|z'| is nearly 0; for a space curve, z is its plan view, so that no tangent is vertical."""
     return _length(at.first[:2]) < LEAST_SPEED
 
 
@@ -106,13 +106,13 @@ class StrandPair:
 
 
 def narrow(pair: StrandPair) -> ca.SX:
-    """Two strands nearer to each other than 2 TUBE."""
+    """Two strands closer to each other than 2 TUBE."""
     between = pair.b - pair.a
     return ca.logic_and(ca.dot(between, between) < (2 * TUBE) ** 2, pair.strands)
 
 
 def crosses(pair: StrandPair) -> ca.SX:
-    """Two strands that cross; in space, near each other and in the plan view."""
+    """Two strands that cross; in space, that cross in the plan view and are near each other."""
     hit = ca.logic_and(ca.fabs(_cross(pair.d, pair.e)) >= PARALLEL, pair.strands)
     for share in pair.shares():
         hit = ca.logic_and(hit, ca.logic_and(share >= 0, share < 1))
@@ -127,7 +127,7 @@ POINT_CHECKS: Mapping[str, Callable[[PathPoint], ca.SX]] = MappingProxyType(
 STRAND_CHECKS: Mapping[str, Callable[[StrandPair], ca.SX]] = MappingProxyType(
     {"narrow": narrow, "crosses": crosses}
 )
-"""1 where a check fails, else 0. Where strands cross, they need not be called narrow as well."""
+"""1 where a check fails, else 0. Strands that cross need not be reported as narrow as well."""
 
 
 def sampled_theta(number: ca.SX, closed: bool) -> ca.SX:

@@ -48,7 +48,7 @@ class PathDesign:
 
         Args:
             index: of the control point.
-            z: its new place, shape (2,), [m]; clipped to ±REACH.
+            z: its new position, shape (2,), [m]; clipped to ±REACH.
 
         Raises:
             ValueError: there is no such point, z is not finite, or no curve can be fitted.
@@ -66,7 +66,7 @@ class PathDesign:
         After the last point of an open curve, the new one is put before it.
 
         Args:
-            index: of the control point after which to insert.
+            index: of the control point after which the new one is inserted.
 
         Raises:
             ValueError: there is no such point, or there are `MOST_POINTS` already.
@@ -184,7 +184,7 @@ class Presets(Mapping[str, PathDesign]):
 def presets(radius: float = 0.05) -> Presets:
     """The predefined paths by name.
 
-    The figure of eight intersects itself: it shows how a path is refused.
+    The figure of eight intersects itself, to show how a path is refused.
 
     Args:
         radius: of the circle, [m]; the ellipse and the rounded square scale with it.

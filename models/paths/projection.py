@@ -80,10 +80,16 @@ class LocalCurve:
         """
         sigma, first, second, third = ca.vertsplit(values, values.size1() // ORDERS)
         if closed:
-            return LocalCurve(theta, sigma, first, second, third)
+            return LocalCurve(theta=theta, sigma=sigma, first=first, second=second, third=third)
         beyond = theta - _clamped(theta)
         curved = beyond == 0
-        return LocalCurve(theta, sigma + beyond * first, first, curved * second, curved * third)
+        return LocalCurve(
+            theta=theta,
+            sigma=sigma + beyond * first,
+            first=first,
+            second=curved * second,
+            third=curved * third,
+        )
 
     def moved(self, step: ca.SX) -> LocalCurve:
         """The same polynomial expanded about θ_0 + step."""
@@ -91,7 +97,9 @@ class LocalCurve:
         second = self.second + bend
         first = self.first + half * (self.second + second)
         sigma = self.sigma + step * (self.first + half * (self.second + bend / 3))
-        return LocalCurve(self.theta + step, sigma, first, second, self.third)
+        return LocalCurve(
+            theta=self.theta + step, sigma=sigma, first=first, second=second, third=self.third
+        )
 
     def project(self, z: ca.SX) -> LocalCurve:
         """The polynomial expanded about the point closest to z.
@@ -101,7 +109,7 @@ class LocalCurve:
             δ = (z - σ) · σ' / max(|σ'|² - (z - σ) · σ'', LEAST_SLOPE |σ'|²),   |δ| <= LARGEST_STEP.
 
         Args:
-            z: coordinates as those of the curve, (d, 1), [m].
+            z: a point in the coordinates of the curve, (d, 1), [m].
         """
         local = self
         for _ in range(NEWTON_STEPS):

@@ -1,4 +1,4 @@
-"""Space curves over planar ones: with any height, and the saddle."""
+"""Space curves over planar curves, with any height or as a saddle."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def saddle(curve: Curve, rise: float) -> Curve:
         rise: [m].
 
     Raises:
-        ValueError: a rise of a curve that has a height of its own.
+        ValueError: the curve is a space curve already.
     """
     if not rise:
         return curve

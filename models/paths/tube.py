@@ -27,10 +27,10 @@ from onpath.models.paths.curves import Curve
 SAMPLES = 240
 """Points of the curve that are compared with each other."""
 BEYOND = 0.5
-"""How far the continuation of an open curve is looked at, in parts of its parameter's range."""
+"""The part of an open curve's continuation that is considered, as a share of its range of θ."""
 TINY = 1e-12
 STRAIGHT = 1e3
-"""Radius beyond which a curve counts as straight [m]: numbers are rounded."""
+"""Radius above which a curve counts as straight, because numbers are rounded, [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,12 +1,12 @@
-"""A fair comparison of control laws: the same robot, path, gains and obstructions for all of them.
+"""A fair comparison of control laws, with the same robot, path, gains and obstructions for all.
 
 Where motors are too weak, every law runs twice: with torques that are cut, and with the remedy of
-the parameter `at_limit`, which is no part of any law. `across_first` is given to all laws that
-command an acceleration. `slow_down` also limits the speed that is asked for, by path following and
-by typed laws; a law with a timetable goes by that.
+the parameter `at_limit`, which is not part of any law. `across_first` applies to all laws that
+command an acceleration. `slow_down` also limits the wanted speed of path following and typed laws;
+a law with a timetable cannot deviate from it.
 
-Every run begins on the path with the wanted velocity along it, or beside it where the obstruction
-says so. Then nothing happens for `BEFORE`, the obstruction acts, and nothing happens for `AFTER`.
+Every run begins on the path with the wanted velocity along it, or beside it if the obstruction says
+so. Nothing happens for `BEFORE`, then the obstruction acts, and then nothing happens for `AFTER`.
 """
 
 from __future__ import annotations
@@ -48,19 +48,19 @@ RIGHT_ANGLE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # turns a tangent to the righ
 
 @dataclass(frozen=True, slots=True)
 class Obstruction:
-    """What is in the robot's way, the same for all laws.
+    """An obstruction of the robot, the same for all laws.
 
     Attributes:
         name: as on the command line and in files.
-        seconds: how long it acts.
-        places: at how many places of the path.
+        seconds: its duration.
+        places: number of places on the path at which it acts, one in each run.
         hold: whether a brake holds the end-point along the path.
         hand: displacement (along, across) to which a hand pulls the end-point, [m], or None.
         wall: distance along the path's tangent at which a wall stands in the way, [m], or None.
-        torque: limit of the torques, as a share of the largest torque that path following takes
-            when nothing obstructs it; 0: as the parameters say.
+        torque: limit of the torques, as a share of the largest torque of unobstructed path
+            following; 0: as in the parameters.
         speed: factor of the wanted speed while it acts.
-        at_limit: what happens at a torque limit; empty: as the parameters say.
+        at_limit: what happens at a torque limit; empty: as in the parameters.
         off: distance from the path at the start, [m].
         rests: whether the robot starts at rest.
     """
@@ -99,20 +99,20 @@ OBSTRUCTIONS = {
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What one run shows.
+    """The result of one run.
 
     Attributes:
         law, obstruction, place: of the run; the place is θ at its start, [rad].
-        max_distance_m: largest distance to the path, apart from any law.
-        mean_distance_m: its mean over the run.
+        max_distance_m: largest distance to the path, whatever the law measures.
+        mean_distance_m: mean distance over the run.
         delay_s: by how much the end-point is late at the end, at the wanted speed; negative: early.
-            Laps are those of the closest point, so that who cuts through the inside loses one.
+            Laps are counted by the closest point, so that a cut through the inside loses one.
         peak_force_N, impulse_Ns: of the force on the end-point.
-        energy_given_J: largest work that the end-point has done on the hand, brake or wall.
-        overspeed: largest rate along the path after the release, as a share above the wanted one.
+        energy_given_J: largest work of the end-point on the hand, brake or wall.
+        overspeed: largest relative excess of the rate along the path after the release.
         rms_torque_Nm: over the run and all motors.
-        stopped_at_s: when the run was stopped as diverged, or None; all other numbers are then
-            infinity, which stands behind every number.
+        stopped_at_s: time at which the run was stopped as diverged, or None; all other numbers are
+            then infinity, which ranks last.
     """
 
     law: str
@@ -130,7 +130,7 @@ class Outcome:
 
 
 MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-1]
-"""The numbers of an outcome that are the larger, the worse."""
+"""The numbers of an outcome for which larger is worse."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,7 +157,7 @@ class Contest:
         return [name for name in LAWS if self.admits(name)]
 
     def admits(self, name: str) -> bool:
-        """Whether a law, also a typed one, can take part: it suits the robot, and moves along.
+        """Whether a law, registered or typed, can take part: it suits the robot and moves along.
 
         Raises:
             ValueError: there is no such law.
@@ -188,13 +188,13 @@ def compare(
 
 
 def with_cut(names: Sequence[str]) -> list[str]:
-    """The names of obstructions, each that has a torque limit followed by that with a cut."""
+    """The obstructions' names; one with a torque limit is followed by its variant with a cut."""
     both = (each for name in names for each in (name, f"{name}_cut"))
     return list(dict.fromkeys(each for each in both if each in OBSTRUCTIONS))
 
 
 def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
-    """The worst of each measure over places; `stopped_at_s` is the earliest, or None."""
+    """The worst value of each measure over all places; `stopped_at_s` is the earliest, or None."""
     stops = [o.stopped_at_s for o in outcomes if o.stopped_at_s is not None]
     found: dict[str, float | None] = {
         name: max((getattr(o, name) for o in outcomes), key=abs) for name in MEASURES
@@ -203,7 +203,7 @@ def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
 
 
 def _largest_torque(contest: Contest) -> float:
-    """The largest torque of path following when nothing obstructs it, [N m]."""
+    """The largest torque of unobstructed path following, [N m]."""
     parts, _ = _run(contest, "path_following", OBSTRUCTIONS["none"], 0.0, 0.0)
     return float(np.abs(parts["u"]).max())
 
@@ -215,7 +215,13 @@ def _outcome(
     dt, speed = time_step(contest.parameters), contest.parameters.speed
     if fault is not None:
         measures = dict.fromkeys(MEASURES, np.inf)
-        return Outcome(law, obstruction.name, place, **measures, stopped_at_s=fault * dt)
+        return Outcome(
+            law=law,
+            obstruction=obstruction.name,
+            place=place,
+            **measures,
+            stopped_at_s=fault * dt,
+        )
     seconds = len(log["theta"]) * dt
     distance = path_distance(contest.robot.frame, contest.curve, log["y"][::5])
     force = np.linalg.norm(log["force"], axis=1)
@@ -244,15 +250,15 @@ def _run(
     contest: Contest, law: str, obstruction: Obstruction, place: float, torque: float
 ) -> tuple[dict[str, Array], int | None]:
     """The log of a run, and the row in which it was stopped, if it was."""
-    robot, curve, own = contest.robot, contest.curve, contest.parameters
-    dt = time_step(own)
-    acting = dataclasses.replace(own, speed=own.speed * obstruction.speed)
+    robot, curve, usual = contest.robot, contest.curve, contest.parameters
+    dt = time_step(usual)
+    acting = dataclasses.replace(usual, speed=usual.speed * obstruction.speed)
     if obstruction.torque:
-        limit, way = obstruction.torque * torque, obstruction.at_limit or own.at_limit
-        acting = dataclasses.replace(acting, torque_limit=limit, at_limit=way)
-    kernel = kernel_of(robot, kind_of(law, own, curve))
+        limit, at_limit = obstruction.torque * torque, obstruction.at_limit or usual.at_limit
+        acting = dataclasses.replace(acting, torque_limit=limit, at_limit=at_limit)
+    kernel = kernel_of(robot, kind_of(law, usual, curve))
     state = _start(contest, kernel, obstruction, place)
-    legs = (BEFORE, own, False), (obstruction.seconds, acting, True), (AFTER, own, False)
+    legs = (BEFORE, usual, False), (obstruction.seconds, acting, True), (AFTER, usual, False)
     rows = list[Array]()
     for seconds, parameters, obstructed in legs:
         push = _push(contest, kernel, state, obstruction) if obstructed else FREE
@@ -261,7 +267,7 @@ def _run(
         state, log = loop.run(state, settings, curve.table(), round(seconds / dt))
         rows.append(log)
     whole = np.concatenate(rows)
-    fault = fault_in(robot, kernel.log, law, whole, own)
+    fault = fault_in(robot, kernel.log, law, whole, usual)
     return kernel.log.unpack(whole), None if fault is None else fault[0]
 
 
@@ -281,7 +287,7 @@ def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: fl
 
 
 def _push(contest: Contest, kernel: Kernel, state: Array, obstruction: Obstruction) -> Push:
-    """What acts from outside, at the place where the end-point is."""
+    """The external action of the obstruction at the present end-point."""
     robot, curve = contest.robot, contest.curve
     fields = kernel.state.unpack(state)
     y, theta = robot.endpoint(fields["q"]), float(fields["theta"][0])
@@ -312,8 +318,8 @@ def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome
         "laws": {
             law: {
                 name: [_rounded(dataclasses.asdict(o)) for o in outcomes]
-                for (own, name), outcomes in results.items()
-                if own == law
+                for (other, name), outcomes in results.items()
+                if other == law
             }
             for law in dict.fromkeys(law for law, _ in results)
         },

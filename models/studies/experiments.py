@@ -44,7 +44,7 @@ from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters, rise_of
 from onpath.models.systems.robots import Robot, RobotEntry
 
-NEAR = 1e-9  # [m], as good as on the path
+NEAR = 1e-9  # [m], distance that counts as on the path
 OF_SPEED = ("speed", "ramp", "speed_profile", "profile_period")
 """Parameters that a profile of the schedule replaces."""
 
@@ -58,7 +58,7 @@ class Experiment:
         title: one line for the user.
         make: the robot for given parameters.
         parameters: of the robot, the control laws and the task.
-        schedule: what happens when.
+        schedule: the events over time.
         start: (robot, r) -> the end-point at rest at the start, shape (p,), [m].
         path: the path to follow, with the rise of the parameters; None: the circle of the schedule.
         lifts: whether the start is lifted to the height of a path with a rise.
@@ -92,9 +92,9 @@ class Experiment:
         return frame.lift(np.append(frame.planar(y), curve.at(theta)[0, 2]))
 
     def along(self, path: Curve, name: str = "") -> Experiment:
-        """The experiment on another path, of which a user speaks by a name.
+        """The experiment on another path, with the name that the user gives it.
 
-        The end-point starts where it did, or at θ = 0 if it started on the former path.
+        The end-point starts at the same point, or at θ = 0 if it started on the former path.
 
         Raises:
             ValueError: the robot cannot follow the path; the message says why.
@@ -117,17 +117,17 @@ class Experiment:
             ValueError: an unknown name, a bad value, or one that contradicts another; the message
                 names it.
         """
-        parameters, own = self.parameters, dict[str, Any]()
+        parameters, scheduled = self.parameters, dict[str, Any]()
         for name, text in assignments.items():
             if name in schedules.NAMES:
-                own[name] = text
+                scheduled[name] = text
             elif name in specs(parameters):
                 parameters = changed(parameters, name, text)
             else:
                 raise unknown_name(name, [*specs(parameters), *sorted(schedules.NAMES)])
-        if "r" in own and self.path is not None:
+        if "r" in scheduled and self.path is not None:
             raise ValueError("r: the path is given, so that it has no radius to set")
-        schedule = schedules.with_values(self.schedule, own)
+        schedule = schedules.with_values(self.schedule, scheduled)
         for speed in schedule.profile.speeds if schedule.profile else ():
             changed(parameters, "speed", speed)  # in range
         for name in OF_SPEED if schedule.profile else ():
@@ -143,7 +143,7 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
     """Check that a robot can follow a path.
 
     Args:
-        name: what the user calls the path, for the message.
+        name: the user's name of the path, for the message.
 
     Raises:
         ValueError: it cannot; the message says why.
@@ -155,17 +155,17 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
 
 
 def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:
-    """What will go wrong under some of the laws; empty if nothing is foreseen.
+    """The foreseen problems under some of the laws; empty if there are none.
 
     `run` refuses a singular start.
     """
     robot = experiment.robot()
-    told = forecasts(robot, laws, experiment.parameters, robot.rest(experiment.begin()))
-    return "; ".join(str(each) for each in told if each != SINGULAR)
+    messages = forecasts(robot, laws, experiment.parameters, robot.rest(experiment.begin()))
+    return "; ".join(str(each) for each in messages if each != SINGULAR)
 
 
 def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
-    """Why the brake of the schedule never acted in a run; empty if it did or was not asked for."""
+    """Why the scheduled brake never acted in a run; empty if it did or is not scheduled."""
     schedule = experiment.schedule
     stopped = trajectory.stopped_at is not None
     if schedule.hold_at is None or stopped or trajectory.held.any():
@@ -179,7 +179,7 @@ def _always(point: Array, _robot: Robot, _r: float) -> Array:
 
 
 def on_path(entry: RobotEntry, parameters: Parameters, path: Curve) -> Experiment:
-    """A robot that starts at rest on a path, at θ = 0, with nothing in its way."""
+    """A robot that starts at rest on a path, at θ = 0, without obstructions."""
     return Experiment(
         name="on_path",
         title=entry.label,
@@ -258,9 +258,9 @@ def _there_and_back() -> Experiment:
 
 
 def _off_the_ellipse(robot: Robot) -> Array:
-    """Where the flexible robot starts: with the default plane 10 mm off its path, [m].
+    """The start of the flexible robot, [m]: with the default plane, 10 mm off its path.
 
-    With another plane, it is as far off that, at the same planar coordinates.
+    With another plane, it has the same offset from it at the same planar coordinates.
     """
     usual = flexible_five_bar_robot()
     y = usual.endpoint(start_of())
@@ -286,7 +286,14 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
     schedule, start = experiment.schedule, experiment.begin()
     check_possible(robot, controller, experiment.parameters, robot.rest(start))
-    scheduled = ScheduledRun(robot, kernel, curve, experiment.parameters, schedule, start)
+    scheduled = ScheduledRun(
+        robot=robot,
+        kernel=kernel,
+        curve=curve,
+        parameters=experiment.parameters,
+        schedule=schedule,
+        start=start,
+    )
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None
     done = 0
@@ -294,8 +301,9 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
         fault = fault_in(robot, kernel.log, controller, rows, experiment.parameters)
         if fault is not None:
             tick, reason = fault
-            rows, told = rows[:tick], experiment.parameters
-            fault = tick, explained(reason, robot, kernel.log, controller, rows, told)
+            rows = rows[:tick]
+            message = explained(reason, robot, kernel.log, controller, rows, experiment.parameters)
+            fault = tick, message
         segments.append((rows, curve, held))
         done += len(rows)
         if fault is not None:
@@ -318,8 +326,8 @@ def _finished(
     whole = dataclasses.replace(whole, level_set=level_set)
     kind = kind_of(controller, experiment.parameters, experiment.curve())
     if kind.encoder or kind.noise:
-        own = settings_vector(robot, kernel, experiment.parameters, experiment.curve(), FREE)
-        angles = readings(robot.system, kind, kernel.settings, own, whole.fields["q"])
+        settings = settings_vector(robot, kernel, experiment.parameters, experiment.curve(), FREE)
+        angles = readings(robot.system, kind, kernel.settings, settings, whole.fields["q"])
         whole = dataclasses.replace(whole, fields=whole.fields | {MEASURED: angles})
     if fault is None:
         return whole.thinned()
@@ -330,8 +338,8 @@ def _finished(
 def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     """The content of `--json`; numbers have nine significant digits.
 
-    Of a run that was stopped, maxima and means are infinity, which stands behind every number, and
-    the final speed is None.
+    For a run that was stopped, maxima and means are infinity, which ranks last, and the final speed
+    is None.
     """
     held = experiment.schedule.hold_from < experiment.schedule.hold_to
     laws = {
@@ -362,7 +370,7 @@ def _stopped(time: float, held: bool) -> dict[str, Any]:
     """The summary of a run that was stopped at a time, [s].
 
     Args:
-        held: whether there was to be a hold.
+        held: whether a hold was scheduled.
     """
     return {
         "max_distance_m": np.inf,

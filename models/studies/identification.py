@@ -1,13 +1,13 @@
 """Identification of the five-bar's inertia and friction by linear least squares.
 
 The equations of motion are linear in their parameters. Differentiating measured angles twice would
-amplify their noise. Instead both sides are multiplied by a smooth window w of finite length and
+amplify their noise. Instead, both sides are multiplied by a smooth window w of finite length and
 integrated; integration by parts moves the derivatives onto w:
 
     M11 <w'', q1> - b1 <w', q1> = <w, u1 + (J^T F)_1>,    <w, x> = ∫ w(t) x(t) dt.
 
-Every position of the window along the record gives one equation per joint. The same is done for the
-terms that a balanced linkage without dry friction does not have:
+Every position of the window along the record gives one equation per joint. The terms that a
+balanced linkage without dry friction does not have are treated in the same way:
 
     coupling (joint 1)   M12 (cos(q2 - q1) q2'' - sin(q2 - q1) q2'²)
     coupling (joint 2)   M12 (cos(q2 - q1) q1'' + sin(q2 - q1) q1'²)
@@ -42,8 +42,8 @@ SHORTEST = 1.0  # [s], shortest record
 LEAST_MOTION = 0.02  # [rad], least peak-to-peak motion of each joint
 WORST_CONDITION = 200.0  # largest condition number of the scaled regressor
 WORST_ERROR = 0.1  # largest relative standard error of an inertia
-ENOUGH = 1.25  # a simpler model may leave this many times the smallest residual
-EXACT = 1e-3  # residual, as a fraction of the torque, that needs no further terms
+ENOUGH = 1.25  # largest residual of a simpler model, in units of the smallest residual
+EXACT = 1e-3  # residual, as a fraction of the torque, at which no further terms are needed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +131,8 @@ def identify(record: JointRecord, names: tuple[str, ...] = INERTIA) -> Identifie
 
     Source: eq. (12); Spong and Vidyasagar 6.4.1 for coupling and gravity.
     """
-    return _estimated(names, *_equations(record))
+    columns, torque = _equations(record)
+    return _estimated(names, columns, torque)
 
 
 def simplest(record: JointRecord) -> Identified:
@@ -143,11 +144,11 @@ def simplest(record: JointRecord) -> Identified:
     Raises:
         ValueError: as `identify`, if no model can be estimated.
     """
-    equations = _equations(record)
+    columns, torque = _equations(record)
     found, refusals = list[Identified](), list[ValueError]()
     for names in CHOICES:
         try:
-            found.append(_estimated(names, *equations))
+            found.append(_estimated(names, columns, torque))
         except ValueError as error:
             refusals.append(error)
     if not found:
@@ -173,20 +174,20 @@ def _estimated(names: tuple[str, ...], columns: Array, torque: Array) -> Identif
     residual = torque - scaled @ values
     errors = standard_errors(scaled, residual)
     result = Identified(
-        dict(zip(names, (values / scale).tolist(), strict=True)),
-        dict(zip(names, (errors / scale).tolist(), strict=True)),
-        float(np.sqrt(np.mean(residual**2))),
-        float(np.sqrt(np.mean(torque**2))),
-        condition,
+        values=dict(zip(names, (values / scale).tolist(), strict=True)),
+        errors=dict(zip(names, (errors / scale).tolist(), strict=True)),
+        residual=float(np.sqrt(np.mean(residual**2))),
+        torque=float(np.sqrt(np.mean(torque**2))),
+        condition=condition,
     )
     return _trusted(result)
 
 
 def _trusted(result: Identified) -> Identified:
-    """The result, unless an inertia is not positive or its standard error exceeds `WORST_ERROR`.
+    """The result, if all inertias are positive with standard errors of at most `WORST_ERROR`.
 
     Raises:
-        ValueError: it does.
+        ValueError: they are not.
     """
     for name in ("M11", "M22"):
         value, error = result.values[name], result.errors[name]

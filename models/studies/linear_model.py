@@ -6,9 +6,9 @@ window w of finite length and integrated by parts, so that no acceleration is ne
 
     (-<w', P> + <w, R>) π = <w, B u + J_h^T F> + <w', p_0> - <w, r_0>,   <w, x> = ∫ w(t) x(t) dt.
 
-Columns of the regressor that depend on others belong to parameters that the record does not tell
-apart. A QR decomposition with column pivoting chooses independent ones; what is estimated then is
-each of them plus a combination of the others, a base parameter.
+Columns of the regressor that depend on others belong to parameters that the record cannot
+distinguish. A QR decomposition with column pivoting chooses independent columns. For each of them,
+the sum of its parameter and a combination of the others, a base parameter, is estimated.
 
 Source: Khalil and Dombre, Modeling, Identification and Control of Robots, 12.3 and 12.4.
 """
@@ -41,7 +41,7 @@ from onpath.models.systems.system import MechanicalSystem
 
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
 LATE = 1e-3  # [s], from which torques count as late
-NEGLIGIBLE = 1e-3  # share of a parameter in a combination that is left out
+NEGLIGIBLE = 1e-3  # smaller shares of a parameter in a combination are left out
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +53,7 @@ class MotionRecord:
         q, v: coordinates and their rates, shape (rows, n).
         u: torque of the motors, constant over each step, (rows, m), [N m].
         force: at the end-point, (rows, p), [N].
-        measured: whether the joint angles are those that sensors read, and their rates a filter's.
+        measured: whether the joint angles are sensor readings, with rates from a filter.
     """
 
     dt: float
@@ -66,7 +66,7 @@ class MotionRecord:
 
 @dataclass(frozen=True, slots=True)
 class BaseParameter:
-    """What was estimated: a parameter, or with `others` its sum with multiples of those (SI)."""
+    """An estimated parameter, or with `others` its sum with multiples of those (SI)."""
 
     name: str
     value: float
@@ -81,14 +81,14 @@ class BaseParameter:
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """The result.
+    """The result of an identification.
 
     Attributes:
         found: the estimates, in the order of the robot's parameters.
         unexcited: parameters on which the record does not depend.
-        unexplained: rms of the filtered torque that the model leaves, as a share of it.
-        late: by how much the torques seem to be logged later than the motion, [s]; 0 unless that
-            explains much more.
+        unexplained: rms of the filtered torque that the model does not explain, as a share.
+        late: apparent delay of the logged torques behind the motion, [s]; 0 unless a delay explains
+            much more.
     """
 
     found: tuple[BaseParameter, ...]
@@ -117,7 +117,7 @@ def linear_model(system: MechanicalSystem) -> LinearModel:
     """The regressors of a robot.
 
     Raises:
-        ValueError: it is not linear in its parameters, or depends on none.
+        ValueError: the equations of motion are not linear in parameters, or depend on none.
     """
     q, v, symbols = system.q, system.v, system.parameters
     momentum = system.mass @ v
@@ -144,10 +144,10 @@ def linear_model(system: MechanicalSystem) -> LinearModel:
 
 
 def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Array) -> Estimate:
-    """Least-squares estimates from all records, with dry friction c_i if that explains much more.
+    """Least-squares estimates from all records, with dry friction c_i if it explains much more.
 
     Args:
-        geometry: the system's parameters; only those count on which h and B depend.
+        geometry: the system's parameters; only those on which h and B depend are used.
 
     Raises:
         ValueError: the model is not linear, or a record is too short, too coarse, or without
@@ -165,7 +165,7 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
 
 
 def _lateness(columns: Array, torque: Array, change: Array) -> float:
-    """By how much the motors' logged torque lags behind, [s]; 0 unless that explains much more.
+    """Delay of the motors' logged torque, [s]; 0 unless a delay explains much more.
 
     If B u lags by d, it was B u + d (B u)' to first order, so that -<w, (B u)'> is the column of d.
     """
@@ -238,12 +238,12 @@ def _solved(names: tuple[str, ...], columns: Array, torque: Array) -> Estimate:
     errors = standard_errors(regressor, residual)
     found = list[tuple[int, BaseParameter]]()
     for i, place in enumerate(chosen):
-        own = scale[moved[place]]
+        size = scale[moved[place]]
         sums = [(moved[j], float(share)) for j, share in zip(others, shares[i], strict=True)]
         combined = tuple(
-            (names[j], share * scale[j] / own) for j, share in sums if abs(share) > NEGLIGIBLE
+            (names[j], share * scale[j] / size) for j, share in sums if abs(share) > NEGLIGIBLE
         )
-        known = BaseParameter(names[moved[place]], values[i] / own, errors[i] / own, combined)
+        known = BaseParameter(names[moved[place]], values[i] / size, errors[i] / size, combined)
         found.append((moved[place], known))
     total = float(np.sqrt(np.mean(torque**2)))
     left = float(np.sqrt(np.mean(residual**2)))
@@ -255,7 +255,7 @@ def _solved(names: tuple[str, ...], columns: Array, torque: Array) -> Estimate:
 
 
 def _independent(regressor: Array) -> tuple[list[int], list[int], Array]:
-    """Independent columns, the others, and the shares (chosen, others) of the first in them."""
+    """Independent columns, the others, and the shares (chosen, others) of the former in these."""
     from scipy.linalg import qr, solve_triangular  # slow to import
 
     triangle, order = qr(regressor, mode="r", pivoting=True)

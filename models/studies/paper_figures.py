@@ -1,7 +1,7 @@
-"""The paper's figures 2, 3, 5, 6 and 7 as experiments with its settings.
+"""The paper's figures 2, 3, 5, 6 and 7 as experiments with the paper's settings.
 
-What the paper's text gives is taken from it; what it does not give (starts, most gains, the time
-of the obstruction, the beam) is illustrative and listed as such.
+Settings in the paper's text are used as given; those that it does not give (starts, most gains, the
+time of the obstruction, the beam) are illustrative and listed as such.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ class PaperFigure:
     """One of the paper's figures.
 
     Attributes:
-        number: in the paper.
-        title: what it shows.
-        experiment: name of the experiment that it shows.
+        number: its number in the paper.
+        title: a description.
+        experiment: name of the experiment.
         values: settings that differ from the experiment's defaults.
-        laws: what runs: the paper's law, and perhaps another beside it, without an integral.
-        given: what the paper's text says of the settings.
-        illustrative: what it does not say, and what is taken instead.
+        laws: the paper's law, and perhaps others for comparison, without an integral.
+        given: the settings in the paper's text.
+        illustrative: the other settings, with the values used.
     """
 
     number: int
@@ -43,10 +43,10 @@ class PaperFigure:
         return experiments()[self.experiment].with_values(self.values)
 
     def runs(self) -> list[Trajectory]:
-        """Its runs, one per law."""
-        own, *others = self.laws
-        beside = self.planned().with_values({"K3": 0.0})
-        return [run(self.planned(), own), *(run(beside, law) for law in others)]
+        """The runs of the figure, one per law."""
+        first, *others = self.laws
+        without_integral = self.planned().with_values({"K3": 0.0})
+        return [run(self.planned(), first), *(run(without_integral, law) for law in others)]
 
 
 _RIGID = {"across": "level_set", "K3": 1000.0}

@@ -1,10 +1,10 @@
-"""Paths as a user types them: a preset, a circle, an ellipse, a segment, or points.
+"""Paths as users type them: a preset, a circle, an ellipse, a segment, or points.
 
     circle 0.05                    radius, and optionally the centre, [m]
     ellipse 0.07 0.04 0 0.01       half axes, and optionally the centre, [m]
     segment -0.05 0 0.05 0.02      begin and end, [m]
     closed 0.05 0 0 0.04 -0.05 0   points of a smooth closed path: z1 z2 z1 z2 ..., [m]
-    open 0.05 0 0 0.04 -0.05 0     the same, not closed
+    open 0.05 0 0 0.04 -0.05 0     the same for an open path
     implicit z1**2/0.0036 + z2**2/0.0016 - 1   the closed line on which this is 0, z1 and z2 in [m]
     {"closed": true, "points": [[0.05, 0], [0, 0.04], [-0.05, 0]]}
     ellipse                        any preset by its name

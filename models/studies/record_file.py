@@ -17,16 +17,16 @@ from onpath.models.studies.table_file import Table, read_table
 from onpath.models.systems.robots import Robot
 
 LAW = "law"  # name of its column
-UNEVEN = 0.1  # deviation of a time step from the others, relative to them, that is refused
+UNEVEN = 0.1  # largest relative deviation of a time step from the others
 
 
 def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
-    """The law and the record of each part of the file: rows of one side and law, one by one.
+    """The law and the record of each part of the file: consecutive rows of one side and law.
 
-    The law is "" in a file without a column of that name. Its other columns may stand in any order.
+    The law is "" in a file without a column of that name. The columns may be in any order.
 
     Raises:
-        CodedError: not such a file, or not of this robot; the message says where and why.
+        CodedError: the file has another form or is of another robot; the message tells the details.
         OSError: it cannot be read.
     """
     measured, table = _table(path, robot)
@@ -42,7 +42,7 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
 
 
 def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
-    """Whether the table has the joint angles as measured, and the table, with these if it has."""
+    """Whether the file has measured joint angles, and its table, with these if possible."""
     missing: CodedError | None = None
     for measured in (True, False):
         try:
@@ -56,7 +56,7 @@ def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
 
 
 def _columns(robot: Robot, measured: bool) -> list[str]:
-    """Names of t, q, v, u and the force; of the joint angles as measured, or as they were."""
+    """Names of the columns of t, q, v, u and the force, with measured or true joint angles."""
     system, known = robot.system, header(robot)
     rates = known[2 + system.n : 2 + 2 * system.n]
     efforts = [n for n in known if n.startswith(("tau", "force"))]
@@ -71,7 +71,7 @@ def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> 
 
     Args:
         lines: their lines in the file.
-        measured: whether the joint angles are measured ones; their rates are then filtered ones.
+        measured: whether the joint angles are measured; their rates are then filtered.
 
     Raises:
         CodedError: their times are not evenly spaced.
@@ -92,4 +92,4 @@ def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> 
     if measured:
         joints = robot.system.joints
         v[:, :joints] = smooth_velocities(q[:, :joints], dt)
-    return MotionRecord(dt, q, v, u, force, measured)
+    return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured)

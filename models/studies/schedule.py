@@ -1,4 +1,4 @@
-"""What happens in an experiment and when: start, brake, hand, wall, and wanted speed."""
+"""The events of an experiment over time: start, brake, hand, wall, and wanted speed."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ class Schedule:
     Attributes:
         r: radius of the path, [m].
         duration: [s].
-        start_z1, start_z2: where the end-point is at the start, in the path's plane, [m]; None: as
-            the experiment says.
-        start_along, start_across: its velocity at the start along the path's tangent and along its
-            normal, to the left of it, at the closest point, [m/s].
-        clock_offset: how far the reference point of a law with a clock is ahead of the closest
-            point at the start, [rad].
+        start_z1, start_z2: position of the end-point at the start, in the path's plane, [m]; None:
+            as in the experiment.
+        start_along, start_across: its velocity at the start along the path's tangent and normal (to
+            the left) at the closest point, [m/s].
+        clock_offset: lead of the reference point of a law with a clock over the closest point at
+            the start, [rad].
         hold_from, hold_to: interval in which a brake holds the end-point, [s]; equal: never.
         hold_at: θ at which the brake acts, for hold_to - hold_from, when the end-point passes there
-            for the first time after hold_from, [rad]; None: at hold_from, wherever it is.
+            for the first time after hold_from, [rad]; None: it acts at hold_from, wherever it is.
         hold_direction: "along" the path's tangent, "across" it, or "both", in the path's plane.
         push_from, push_to: interval in which a hand pulls at the end-point, [s]; equal: never.
-        push_z1, push_z2: where the hand is, in the path's plane, [m].
+        push_z1, push_z2: position of the hand in the path's plane, [m].
         wall_from, wall_to: interval in which there is a wall, [s]; equal: never.
         wall_z1, wall_z2: a point of its surface, in the path's plane, [m].
         wall_angle: angle of its normal, which points to the free side, with the first axis, [rad].
@@ -89,7 +89,7 @@ class Schedule:
             raise ValueError("reverse_at: the profile already says when the speed changes")
 
     def hand(self) -> tuple[float, float]:
-        """Where the hand is, in the path's plane, [m]."""
+        """Position of the hand in the path's plane, [m]."""
         return self.push_z1, self.push_z2
 
     def wall(self) -> Wall:
@@ -125,7 +125,7 @@ def with_values(schedule: Schedule, values: Mapping[str, Any]) -> Schedule:
 
 
 def _check_used(schedule: Schedule, name: str) -> None:
-    """Refuse details of something that never acts, and what begins after the end.
+    """Refuse details of an event that never happens, and an event that begins after the end.
 
     Raises:
         ValueError: it is one of these.

@@ -1,4 +1,4 @@
-"""A closed loop run through a schedule: start, brake, hand, wall, and wanted speed over time."""
+"""Runs a closed loop through a schedule: start, brake, hand, wall, and wanted speed over time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 CHUNK = 200  # ticks between checks for divergence
-JUMP = 0.5  # [rad] in one tick; a closest point that moves further has jumped, not passed
+JUMP = 0.5  # [rad] in one tick; a closest point that moves farther has jumped
 
 
 class ScheduledRun:
@@ -34,10 +34,10 @@ class ScheduledRun:
 
     Args:
         robot: its system, frame and springs.
-        kernel: of the robot under the law; it admits external forces.
+        kernel: that of the robot under the law; it must allow external forces.
         curve: the path.
         parameters: of the robot, the law and the task.
-        schedule: what happens when.
+        schedule: the events over time.
         start: the end-point at the start, shape (p,), [m].
 
     Raises:
@@ -64,7 +64,7 @@ class ScheduledRun:
         self._tick, self._state = 0, self._first(start)
 
     def parts(self) -> Iterator[tuple[Array, bool]]:
-        """(log rows, held) of consecutive parts of the run, which are not longer than `CHUNK`."""
+        """(log rows, held) of consecutive parts of the run, each of at most `CHUNK` rows."""
         table, last = self._curve.table(), round(self._schedule.duration / self._dt)
         while self._tick < last:
             settings, end = self._settings(), min(self._next_event(), last)
@@ -98,19 +98,19 @@ class ScheduledRun:
     def _passage(self, rows: Array) -> int | None:
         """The first of these rows at which the end-point has passed the place of the hold, or None.
 
-        It may have passed there between the last row before these and the first of them.
+        It may have passed between the last row before these and the first of them.
         """
         place = self._schedule.hold_at
         if not self._waits or place is None or self._tick < self._hold.start:
             return None
-        before, own = self._theta, self._kernel.log.unpack(rows)["theta"][:, 0]
-        theta, self._theta = np.concatenate([before, own]), own[-1:].copy()
+        before, new = self._theta, self._kernel.log.unpack(rows)["theta"][:, 0]
+        theta, self._theta = np.concatenate([before, new]), new[-1:].copy()
         turns = np.floor((theta - place) / PERIOD) if self._curve.closed else np.sign(theta - place)
         passed = (np.diff(turns) != 0) & (np.abs(np.diff(theta)) < JUMP)
         return int(passed.argmax()) + 1 - len(before) if passed.any() else None
 
     def _settings(self) -> Array:
-        """The inputs of the loop from now on; a profile also sets the speed reference now."""
+        """The inputs of the loop from now on; a profile also sets the present speed reference."""
         schedule, dt, tick = self._schedule, self._dt, self._tick
         wanted = self._parameters
         if 0 < round(schedule.reverse_at / dt) <= tick:
@@ -123,7 +123,7 @@ class ScheduledRun:
         return settings_vector(self._robot, self._kernel, wanted, self._curve, self._push())
 
     def _push(self) -> Push:
-        """What acts on the end-point from now on."""
+        """The external action on the end-point from now on."""
         schedule, dt, frame = self._schedule, self._dt, self._robot.frame
         hand = wall = None
         if self._tick in schedule.ticks("push", dt):
@@ -131,10 +131,11 @@ class ScheduledRun:
         if self._tick in schedule.ticks("wall", dt):
             wall = schedule.wall().lifted(frame)
         if not self._held():
-            return Push(hand, wall=wall)
+            return Push(hand=hand, wall=wall)
         if self._brake is None:
             self._brake = self._braked()
-        return Push(hand, *self._brake, wall)
+        hold, hold_normal = self._brake
+        return Push(hand=hand, hold=hold, hold_normal=hold_normal, wall=wall)
 
     def _braked(self) -> tuple[tuple[Array, Array], Array | None]:
         """A brake that is applied now, see `brake_in`."""
@@ -152,7 +153,7 @@ class ScheduledRun:
         places = schedule.start_z1, schedule.start_z2
         given = [z[i] if place is None else place for i, place in enumerate(places)]
         if self._curve.dimension == 3:
-            given.append(start[-1] - frame.lift(z)[-1])  # the height at which it starts anyway
+            given.append(start[-1] - frame.lift(z)[-1])  # its height without a given start
         y = start if places == (None, None) else frame.lift(np.array(given))
         q, along, across = self._robot.rest(y), schedule.start_along, schedule.start_across
         v = velocity_at(self._robot, self._parameters, self._curve, q, along, across)

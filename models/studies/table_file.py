@@ -1,18 +1,18 @@
 """Reads tables of numbers as programs and spreadsheets of any country write them.
 
-A table has a line with the names of its columns and then a line for each row. What programs differ
-in is found out from the file:
+A table has a line with the names of its columns and then a line for each row. The conventions in
+which programs differ are recognised from the file:
 
 - encoding: UTF-8 or UTF-16, with a byte order mark or without one
-- separator of the cells: that of a line `sep=;`, else the tab, semicolon or comma that the line
-  with the names contains
+- separator of the cells: that of a line `sep=;`, else the tab, semicolon or comma in the line with
+  the names
 - decimal sign: point or comma, the same in the whole table; digits in groups are refused, because
   `1.000` would be one thousand in one country and one in another
 
 Cells may be quoted and have blanks around them. Empty cells at the end of a line do not count, nor
 do empty lines and those that begin with #.
 
-The files are untrusted: whatever else they contain is refused.
+The files are untrusted: anything else is refused.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ class Table:
     """Columns of a table.
 
     Attributes:
-        numbers: the columns of numbers that were asked for, shape (rows, columns).
-        texts: those columns of texts that there are, by name.
-        lines: of the rows, counted in the file from 1.
+        numbers: the requested columns of numbers, shape (rows, columns).
+        texts: the requested columns of texts that exist, by name.
+        lines: number of each row's line in the file, from 1.
     """
 
     numbers: Array
@@ -67,12 +67,12 @@ def read_table(path: Path, numbers: Sequence[str], texts: Sequence[str] = ()) ->
         texts: names of columns of texts, which it may have.
 
     Raises:
-        CodedError: not such a table; the message names the line, and the column of a bad number.
+        CodedError: it is no such table; the message names the line, and the column of a bad number.
         OSError: the file cannot be read.
     """
     with path.open("rb") as raw:
         encoding = _encoding(raw.peek(1))
-        # what does not decode is replaced, and refused where it counts
+        # undecodable bytes are replaced, and refused if they matter
         with io.TextIOWrapper(raw, encoding, errors="replace", newline=None) as file:
             return _read(_lines(file), numbers, texts)
 
@@ -137,7 +137,7 @@ def _cells(line: str, separator: str, number: int) -> list[str]:
 
 
 def _place(name: str, names: Sequence[str], line: int) -> int:
-    """Which column has this name."""
+    """The index of the column with this name."""
     if names.count(name) != 1:
         if name in names:
             raise CodedError("error.table_column_twice", line=str(line), name=name)
@@ -147,7 +147,7 @@ def _place(name: str, names: Sequence[str], line: int) -> int:
 
 @dataclass(slots=True)
 class _NumberReader:
-    """Reads numbers with one decimal sign, which the first one that has any decides."""
+    """Reads numbers with one decimal sign: that of the first number that has any."""
 
     _sign: str = field(default="", init=False)
 
@@ -155,7 +155,7 @@ class _NumberReader:
         """The number in a cell.
 
         Raises:
-            CodedError: it is none, or has another decimal sign than those before.
+            CodedError: it is not a number, or has another decimal sign than those before.
         """
         at, text = str(line), repr(cell[:20])
         match = _NUMBER.fullmatch(cell)

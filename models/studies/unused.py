@@ -1,4 +1,4 @@
-"""Which of the values that an experiment is given have no effect on its motion."""
+"""Finds the values given to an experiment that have no effect on its motion."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters, time_step
 
 SPEED = ("speed", "ramp")
-"""Settings of a loop that a speed profile sets."""
+"""Settings of a loop that a speed profile determines."""
 FROM_OUTSIDE = ("hand_", "hold_active", "hold_anchor", "hold_tangent", "hold_normal", "wall_")
-"""How the names of the settings begin that change during a run."""
+"""Prefixes of the settings that change during a run."""
 
 
 def unused_text(experiment: Experiment, laws: Sequence[str], names: Iterable[str]) -> str:
-    """A sentence about the values that have no effect under any of the laws; empty if all have.
+    """A sentence about the values without effect under any of the laws; empty if there are none.
 
     Args:
-        names: as `unused` takes them.
+        names: as for `unused`.
     """
     found = [unused(experiment, law, names) for law in laws]
     idle = [name for name in found[0] if all(name in each for each in found)]
@@ -38,29 +38,29 @@ def unused_text(experiment: Experiment, laws: Sequence[str], names: Iterable[str
 
 
 def unused(experiment: Experiment, law: str, names: Iterable[str]) -> list[str]:
-    """Those of the names that make no difference to the motion under a law, whatever their values.
+    """The names that make no difference to the motion under a law, whatever their values.
 
     A value makes a difference if it selects another robot, path or loop, or if the loop's
     coordinates depend on a setting that it changes, in the next tick or in a later one.
 
     Args:
-        names: of parameters, "profile", "reverse_at" and "clock_offset"; a schedule checks its
-            other entries.
+        names: names of parameters, "profile", "reverse_at" or "clock_offset"; a schedule checks
+            its other entries.
     """
     known = {*specs(experiment.parameters), "profile", "reverse_at", "clock_offset"}
     return [name for name in names if name in known and not _matters(experiment, law, name)]
 
 
 def _matters(experiment: Experiment, law: str, name: str) -> bool:
-    own = experiment.parameters
-    kernel = kernel_of(experiment.robot(), kind_of(law, own, experiment.curve()))
+    parameters = experiment.parameters
+    kernel = kernel_of(experiment.robot(), kind_of(law, parameters, experiment.curve()))
     if name == "clock_offset":
         return _reaches_motion(experiment, kernel, (), state="theta_ref")
     if name in ("profile", "reverse_at"):
         return _reaches_motion(experiment, kernel, _places(kernel, SPEED))
-    spec = specs(own)[name]
-    for value in _others(spec, value_of(own, name)):
-        other = changed(own, name, value)
+    spec = specs(parameters)[name]
+    for value in _others(spec, value_of(parameters, name)):
+        other = changed(parameters, name, value)
         if _is_another(experiment, dataclasses.replace(experiment, parameters=other), law):
             return True
         if _reaches_motion(experiment, kernel, _changes(experiment, kernel, other)):
@@ -76,7 +76,7 @@ def _others(spec: Spec, value: Any) -> Iterator[Any]:
 
 
 def _is_another(one: Experiment, other: Experiment, law: str) -> bool:
-    """Whether two experiments have other robots, ticks, paths or loops."""
+    """Whether two experiments have different robots, ticks, paths or loops."""
     paths = one.curve(), other.curve()
     return (
         other.robot() is not one.robot()
@@ -88,11 +88,11 @@ def _is_another(one: Experiment, other: Experiment, law: str) -> bool:
 
 def _changes(experiment: Experiment, kernel: Kernel, other: Parameters) -> NDArray[np.int_]:
     """Places of the settings that other parameters change."""
-    own, robot, curve = experiment.parameters, experiment.robot(), experiment.curve()
-    vectors = [settings_vector(robot, kernel, each, curve, FREE) for each in (own, other)]
+    parameters, robot, curve = experiment.parameters, experiment.robot(), experiment.curve()
+    vectors = [settings_vector(robot, kernel, each, curve, FREE) for each in (parameters, other)]
     changed = np.flatnonzero(vectors[0] != vectors[1])
     given, speed = experiment.schedule.profile, _places(kernel, SPEED)
-    before, after = (given or profile_of(each) for each in (own, other))
+    before, after = (given or profile_of(each) for each in (parameters, other))
     if before is not None:
         changed = np.setdiff1d(changed, speed)
     return changed if before == after else np.append(changed, speed)
@@ -107,9 +107,9 @@ def _places(kernel: Kernel, names: Iterable[str]) -> NDArray[np.int_]:
 def _reaches_motion(
     experiment: Experiment, kernel: Kernel, places: Iterable[int], state: str = ""
 ) -> bool:
-    """Whether the coordinates or their rates ever depend on some settings, or on a field of state.
+    """Whether the coordinates or their rates ever depend on some settings or a field of the state.
 
-    All other settings are numbers, so that what they switch off is absent from the loop.
+    All other settings are numbers, so that the loop lacks whatever they switch off.
     """
     robot, curve = experiment.robot(), experiment.curve()
     settings = ca.SX(settings_vector(robot, kernel, experiment.parameters, curve, FREE))
@@ -122,7 +122,7 @@ def _reaches_motion(
     before = ca.SX.sym("before", kernel.changed)
     table = ca.reshape(ca.DM(curve.table()), *kernel.table_shape)
     after = _tick(kernel, before, settings, table)
-    known = before * _alive(after)  # an integral that is switched off is 0 for ever
+    known = before * _alive(after)  # an integral that is switched off stays 0
     after = _tick(kernel, known, settings, table)
     step = _pattern(after, before)
     reached = np.asarray(_pattern(after, asked).any(axis=1))

@@ -1,4 +1,4 @@
-"""What is wrong with a robot, in words: for whoever adds one.
+"""Describes the faults of a robot, for whoever adds one.
 
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.contract import faults_of
@@ -23,20 +23,18 @@ from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem, lagrange_bias
 
 POINTS = 200
-"""Random points of the path's plane that are tried."""
-NEAR, LEAST_PATH = (
-    0.15,
-    0.05,
-)  # [m] from home: where they are, and how far a path must be able to go
+"""Number of random points of the path's plane at which the robot is checked."""
+NEAR = 0.15  # [m], largest coordinate of these points, from home
+LEAST_PATH = 0.05  # [m], distance from home that paths must be able to reach
 CLOSE = 1e-7
-"""Largest error, relative to the largest of the numbers compared."""
+"""Largest error, relative to the largest of the compared numbers."""
 
 
 def faults_of(entry: RobotEntry) -> list[str]:
-    """What is wrong with a robot: a sentence for each fault, an empty list if nothing is known.
+    """The faults of a robot, a sentence for each; an empty list if none is found.
 
-    The equations, the kinematics, the limits and the drawing are tried at random points around
-    home; a fault of which later ones would be mere consequences is told alone.
+    The equations, the kinematics, the limits and the drawing are checked at random points around
+    home. A fault that would cause others is reported alone.
     """
     for check in (_entry_faults, _shape_faults, _symbol_faults, _kinematic_faults):
         if found := [*check(entry)]:
@@ -185,7 +183,7 @@ def _states(robot: Robot) -> tuple[Array, Array]:
 
 
 def _at(system: MechanicalSystem, x: ca.SX, q: Array, v: Array, numbers: Array) -> Array:
-    """An expression at states, flat, shape (states, entries)."""
+    """The values of an expression at states, flat, shape (states, entries)."""
     return Rows([system.q, system.v, system.parameters], ca.vec(ca.densify(ca.SX(x))))(
         q, v, numbers
     )
@@ -212,8 +210,8 @@ def _dynamic_faults(entry: RobotEntry) -> Iterator[str]:
     if (np.linalg.matrix_rank(value(system.actuation).reshape(-1, m, n)) < m).any():
         yield f"B does not have the rank {m} everywhere"
     kinetic = ca.dot(system.v, system.mass @ system.v) / 2
-    own = lagrange_bias(system.q, system.v, kinetic, system.energy - kinetic, ca.SX(n, 1))
-    friction = system.bias - own
+    lagrangian = lagrange_bias(system.q, system.v, kinetic, system.energy - kinetic, ca.SX(n, 1))
+    friction = system.bias - lagrangian
     if not _agree(value(friction, 0 * v), np.zeros((1, n))):
         yield "the bias at rest is not the gradient of the potential energy"
     elif not _agree(value(friction), -value(friction, -v)):
@@ -244,24 +242,24 @@ def _limit_faults(entry: RobotEntry) -> Iterator[str]:
 
 
 def _continuity_faults(robot: Robot, y: Array) -> Iterator[str]:
-    """On a straight way from home, the margin stays positive, and so q may not jump."""
+    """Jumps of q on a straight line from home along which the margin stays positive."""
     steps = np.linspace(0.0, 1.0, 400)[:, None]
     for target in y[:20]:
-        way = y[0] + steps * (target - y[0])
-        if (robot.margin_at(way) < LEAST_MARGIN).any():
+        line = y[0] + steps * (target - y[0])
+        if (robot.margin_at(line) < LEAST_MARGIN).any():
             continue
-        jump = np.abs(np.diff(robot.rest(way), axis=0)).max()
+        jump = np.abs(np.diff(robot.rest(line), axis=0)).max()
         if jump > 0.1:
             yield f"inverse(y) jumps by {jump:.2g} on the way from home to y = {target.round(3)}"
             return
 
 
 def _parameter_faults(entry: RobotEntry) -> Iterator[str]:
-    """Whatever a user may set, at the ends of its range."""
+    """Faults at the ends of the range of each parameter that a user may set."""
     usual = entry.parameters()
     before = _robot(entry).plant(usual)
-    own = declared(entry.parameters).keys() - declared(Parameters).keys()
-    for name in sorted(own):
+    names = declared(entry.parameters).keys() - declared(Parameters).keys()
+    for name in sorted(names):
         spec = declared(entry.parameters)[name]
         for value in spec.options or (spec.low, spec.high):
             try:
@@ -274,13 +272,13 @@ def _parameter_faults(entry: RobotEntry) -> Iterator[str]:
             if not np.isfinite([plant, model]).all():
                 yield f"{name} = {value}: plant() or model() is not finite"
             elif plant.shape == before.shape:
-                names = _moved(robot, plant != before)
-                if names:
-                    yield f"{name} changes {', '.join(names)}, on which h(q) depends"
+                moved = _moved(robot, plant != before)
+                if moved:
+                    yield f"{name} changes {', '.join(moved)}, on which h(q) depends"
 
 
 def _moved(robot: Robot, changed: Array) -> Iterable[str]:
-    """The system's parameters that are changed and in h(q)."""
+    """The changed parameters of the system on which h(q) depends."""
     system = robot.system
     names = zip(system.parameter_names, ca.vertsplit(system.parameters), changed, strict=True)
     return [name for name, symbol, moved in names if moved and ca.depends_on(system.output, symbol)]

@@ -1,4 +1,4 @@
-"""How a robot is drawn, beyond its bars and joints: data that a model may provide.
+"""The drawing of a robot beyond its bars and joints: data that a model may provide.
 
 Points are in the robot's frame (x right, y away from the viewer, z up, base pivot at the origin),
 in metres. The defaults suit a robot whose links move in the vertical plane y = 0.
@@ -15,11 +15,11 @@ Point = tuple[float, float, float]
 FRONT_LAYER = 0.022
 """Depth of the front layer of links behind the robot's plane [m]."""
 BACK_LAYER = 0.038
-"""The same for the back layer [m]."""
+"""Depth of the back layer [m]."""
 BOSS = (FRONT_LAYER + BACK_LAYER) / 2
-"""Depth of the bearings' middle: they span both layers [m]."""
+"""Depth of the middle of the bearings, which span both layers [m]."""
 PEN_DEPTH = 0.0103
-"""Depth of the pen's centre, such that it touches the robot's plane [m]."""
+"""Depth of the pen's centre, at which the pen touches the robot's plane [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +40,8 @@ class Angle:
         name: as shown, such as "q₁".
         bar: the bar to which the angle leads.
         after: the bar from whose direction it is measured; None: from the horizontal.
-        near: which of the values 2π apart is meant: the one nearest to this, [rad].
-        at: where along its arc the name stands, from 0 to 1.
+        near: of the values 2π apart, the one nearest to this is shown, [rad].
+        at: position of the name along the arc, from 0 to 1.
     """
 
     name: str
@@ -57,7 +57,7 @@ class Waist:
 
     Attributes:
         name: as shown.
-        bar: a bar whose horizontal projection leads forward; None: so does the end-point's.
+        bar: a bar whose horizontal projection points forward; None: that of the end-point does.
     """
 
     name: str
@@ -70,9 +70,9 @@ class Length:
 
     Attributes:
         name: as shown, such as "ℓ₁".
-        begin, end: numbers of the ends of bars between which it is; bar i has 2 i and 2 i + 1.
-        at: where between them the name stands, from 0 to 1.
-        right: whether it stands to the right of the way from begin to end, not to the left.
+        begin, end: numbers of the ends of bars between which it extends; bar i has 2 i and 2 i + 1.
+        at: position of the name between them, from 0 to 1.
+        right: whether the name is to the right of the line from begin to end, not to the left.
     """
 
     name: str
@@ -84,13 +84,13 @@ class Length:
 
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """The data from which the scene draws a robot; None is derived from its bars and reach.
+    """The data from which the scene draws a robot; what is None follows from bars and reach.
 
     Links lie alternately in the back and the front layer, so that they do not intersect.
 
     Attributes:
         strip: number of the last bars that are pieces of one flexible strip; the others are links.
-        motors: joints that are drawn as motors, besides those at the base pivot.
+        motors: joints that are drawn as motors besides those at the base pivot.
         base: support of the robot: two uprights with motors, or a column with a turntable.
         axes: directions of the outputs in the robot's frame, orthonormal; None: two outputs are
             its x and z, three its x, y and z.
@@ -99,11 +99,11 @@ class Drawing:
         elevation, azimuth: angles of the camera, downward and from the right, [rad].
         box: opposite corners of the box that the camera shows of one robot.
         apart: distance between the base pivots of neighbouring robots, [m].
-        title: place of the title.
-        note: place of the note that the drawing is not to scale.
+        title: position of the title.
+        note: position of the note that the drawing is not to scale.
         force_scale: length of the force's arrow, [m/N].
         sheet: low and high corner (x, z), and y, of the area for freehand strokes.
-        angles, waist, lengths: what is labelled on demand, as in the paper's figures 1 and 4.
+        angles, waist, lengths: labels that are shown on demand, as in the paper's figures 1 and 4.
     """
 
     strip: int = 0

@@ -52,7 +52,7 @@ class FiveBarLinks:
     viscous2: float  # b2, [N m s]
 
     def spoiled(self, removed: float, payload: float) -> FiveBarLinks:
-        """The linkage without some of its counterweights and with a mass at the end-point.
+        """The linkage with some counterweights removed and with a mass at the end-point.
 
         Args:
             removed: fraction of the counterweights' moments that is removed, 0 to 1.

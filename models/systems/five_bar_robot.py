@@ -44,21 +44,21 @@ def _model(*percent: float) -> Array:
 
 
 def _constant(array: Array) -> Array:
-    """The same array, made read-only because it is shared."""
+    """The same array, read-only because it is shared."""
     array.flags.writeable = False
     return array
 
 
 def plant(parameters: Parameters) -> Array:
-    """See `Robot.plant`."""
-    own = own_parameters(FiveBarParameters, parameters)
-    return _plant(own.counterweights_removed / 100, own.payload)
+    """The numbers of the plant, `Robot.plant`."""
+    chosen = own_parameters(FiveBarParameters, parameters)
+    return _plant(chosen.counterweights_removed / 100, chosen.payload)
 
 
 def model(parameters: Parameters) -> Array:
-    """See `Robot.model`: the balanced robot of (12), with the chosen model errors."""
-    own = own_parameters(FiveBarParameters, parameters)
-    return _model(own.error_M11, own.error_M22, own.error_b1, own.error_b2)
+    """The numbers of the model, `Robot.model`: the robot of (12) with the chosen model errors."""
+    chosen = own_parameters(FiveBarParameters, parameters)
+    return _model(chosen.error_M11, chosen.error_M22, chosen.error_b1, chosen.error_b2)
 
 
 def collapse(q: ca.SX) -> Stop:

@@ -11,7 +11,7 @@ s cos q2 and at w across it, so that
 
 M11 and M22 include the beam's motion in the plane of the linkage, hence the term -r'².
 
-A payload m at the tip y = h(q) adds ½ m |y'|² to T and, as the balance is without it, m g y3 to V.
+A payload m at the tip y = h(q) adds ½ m |y'|² to T and, since it is not balanced, m g y3 to V.
 """
 
 from __future__ import annotations
@@ -184,7 +184,7 @@ def _end_point(s: _Symbols, w: ca.SX) -> ca.SX:
 
 
 def _lagrangian(s: _Symbols) -> _Dynamics:
-    """Lagrange's equations for T and V of this module; a test differentiates them.
+    """Lagrange's equations for T and V of this module; a test checks them by differentiation.
 
     With A = Σ a_j f_j and B = Σ b_j f_j, the terms of T that couple beam and joints are ρ q3' (Ψ ·
     f' - P1 q1' A + Q2 q2' B).
@@ -223,9 +223,9 @@ def _unit_modes(s: _Symbols) -> _Dynamics:
     these equations are Lagrange's for small deflections, as a test shows. With the shapes of this
     project, the units of ρ Ψ q3'' are not those of f'', the waist acts on the modes ρ times (in SI)
     as strongly as in Lagrange's equations, the mass matrix is not symmetric, and energy is not
-    conserved. This reading is kept only because, with ρ = 0.2 and the actual tip, it shows what the
-    paper's text says of figures 6 and 7. Like (20), it has no friction in the joints: b1 to b3 do
-    not act.
+    conserved. This reading is kept only because, with ρ = 0.2 and the actual tip, it agrees with
+    the paper's text about figures 6 and 7. Like (20), it has no friction in the joints: b1 to b3
+    have no effect.
 
     Source: eqs. (20)-(21), with Ω_j = ρ (ω_j² f_j + 2 ζ ω_j f_j').
     """

@@ -1,4 +1,4 @@
-"""The flexible five-bar's numbers: lengths, inertias and friction of the linkage, and its beam."""
+"""The numbers of the flexible five-bar: lengths, inertias and friction, and its beam."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from onpath.assets import asset_path
 
 _NAMES = "M11 M22 J0 J1 l1 l rho omega1 zeta alpha b1 b2 b3"
 NAMES: tuple[str, ...] = tuple(_NAMES.split())
-PAYLOAD = "payload"  # a further name, of a robot with a payload
+PAYLOAD = "payload"  # an additional name, for a robot with a payload
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,10 +49,10 @@ class FlexibleLinks:
                 rigid link.
             payload: mass at the tip, [kg].
         """
-        own = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
+        numbers = {name: getattr(self, name) for name in NAMES if hasattr(self, name)}
         omega1 = 2 * np.pi * self.frequency
         lengths = {"l1": self.link1, "l": self.beam}
-        return own | lengths | {"omega1": omega1, "alpha": alpha, "payload": payload}
+        return numbers | lengths | {"omega1": omega1, "alpha": alpha, "payload": payload}
 
     def changed(self, rho: float, frequency: float, zeta: float) -> FlexibleLinks:
         """The same linkage with another beam: `rho` in [kg/m], `frequency` in [Hz]."""

@@ -15,8 +15,10 @@ PLANE = SlantedPlane()  # of the default path
 
 @dataclass(frozen=True, slots=True)
 class FlexibleParameters(Parameters):
-    """Parameters of the flexible five-bar. `modes`, `plant`, the path's plane and
-    whether there is a payload select the instance of the robot."""
+    """Parameters of the flexible five-bar.
+
+    `modes`, `plant`, the path's plane and whether there is a payload select the robot.
+    """
 
     K3: float = number(
         0.0,

@@ -42,11 +42,11 @@ UNSTABLE = Message("stop.unstable")
 BENT_OR_UNSTABLE = Message("stop.bent_or_unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 _SOFT = SpringLimits(500.0, 4.0, 5.0)
-SOFT_GRIP = Grip(SpringLimits(100.0, 2.0, 1.0), _SOFT, _SOFT)
+SOFT_GRIP = Grip(hand=SpringLimits(100.0, 2.0, 1.0), hold=_SOFT, wall=_SOFT)
 SLOWEST = {"composite": (200, 500), "redefined": (500, 500)}
-"""Lowest control rates at which the robot runs along its circle with the default gains, [Hz]:
-with exact sensing, and with encoders or noise."""
-PIECES = 10  # straight bars by which the bent link is drawn
+"""Lowest control rates at which the robot follows its circle with the default gains, [Hz]: with
+exact sensing, and with encoders or noise."""
+PIECES = 10  # straight bars that represent the bent link
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 DRAWING = Drawing(
     strip=PIECES,
@@ -74,30 +74,30 @@ def start_of(modes: int = 3) -> Array:
 
 
 def plant_of(system: MechanicalSystem, parameters: Parameters) -> Array:
-    """See `Robot.plant`."""
-    own = own_parameters(FlexibleParameters, parameters)
-    links = LINKS.changed(own.rho, own.frequency, own.zeta)
-    return system.parameter_vector(links.lumped(own.alpha, own.payload))
+    """The numbers of the plant, `Robot.plant`."""
+    chosen = own_parameters(FlexibleParameters, parameters)
+    links = LINKS.changed(chosen.rho, chosen.frequency, chosen.zeta)
+    return system.parameter_vector(links.lumped(chosen.alpha, chosen.payload))
 
 
 def model_of(system: MechanicalSystem, parameters: Parameters) -> Array:
-    """See `Robot.model`: the plant without payload, with the chosen model errors."""
-    own = replace(own_parameters(FlexibleParameters, parameters), payload=0.0)
-    values = dict(zip(system.parameter_names, plant_of(system, own).tolist(), strict=True))
+    """The numbers of the model, `Robot.model`: without payload, with the chosen errors."""
+    chosen = replace(own_parameters(FlexibleParameters, parameters), payload=0.0)
+    values = dict(zip(system.parameter_names, plant_of(system, chosen).tolist(), strict=True))
     for name in ("M11", "M22", "J0", "rho", "omega1"):
-        values[name] *= 1 + getattr(own, f"error_{name}") / 100
+        values[name] *= 1 + getattr(chosen, f"error_{name}") / 100
     return system.parameter_vector(values)
 
 
 def inverse(modes: int, y: ca.SX) -> ca.SX:
-    """See `Robot.inverse`: with the beam straight."""
+    """The configuration at rest with the beam straight, `Robot.inverse`."""
     planar = ca.vertcat(ca.sqrt(y[0] ** 2 + y[1] ** 2) - LINKS.beam, y[2])
     angles = five_bar.inverse_kinematics(planar, LINKS.link1, LINKS.beam)
     return ca.vertcat(angles, ca.atan2(y[1], y[0]), ca.SX.zeros(modes))
 
 
 def skeleton(beam: BeamModes, q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """See `Robot.skeleton`: links 1 to 3, then link 4 in pieces from its joint with link 3.
+    """Links 1 to 3, then link 4 in pieces from its joint with link 3: `Robot.skeleton`.
 
     Returns:
         bars, (3, 8 + 2 PIECES): link 1, 2, 3, link 4 behind its joint with link 1, the beam's
@@ -137,7 +137,7 @@ def _extras(system: MechanicalSystem, beam: BeamModes) -> dict[str, ca.SX]:
 
 
 def _stops(system: MechanicalSystem, beam: BeamModes, modes: int, plant: str) -> tuple[Stop, ...]:
-    """Bent or vibrating too much, or collapsed."""
+    """Stops for a link that bends or vibrates too much, and for a collapsed linkage."""
     bent, rate = (ca.fabs(ca.dot(x[RIGID:], ca.DM(beam.tip))) for x in (system.q, system.v))
     bad = ca.fmax(bent > MOST_BENT * LINKS.beam, rate > FASTEST_TIP)
 
@@ -166,7 +166,7 @@ def flexible_five_bar_robot(
     """The five-bar on a waist with a flexible last link, of section IV of the paper.
 
     The origin of its frame is the foot of the waist. The arm points towards the viewer, who faces
-    the plane of the path. There is one for its arguments, so that its kernels are built once.
+    the plane of the path. Equal arguments give the same object, so that its kernels are built once.
 
     Raises:
         ValueError: an unknown plant or number of modes.
@@ -197,14 +197,14 @@ def _made(modes: int, plant: str, loaded: bool) -> Robot:
 
 _robot = lru_cache(maxsize=4 * MOST_MODES)(_made)
 _elsewhere: WeakValueDictionary[tuple[Robot, SlantedPlane], Robot] = WeakValueDictionary()
-"""The robots with paths in other planes, as long as they are used."""
+"""The robots with paths in other planes, while they are in use."""
 
 
 def robot_for(parameters: Parameters) -> Robot:
     """The instance for these parameters."""
-    own = own_parameters(FlexibleParameters, parameters)
-    core = flexible_five_bar_robot(own.modes, own.plant, own.payload > 0)
-    frame = SlantedPlane(own.b, own.d, own.centre)
+    chosen = own_parameters(FlexibleParameters, parameters)
+    core = flexible_five_bar_robot(chosen.modes, chosen.plant, chosen.payload > 0)
+    frame = SlantedPlane(chosen.b, chosen.d, chosen.centre)
     if frame == PLANE:
         return core
     made = _elsewhere.get((core, frame)) or replace(core, frame=frame, shared=core)
@@ -212,22 +212,22 @@ def robot_for(parameters: Parameters) -> Robot:
 
 
 def critical_alpha(parameters: Parameters, joints: Array) -> float:
-    """See `FlexibleLink.critical_alpha`: without payload, which the controller does not know."""
-    own = own_parameters(FlexibleParameters, parameters)
-    numbers = flexible_five_bar_robot(own.modes, own.plant).plant(parameters)
-    q = np.concatenate([joints, np.zeros(own.modes)])
-    zero = flexible_zero_dynamics(own.modes, own.plant)
+    """`FlexibleLink.critical_alpha`, without the payload, which the controller does not know."""
+    chosen = own_parameters(FlexibleParameters, parameters)
+    numbers = flexible_five_bar_robot(chosen.modes, chosen.plant).plant(parameters)
+    q = np.concatenate([joints, np.zeros(chosen.modes)])
+    zero = flexible_zero_dynamics(chosen.modes, chosen.plant)
     return zero.critical_alpha(q, numbers, highest=1.0)
 
 
 def caution(parameters: Parameters) -> Message | None:
-    """See `RobotEntry.caution`: the control may be too slow for the link's vibration."""
-    own = own_parameters(FlexibleParameters, parameters)
-    exact, measured = SLOWEST[own.law]
-    slowest = measured if own.encoder_counts > 0 or own.sensor_noise > 0 else exact
-    if own.control_rate >= slowest:
+    """`RobotEntry.caution`: the control may be too slow for the link's vibration."""
+    chosen = own_parameters(FlexibleParameters, parameters)
+    exact, measured = SLOWEST[chosen.law]
+    slowest = measured if chosen.encoder_counts > 0 or chosen.sensor_noise > 0 else exact
+    if chosen.control_rate >= slowest:
         return None
-    return Message("caution.flexible", {"rate": own.control_rate, "slowest": slowest})
+    return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})
 
 
 ROBOT = RobotEntry(

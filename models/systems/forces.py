@@ -1,4 +1,4 @@
-"""Forces that the control laws do not know: a hand, a brake, a wall, and dry friction."""
+"""Forces unknown to the control laws: a hand, a brake, a wall, and dry friction."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def hold(
 
     Args:
         y, y_rate: end-point and its rate, (p, 1), [m], [m/s].
-        anchor: where it is held, (p, 1), [m].
+        anchor: the point at which it is held, (p, 1), [m].
         tangent: t, of unit length, (p, 1).
         active: 1, or 0 for no force.
         limits: k, d and the largest force.
@@ -104,8 +104,9 @@ def wall(
 def dry_friction(v: ca.SX, coulomb: ca.SX, compliance: ca.SX, dt: ca.SX) -> ca.SX:
     """τ_i = -c v_i / max(sqrt(v_i² + ε²), c a_i): Coulomb friction, smooth at 0, (m, 1), [N m].
 
-    It is held over a tick, in which it must not reverse a joint. With A the accelerations for unit
-    torques, a_i = dt Σ_j |A_ij|: no eigenvalue of dt A diag(τ_i / v_i) exceeds 1 in absolute value.
+    It is held over a tick, during which it must not reverse a joint. With A the accelerations by
+    unit torques, a_i = dt Σ_j |A_ij|: no eigenvalue of dt A diag(τ_i / v_i) exceeds 1 in absolute
+    value.
 
     Args:
         v: joint velocities, (m, 1), [rad/s].

@@ -1,4 +1,4 @@
-"""What a control law is given by its user: gains, and the wanted motion along the path."""
+"""The user's settings of a control law: gains, and the wanted motion along the path."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 from onpath.models.systems.parameter_specs import choice, number
 
-DISTANCE, LEVEL_SET = "distance", "level_set"  # what ξ measures across the path, [m] or [m²]
+DISTANCE, LEVEL_SET = "distance", "level_set"  # meanings of ξ across the path, [m] or [m²]
 
 
 @dataclass(frozen=True, slots=True)
 class LawParameters:
-    """Gains that laws share, and task; `Parameters` adds the realism.
+    """Shared gains of the laws, and the task; `Parameters` adds the realism.
 
     The defaults suit the rigid five-bar. The other gains are declared in the modules of their laws.
     """

@@ -10,7 +10,7 @@ from typing import Any
 
 from onpath.models.errors import CodedError, Message
 
-MINUS = "\N{MINUS SIGN}"  # what a typesetter or a phone makes of a hyphen
+MINUS = "\N{MINUS SIGN}"  # typesetters and phones replace a hyphen by it
 _WITH_COMMA = re.compile(r"[-+]?\d+,\d+")
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 
@@ -25,8 +25,8 @@ class Spec:
         unit: "" for none.
         low, high, step: range of a number.
         options: of a choice; empty for a number.
-        help: one line.
-        on: for a parameter of which 0 means "off": the value that switches it on.
+        help: a description in one line.
+        on: the value that switches the parameter on, if 0 means "off".
     """
 
     group: str
@@ -51,7 +51,18 @@ def number(
     on: float | None = None,
 ) -> Any:
     """A dataclass field for a number; `bounds` are (low, high, step)."""
-    spec = Spec(group, label, unit, *bounds, (), text, on)
+    low, high, step = bounds
+    spec = Spec(
+        group=group,
+        label=label,
+        unit=unit,
+        low=low,
+        high=high,
+        step=step,
+        options=(),
+        help=text,
+        on=on,
+    )
     return field(default=default, metadata={"spec": spec})
 
 
@@ -64,7 +75,16 @@ def choice(
     label: str,
 ) -> Any:
     """A dataclass field for one of `options`."""
-    spec = Spec(group, label, "", 0.0, 0.0, 0.0, options, text)
+    spec = Spec(
+        group=group,
+        label=label,
+        unit="",
+        low=0.0,
+        high=0.0,
+        step=0.0,
+        options=options,
+        help=text,
+    )
     return field(default=default, metadata={"spec": spec})
 
 
@@ -74,7 +94,7 @@ def model_error(label: str, text: str, on: float = 30.0) -> Any:
 
 
 def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
-    """A dataclass field for a mass at the end-point of which no controller knows, [kg]."""
+    """A dataclass field for a mass at the end-point that no controller knows, [kg]."""
     text = "mass at the end-point; the controller does not know"
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
 
@@ -95,7 +115,7 @@ def out_of_range(name: str, value: str, low: str, high: str) -> CodedError:
 
 
 def checked(spec: Spec, name: str, value: Any) -> Any:
-    """`value` as the field takes it.
+    """The value in the form that the field takes.
 
     Raises:
         ValueError: not a finite number in range, or not one of the options.
@@ -114,10 +134,10 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
 
 
 def number_of(name: str, value: Any) -> float:
-    """A number, or what a user has typed as one; a typesetter's minus is a minus.
+    """A number, or a number that a user has typed; the typographic minus sign is accepted.
 
     Raises:
-        CodedError: it is none. Of a number with a decimal comma the message says how to write it.
+        CodedError: it is not a number; for a decimal comma, the message says how to write it.
     """
     plain = value.strip().replace(MINUS, "-") if isinstance(value, str) else value
     try:

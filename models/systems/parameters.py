@@ -1,8 +1,7 @@
 """The numbers and choices of every robot, each declared once with unit, range and help.
 
 Widgets, the command line and files are generated from these declarations. Gains and task are in
-law_parameters.py, what only one robot has is in the module of that robot, and what only one law has
-is in the module of that law.
+law_parameters.py; parameters of a single robot or law are in its module.
 """
 
 from __future__ import annotations
@@ -145,15 +144,14 @@ class Parameters(LawParameters):
 def declared(kind: type[Parameters]) -> Mapping[str, Spec]:
     """Name -> declaration of the parameters of a robot, in the order of declaration.
 
-    The gains that only single laws have are not among them: for all see `specs` in
-    models/control/settable.py.
+    The gains of single laws are not included; `specs` in models/control/settable.py has everything.
     """
     fields = dataclasses.fields(kind)
     return MappingProxyType({f.name: f.metadata["spec"] for f in fields if "spec" in f.metadata})
 
 
 def own_parameters(kind: type[P], parameters: Parameters) -> P:
-    """The parameters as those of a robot.
+    """The parameters with the type of a robot's parameters.
 
     Raises:
         TypeError: they are another robot's.
@@ -169,10 +167,10 @@ def time_step(parameters: Parameters) -> float:
 
 
 def look_ahead_time(parameters: Parameters) -> float:
-    """How far the controller looks ahead, [s]: see `look_ahead` in models/closed_loop/sensing.py.
+    """Time by which the controller looks ahead, [s]; see models/closed_loop/sensing.py.
 
-    Composite control looks half a tick ahead, whatever is chosen, as its filters move in every
-    tick; with half an interval of 5 ms it is unstable.
+    Composite control always looks half a tick ahead, because its filters advance in every tick;
+    with half an interval of 5 ms it would be unstable.
     """
     composite = getattr(parameters, "law", "") == "composite"
     if parameters.look_ahead == "half_interval" and not composite:

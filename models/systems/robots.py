@@ -1,4 +1,4 @@
-"""Robots: what a robot is, and everything that follows from it.
+"""Robots: the definition of a robot, and everything that follows from it.
 
 A module of this folder that defines a `ROBOT`, a `RobotEntry`, is found by the catalogue.
 """
@@ -26,7 +26,7 @@ TOO_FAST = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
 NOT_FINITE = Message("stop.range")
 SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
 LEAST_REGULARITY = 0.02
-"""Regularity, in parts of that at home, below which a run is stopped, unless a robot says when."""
+"""Regularity relative to home below which a run is stopped, unless a robot has its own stops."""
 _FINITE = float(np.finfo(float).max)
 _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
 
@@ -36,9 +36,9 @@ class Stop:
     """A state in which a run of a robot counts as diverged.
 
     Attributes:
-        when: nonzero in such a state, an expression in the system's q and v, (1, 1).
-        reason: why. It may depend on the configuration, (n,), and the parameters; for None, it must
-            hold in every configuration.
+        when: an expression in the system's q and v, nonzero in such a state, (1, 1).
+        reason: the reason. It may depend on the configuration, (n,), and the parameters; with None
+            for the configuration, it must be true in every one.
     """
 
     when: ca.SX
@@ -49,8 +49,8 @@ class Stop:
 class Robot:
     """A robot: expressions in the symbols of its equations of motion, and a few numbers.
 
-    Everything else is computed from these expressions, here with arrays of numbers, and in
-    exported pages. `faults_of` in `contract.py` says what is wrong with a robot. The robot's frame
+    Everything else is computed from these expressions, here with arrays of numbers, and in exported
+    pages. `faults_of` in `contract.py` describes the faults of a robot. The robot's frame
     has x to the right, y away from the viewer, z up, and its origin where the robot is mounted.
 
     Attributes:
@@ -59,28 +59,29 @@ class Robot:
             n > m = p, some coordinates have no motor; with m > p, the robot is redundant. The
             numbers in h(q) are not among those that a user can change.
         plant: numbers of `system.parameters` for a user's parameters, shape (k,).
-        model: the same as the controller assumes them; `plant` for one that knows its robot.
+        model: the numbers that the controller assumes; equal to `plant` if it knows its robot.
         inverse: y -> a configuration at rest with h(q) = y, (p, 1) -> (n, 1), continuous where the
-            regularity is positive; of a redundant robot, one of many. NaN says that y is out of
-            reach; functions such as `ca.acos` and `ca.sqrt` give it of themselves.
+            regularity is positive; for a redundant robot, one of many. NaN means that y is out of
+            reach; functions such as `ca.acos` and `ca.sqrt` give it automatically.
         skeleton: (q, exaggeration) -> ends of the bars, (3, 2 k), begin and end as columns, and
             joints, (3, j), in the robot's frame, [m]. The last bar ends at the end-point.
             Deflections are multiplied by the exaggeration.
-        home: where y = 0 is in the robot's frame, [m].
-        reach: no end-point is farther from the origin of the robot's frame, [m]. Maps of the
-            workspace extend so far, and a hand pulls no farther than this from home.
+        home: the point y = 0 in the robot's frame, [m].
+        reach: no end-point is farther than this from the origin of the robot's frame, [m]. Maps of
+            the workspace extend so far, and a hand pulls no farther than this from home.
         regularity: an expression in q that is positive for a configuration of `inverse`, and 0
             where it is singular or at a limit, (1, 1). None: |det(J B)| with J = dh/dq, and
             sqrt(det(J B Bᵀ Jᵀ)) for m > p: how far the motors' joints move the end-point.
-        stops: when a run counts as diverged, besides too fast joints and numbers that are not
-            finite. None: where the regularity is less than `LEAST_REGULARITY` times that at home.
+        stops: states in which a run counts as diverged, besides joints that are too fast and
+            numbers that are not finite. None: where the regularity is less than
+            `LEAST_REGULARITY` times that at home.
         extras: quantities to plot besides those of every robot, in q, v and the system's
             parameters, (size, 1) each.
         frame: how the plane of the path lies in the output space.
-        drawing: details of its drawing that do not follow from bars and joints.
+        drawing: details of the drawing that do not follow from bars and joints.
         substeps: Runge-Kutta steps per tick.
-        grip: the springs by which a hand and a brake act on its end-point.
-        shared: the robot whose loops it shares, as it differs in `frame.numbers` only.
+        grip: the springs by which a hand, a brake and a wall act on its end-point.
+        shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
     """
 
     system: MechanicalSystem
@@ -101,12 +102,12 @@ class Robot:
 
     @property
     def name(self) -> str:
-        """As on the command line and in files."""
+        """The name on the command line and in files."""
         return self.system.name
 
     @property
     def core(self) -> Robot:
-        """The robot whose loops it shares, itself if there is no other."""
+        """The robot whose loops it shares; itself if it shares none."""
         return self.shared or self
 
     def endpoint(self, q: Array) -> Array:
@@ -127,21 +128,21 @@ class Robot:
         return q
 
     def margin_at(self, y: Array) -> Array:
-        """Regularity at rest with the end-point at y, in parts of that at home, (..., p) -> (...).
+        """Regularity at rest with the end-point at y, relative to that at home, (..., p) -> (...).
 
-        0 where the robot is singular or y out of reach.
+        It is 0 where the robot is singular or y is out of reach.
         """
         return _margin(self.core)(y)[..., 0]
 
     def margin(self, z: Array) -> Array:
         """`margin_at` points z of the path's plane, shape (..., 2) -> (...).
 
-        If `frame.space` is a frame, also of points (z, ζ) above the plane, (..., 3) -> (...).
+        If `frame.space` is a frame, also at points (z, ζ) above the plane, (..., 3) -> (...).
         """
         return self.margin_at(self.frame.lift(z))
 
     def fault(self, q: Array, v: Array, parameters: Parameters) -> tuple[int, Message] | None:
-        """The first row in which a run has diverged, and why; None if in none.
+        """The first row in which a run has diverged, and the reason; None if it has not diverged.
 
         Whether a row has diverged depends on that row alone, so that the rows of several robots can
         be searched together; the reason may depend on the parameters.
@@ -151,7 +152,7 @@ class Robot:
         """
         quiet = np.abs(v).max(initial=0.0) <= FASTEST_JOINT and np.isfinite(q).all()  # no NaN in v
         if quiet and not _stopped(self.core)(q, v).any():
-            return None  # in every frame of a sound run, and so by the cheaper function
+            return None  # the cheaper function suffices in every frame of a sound run
         codes = _stop_code(self.core)(q, v)[:, 0]
         if not codes.any():
             return None
@@ -160,14 +161,14 @@ class Robot:
         return first, self.reasons(where, parameters)[int(codes[first]) - 1]
 
     def reasons(self, q: Array | None, parameters: Parameters) -> tuple[Message, ...]:
-        """Why a run may stop, in the order of the numbers of `stop_code`.
+        """The reasons why a run may stop, in the order of the numbers of `stop_code`.
 
         Args:
-            q: the configuration, shape (n,). None: the reasons hold in every configuration.
+            q: the configuration, shape (n,). None: the reasons are true in every configuration.
         """
-        own = (stop.reason for stop in stops_of(self))
-        told = [why if isinstance(why, Message) else why(q, parameters) for why in own]
-        return TOO_FAST, *told, NOT_FINITE
+        reasons = (stop.reason for stop in stops_of(self))
+        messages = [each if isinstance(each, Message) else each(q, parameters) for each in reasons]
+        return TOO_FAST, *messages, NOT_FINITE
 
     def measured(self, q: Array, v: Array, parameters: Parameters) -> dict[str, Array]:
         """The values of `extras`, shape (..., size) each; q and v: (..., n)."""
@@ -192,7 +193,7 @@ class Robot:
 
 
 AXES = {2: ((1, 0, 0), (0, 0, 1)), 3: ((1, 0, 0), (0, 1, 0), (0, 0, 1))}
-"""By the number of outputs: in the vertical plane y = 0 of the robot's frame, or in space."""
+"""Number of outputs -> axes: in the vertical plane y = 0 of the robot's frame, or in space."""
 
 
 def margin_of(robot: Robot, y: ca.SX) -> ca.SX:
@@ -203,10 +204,10 @@ def margin_of(robot: Robot, y: ca.SX) -> ca.SX:
 
 
 def stop_code(robot: Robot) -> ca.SX:
-    """Why a state is not one of a sound run, an expression in the system's q and v, (1, 1).
+    """The reason why a run has diverged, as an expression in the system's q and v, (1, 1).
 
-    0 for a sound one, or the place in `Robot.reasons`, counted from 1: too fast, the first of the
-    robot's stops, or not finite.
+    It is 0 for a sound state, or the position in `Robot.reasons`, counted from 1: too fast, the
+    first of the robot's stops that applies, or not finite.
     """
     q, v = robot.system.q, robot.system.v
     fast, total = ca.fabs(v[0]), ca.sum1(q) + ca.sum1(v)
@@ -221,7 +222,7 @@ def stop_code(robot: Robot) -> ca.SX:
 
 
 def stops_of(robot: Robot) -> tuple[Stop, ...]:
-    """`Robot.stops`, or what None stands for."""
+    """`Robot.stops`, with the usual stops for None."""
     return _usual_stops(robot.core) if robot.stops is None else robot.stops
 
 
@@ -232,7 +233,7 @@ def _usual_stops(robot: Robot) -> tuple[Stop, ...]:
 
 @lru_cache(maxsize=64)
 def _relative(robot: Robot) -> ca.Function:
-    """The function q -> regularity in parts of that at home."""
+    """The function q -> regularity relative to that at home."""
     system = robot.system
     regularity = _reach_of_motors(robot) if robot.regularity is None else robot.regularity
     home = robot.inverse(ca.SX(ca.DM(robot.frame.lift(np.zeros(2)))))
@@ -241,7 +242,7 @@ def _relative(robot: Robot) -> ca.Function:
 
 
 def _reach_of_motors(robot: Robot) -> ca.SX:
-    """See `Robot.regularity`; the end-point is that of the skeleton, free of parameters."""
+    """The default regularity, by the end-point of the skeleton, which has no parameters."""
     system, tip = robot.system, robot.skeleton(robot.system.q, ca.SX(1))[0][:, -1]
     jacobian = ca.jacobian(ca.DM(robot.axes) @ tip, system.q)
     moved = ca.densify(jacobian @ system.actuation)
@@ -304,7 +305,7 @@ class BalancedLinkage:
 
 @dataclass(frozen=True, slots=True)
 class FlexibleLink:
-    """What the page needs to know about a robot whose last link bends.
+    """Data of a robot whose last link bends.
 
     Attributes:
         joints: number of joint angles, which come before the link's coordinates in q.
@@ -334,10 +335,10 @@ class RobotEntry:
         picture: name of an asset; if empty, the bars are sketched.
         goes_on: parameters that may select another robot with the same states and kinematics, so
             that a run goes on from the present state.
-        caution: why the robot would not even run untouched with these parameters; None if nothing
-            is known against it.
-        flexible_link: of a robot with parameters `law` and `alpha` and an extra "deflection"; None:
-            all links are rigid.
+        caution: the reason why the robot would not even run undisturbed with these parameters, if
+            any.
+        flexible_link: for a robot with parameters `law` and `alpha` and an extra "deflection"; None
+            if all links are rigid.
         linkage: data for identification from a record of its motion, or None.
     """
 
@@ -353,6 +354,6 @@ class RobotEntry:
     linkage: BalancedLinkage | None = None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
-        """Whether the robots of two sets of parameters differ at most by those in `goes_on`."""
+        """Whether two sets of parameters give the same robot apart from those in `goes_on`."""
         same = {name: getattr(before, name) for name in self.goes_on}
         return self.make(replace(now, **same)) is self.make(before)

@@ -12,8 +12,8 @@ import numpy as np
 from onpath.models.arrays import Array
 
 INSTRUCTIONS = 1000
-"""Most scalar operations of a function that evaluates several rows; a call for each would cost more
-than the operations of a small function."""
+"""Largest number of scalar operations of a function for several rows: for a small function, a call
+for each row would cost more than its operations."""
 
 
 class Rows:
@@ -63,7 +63,7 @@ class Rows:
 
 
 def _repeated(function: ca.Function, width: int) -> ca.Function:
-    """The function of `width` columns at once."""
+    """The function for `width` columns at once."""
     if width == 1:
         return function
     inputs = [ca.SX.sym(f"x{i}", function.size1_in(i), width) for i in range(function.n_in())]

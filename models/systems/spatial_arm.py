@@ -12,11 +12,12 @@ motor has the mass mR. With c2 = cos q2, cφ = cos φ,
 
     M(q) = diag(D, [[a2 + a3 + 2 k cos q3, a3 + k cos q3], [a3 + k cos q3, a3]]),
     V(q) = g2 sin q2 + g3 sin φ,
-    h(q) = (ρ cos q1 - x0, ρ sin q1, l2 sin q2 + l3 sin φ - z0),   ρ = l2 c2 + l3 cφ, [m];
+    h(q) = (ρ cos q1 - x0, ρ sin q1, l2 sin q2 + l3 sin φ - z0),   ρ = l2 c2 + l3 cφ, [m].
 
-c(q, v) follows from them, with viscous friction b1, b2, b3. The determinant of the Jacobian is l2
-l3 ρ sin q3: the arm is singular when it is stretched or folded (sin q3 = 0) and with its end-point
-above its base (ρ = 0). Of the poses at a point, the one with the elbow up and ρ > 0 is taken.
+c(q, v) follows from these; viscous friction has the coefficients b1, b2, b3. The determinant of the
+Jacobian is l2 l3 ρ sin q3: the arm is singular when it is stretched or folded (sin q3 = 0) and with
+its end-point above its base (ρ = 0). Of the poses at a point, the one with the elbow up and ρ > 0
+is used.
 
 Paths lie in the horizontal plane y3 = 0, or rise above it as space curves.
 
@@ -155,30 +156,30 @@ def spatial_arm() -> MechanicalSystem:
 
 
 def plant(parameters: Parameters) -> Array:
-    """See `Robot.plant`."""
-    own = own_parameters(SpatialParameters, parameters)
-    return EQUATIONS.parameter_vector(LINKS.lumped(own.payload))
+    """The numbers of the plant, `Robot.plant`."""
+    chosen = own_parameters(SpatialParameters, parameters)
+    return EQUATIONS.parameter_vector(LINKS.lumped(chosen.payload))
 
 
 def model(parameters: Parameters) -> Array:
-    """See `Robot.model`: without payload, with the chosen model errors."""
-    own, values = own_parameters(SpatialParameters, parameters), LINKS.lumped()
+    """The numbers of the model, `Robot.model`: without payload, with the chosen errors."""
+    chosen, values = own_parameters(SpatialParameters, parameters), LINKS.lumped()
     for name in ("a1", "a2", "a3", "k"):
-        values[name] *= 1 + own.error_inertias / 100
+        values[name] *= 1 + chosen.error_inertias / 100
     for name in ("g2", "g3"):
-        values[name] *= 1 + own.error_weights / 100
+        values[name] *= 1 + chosen.error_weights / 100
     return EQUATIONS.parameter_vector(values)
 
 
 def inverse(y: ca.SX) -> ca.SX:
-    """See `Robot.inverse`: the pose with the elbow up."""
+    """The pose at rest with the elbow up, `Robot.inverse`."""
     ahead, aside, height = ca.vertsplit(y + ca.DM(MIDDLE))
     both = elbow_up(ca.sqrt(ahead**2 + aside**2), height, LINKS.l2, LINKS.l3)
     return ca.vertcat(ca.atan2(aside, ahead), both)
 
 
 def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """See `Robot.skeleton`: upper arm and forearm; joints at both ends of the upper arm."""
+    """Bars of upper arm and forearm, joints at both ends of the upper arm: `Robot.skeleton`."""
     ahead = ca.vertcat(ca.cos(q[0]), ca.sin(q[0]), 0)
     up = ca.DM([0, 0, 1])
     upper, fore = (

@@ -1,4 +1,4 @@
-"""A controlled mechanical system, defined by symbols; everything else is derived from them.
+"""A controlled mechanical system, defined by symbols from which everything else is derived.
 
     M(q) v' + c(q, v) = B(q) u + J_h(q)^T F,   q' = v,   y = h(q),
 
@@ -40,7 +40,7 @@ class MechanicalSystem:
         drift: f_v(q, v) = -M⁻¹ c, (n, 1).
         input_gain: g_v(q) = M⁻¹ B, (n, m).
         output: h(q), the actual end-point, (p, 1), [m].
-        controlled_output: the output that a control law is given, (p, 1), [m]; often h itself.
+        controlled_output: the output for the control laws, (p, 1), [m]; usually h itself.
         energy: total mechanical energy ½ v^T M v + V(q), (1, 1), [J].
         modes: number of modal coordinates of a flexible link, which are the last of q; 0: all links
             are rigid. All other coordinates have encoders.
@@ -232,8 +232,10 @@ def conditioning_of(matrix: ca.SX) -> ca.SX:
     angle = ca.acos(cosine) / 3
     first, third = (mean + 2 * size * ca.cos(angle + turn) for turn in (0.0, 2 * np.pi / 3))
     second = 3 * mean - first - third
-    own = ca.fabs(ca.det(matrix)) if matrix.size2() == 3 else ca.sqrt(ca.fmax(ca.det(square), 0))
-    return own / (first * ca.sqrt(second))
+    product = (
+        ca.fabs(ca.det(matrix)) if matrix.size2() == 3 else ca.sqrt(ca.fmax(ca.det(square), 0))
+    )
+    return product / (first * ca.sqrt(second))
 
 
 def conditioning(matrices: Array) -> Array:

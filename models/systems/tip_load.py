@@ -17,9 +17,9 @@ class TipLoad:
     Attributes:
         mass: m, [kg].
         jacobian: J = dy/dq of the tip, in coordinates that the waist has turned, (3, n).
-        bias: what m adds to c, m Jᵀ (J' v + g e_3), (n, 1).
-        energy: what m adds to V, m g y3, [J].
-        active: whether there is one.
+        bias: contribution of m to c, m Jᵀ (J' v + g e_3), (n, 1).
+        energy: contribution of m to V, m g y3, [J].
+        active: whether there is a load.
     """
 
     mass: ca.SX
@@ -30,7 +30,7 @@ class TipLoad:
 
     @property
     def inertia(self) -> ca.SX:
-        """What m adds to M, m Jᵀ J, (n, n)."""
+        """Contribution of m to M, m Jᵀ J, (n, n)."""
         return self.mass * self.jacobian.T @ self.jacobian
 
     def solve(self, unloaded: Callable[[ca.SX], ca.SX], rhs: ca.SX) -> ca.SX:
@@ -43,18 +43,18 @@ class TipLoad:
         """
         if not self.active:
             return unloaded(rhs)
-        free, ways = unloaded(rhs), unloaded(self.jacobian.T)
-        shares = ca.SX.eye(3) + self.mass * self.jacobian @ ways
+        free, moved = unloaded(rhs), unloaded(self.jacobian.T)
+        shares = ca.SX.eye(3) + self.mass * self.jacobian @ moved
         inverse = ca.adj(shares) / ca.det(shares)
-        return free - ways @ (inverse @ (self.mass * (self.jacobian @ free)))
+        return free - moved @ (inverse @ (self.mass * (self.jacobian @ free)))
 
 
 def tip_load(mass: ca.SX, q: ca.SX, v: ca.SX, tip: ca.SX, waist: int) -> TipLoad:
     """The load of a mass at the tip, from two derivatives of the tip.
 
-    Turning the waist turns y about a fixed axis, so that 0 for its angle after differentiation
-    gives J and J' v in coordinates that have turned with it, with many zeros. J^T J and J^T J' v
-    are the same.
+    The waist turns y about a fixed axis. Setting its angle to 0 after differentiation therefore
+    gives J and J' v in coordinates that turn with it, with many zeros; J^T J and J^T J' v stay the
+    same.
 
     Args:
         mass: m, [kg].

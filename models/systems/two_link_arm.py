@@ -16,7 +16,7 @@ r from their joint, and inertia I about it; mR is the mass of the elbow motor. W
 At y = 0 link 1 is upright and link 2 horizontal, q = (π/2, -π/2). The determinant of the Jacobian
 is l1 l2 sin q2: the arm is singular when stretched (q2 = 0, at the distance l1 + l2 from its base)
 and when folded (q2 = ±π, at |l1 - l2|). Every other point in reach has two poses. The one with the
-elbow up is taken, -π < q2 < 0; no path leads continuously from one to the other.
+elbow up is used, -π < q2 < 0; no path leads continuously from one to the other.
 
 Source: Spong and Vidyasagar, Robot Dynamics and Control, 6.4, the planar elbow manipulator.
 """
@@ -131,23 +131,23 @@ def two_link_arm() -> MechanicalSystem:
 
 
 def plant(parameters: Parameters) -> Array:
-    """See `Robot.plant`."""
-    own = own_parameters(TwoLinkParameters, parameters)
-    return EQUATIONS.parameter_vector(LINKS.lumped(own.payload))
+    """The numbers of the plant, `Robot.plant`."""
+    chosen = own_parameters(TwoLinkParameters, parameters)
+    return EQUATIONS.parameter_vector(LINKS.lumped(chosen.payload))
 
 
 def model(parameters: Parameters) -> Array:
-    """See `Robot.model`: without payload, with the chosen model errors."""
-    own, values = own_parameters(TwoLinkParameters, parameters), LINKS.lumped()
+    """The numbers of the model, `Robot.model`: without payload, with the chosen errors."""
+    chosen, values = own_parameters(TwoLinkParameters, parameters), LINKS.lumped()
     for name in ("a1", "a2", "a3"):
-        values[name] *= 1 + own.error_inertia / 100
+        values[name] *= 1 + chosen.error_inertia / 100
     for name in ("g1", "g2"):
-        values[name] *= 1 + own.error_gravity / 100
+        values[name] *= 1 + chosen.error_gravity / 100
     return EQUATIONS.parameter_vector(values)
 
 
 def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
-    """See `Robot.skeleton`: bars of links 1 and 2; joints at base and elbow."""
+    """Bars of links 1 and 2, joints at base and elbow: `Robot.skeleton`."""
     one, two = (
         length * ca.vertcat(ca.cos(angle), 0, ca.sin(angle))
         for length, angle in ((LINKS.l1, q[0]), (LINKS.l2, q[0] + q[1]))

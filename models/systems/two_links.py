@@ -10,10 +10,10 @@ def elbow_up(x: ca.SX, z: ca.SX, first: float, second: float) -> ca.SX:
 
         cos q2 = (r² - l1² - l2²) / (2 l1 l2),   r² = x² + z²
 
-    Of the two poses, that with the elbow up: -π < q2 < 0. NaN out of reach.
+    This is the pose with the elbow up: -π < q2 < 0. NaN out of reach.
 
     Args:
-        x, z: the end-point, seen from the pivot, [m].
+        x, z: the end-point relative to the pivot, [m].
         first, second: l1 and l2, [m].
     """
     q2 = -ca.acos((x**2 + z**2 - first**2 - second**2) / (2 * first * second))

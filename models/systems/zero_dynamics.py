@@ -63,8 +63,9 @@ class ZeroDynamics:
             Shape (k, 2 (n - m)), [1/s]; infinity where the decoupling matrix is singular.
         """
         still = np.zeros(self.system.p)
-        given = (q, still if y_rate is None else y_rate)
-        given += (still if y_acceleration is None else y_acceleration, parameters)
+        rate = still if y_rate is None else y_rate
+        acceleration = still if y_acceleration is None else y_acceleration
+        given = (q, rate, acceleration, parameters)
         rows = np.broadcast_shapes(*[np.atleast_2d(part).shape[:1] for part in given])
         inputs = [np.broadcast_to(part, (*rows, part.shape[-1])).T for part in given]
         size = 2 * (self.system.n - self.system.m)
@@ -80,9 +81,9 @@ class ZeroDynamics:
     def critical_alpha(self, q: Array, parameters: Array, highest: float = HIGHEST_ALPHA) -> float:
         """The smallest α at which the zero dynamics become unstable, at rest at q.
 
-        It depends on the damping of the modes. The flexible five-bar at home has, with three modes,
-        0.7227 with the damping ratio 0.01 in each mode, and 0.7585 without damping: between these
-        values it is the damping that destabilises.
+        It depends on the damping of the modes. For the flexible five-bar at home with three modes,
+        it is 0.7227 with a damping ratio of 0.01 in each mode, and 0.7585 without damping: between
+        these values it is the damping that destabilises.
 
         Args:
             q: shape (n,).
@@ -124,8 +125,9 @@ def zero_dynamics(
     """Derive the zero dynamics of a system.
 
     With N(q) B = 0, the rows N (M v' + c) = 0 have no input. Of the coordinates, m follow the
-    output, y'' = J v' + J' v, and the others are f; so these rows give f'' as a function of f, f',
-    y' and y''. In the linearization the following coordinates move with f so that dy = 0.
+    output, y'' = J v' + J' v, and the others are f. So these rows give f'' as a function of f, f',
+    y' and y''. In the linearization, the coordinates that follow the output move with f so that dy
+    = 0.
 
     Args:
         following: numbers of the m coordinates that follow the output, for which dh/dq must be

@@ -1,1 +1,1 @@
-"""What pages without a server compute besides closed loops, as functions to translate."""
+"""Functions, to be translated, for pages without a server: everything but closed loops."""

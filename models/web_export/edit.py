@@ -1,6 +1,7 @@
-"""What a page without a server computes while a control point of a path is dragged.
+"""Computations of a page without a server while a control point of a path is dragged.
 
-The checks are those of models/paths/path_checks.py. Functions and scans for `wasm_loop.py`.
+The checks are those of models/paths/path_checks.py; `wasm_loop.py` translates the functions and
+scans.
 """
 
 from __future__ import annotations
@@ -27,7 +28,7 @@ from onpath.models.systems.robots import Robot, margin_of
 from onpath.models.web_export.fit import mix_function, scan_of
 
 CHECKS = (*POINT_CHECKS, "narrow")
-"""The last numbers of a row of `check`; "crosses" is found apart."""
+"""The last numbers of a row of `check`; `strands` finds "crosses"."""
 ROW = 3 + len(CHECKS)
 OUTLINE = 241
 """Points of a path as it is drawn."""
@@ -36,7 +37,7 @@ OUTLINE = 241
 def edit_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     """The functions for planar paths of a kind.
 
-    spot: a point z of the path's plane -> where it is in the picture, (2, 1)
+    spot: a point z of the path's plane -> its position in the picture, (2, 1)
     planar: (z, from, to) -> z moved as the picture's point moves
     toward: (z, target, share) -> that share of the way, within ±REACH
     mix: see `mix_function`
@@ -76,7 +77,7 @@ def edit_scans(robot: Robot, kind: Kind) -> dict[str, Scan]:
 
 
 def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bool = False) -> Scan:
-    """Something of evenly spaced points of a path; state: the number of the next one."""
+    """A function of evenly spaced points of a path; state: the number of the next point."""
     number, table = ca.SX.sym("number"), ca.SX.sym("table", *kind.table_shape)
     inner = count if kind.closed and not to_the_end else count - 1
     theta = number * (2 * np.pi / inner) - np.pi
@@ -85,7 +86,7 @@ def _points(kind: Kind, count: int, of: Callable[[ca.SX], ca.SX], to_the_end: bo
 
 
 def _check(robot: Robot, kind: Kind) -> Scan:
-    """See `edit_scans`; the last row of a closed curve is its first point."""
+    """The scan "check"; the last row of a closed curve is its first point."""
     state, table = ca.SX.sym("state", 4), ca.SX.sym("table", *kind.table_shape)
     number, length, before = state[0], state[1], state[2:]
     theta = sampled_theta(number, kind.closed)
@@ -102,20 +103,20 @@ def _check(robot: Robot, kind: Kind) -> Scan:
 def _strands(kind: Kind) -> Scan:
     """Whether the strand at a point comes near another one, or crosses it.
 
-    State: 1 if it is near one, 1 if it crosses one, where (2), and the length of the path.
+    State: 1 if it is near one, 1 if it crosses one, the place (2), and the length of the path.
     """
     state = ca.SX.sym("state", 5)
-    own, rows = ca.SX.sym("own", 2 * ROW), ca.SX.sym("rows", 2 * ROW)
-    arc = ca.fabs(rows[2] - own[2])
+    here, rows = ca.SX.sym("own", 2 * ROW), ca.SX.sym("rows", 2 * ROW)
+    arc = ca.fabs(rows[2] - here[2])
     if kind.closed:
         arc = ca.fmin(arc, state[4] - arc)
-    (a, d), (b, e) = _segment(own), _segment(rows)
-    pair = StrandPair(a, d, b, e, arc)
+    (a, d), (b, e) = _segment(here), _segment(rows)
+    pair = StrandPair(a=a, d=d, b=b, e=e, arc=arc)
     near, hit = narrow(pair), crosses(pair)
     place = ca.if_else(hit, pair.place, state[2:4])
     after = ca.vertcat(ca.fmax(state[0], near), ca.fmax(state[1], hit), place, state[4])
     row = ca.vertcat(rows[: ROW - 1], ca.fmax(rows[ROW - 1], near))
-    return scan_of(ROW, [state, own, rows], [after, row])
+    return scan_of(ROW, [state, here, rows], [after, row])
 
 
 def _segment(rows: ca.SX) -> tuple[ca.SX, ca.SX]:

@@ -1,4 +1,4 @@
-"""Fitting of a path's curve to its control points, for pages without a server.
+"""Fits a path's curve to its control points, for pages without a server.
 
 The same as `closed_through` and `open_through` of models/paths/curve_fit.py, for a fixed number of
 points, as functions that `wasm_loop.py` translates. A spline is a list of pieces, each of `PIECE`
@@ -62,7 +62,7 @@ def spline_function(closed: bool, count: int) -> ca.Function:
 
 
 def _before(knot: ca.SX, fine: ca.SX) -> ca.SX:
-    """How many of the fine knots 0, fine, 2 fine... are below a knot."""
+    """Number of the fine knots 0, fine, 2 fine... below a knot."""
     return -ca.floor(-knot / fine)
 
 
@@ -78,7 +78,7 @@ def _natural(width: Columns, slope: Columns) -> Columns:
 
 
 def _periodic(width: Columns, slope: Columns) -> Columns:
-    """Those of a closed spline, by the formula of Sherman and Morrison.
+    """Second derivatives at the knots of a closed spline, by the formula of Sherman and Morrison.
 
     Row i of the system: w_(i-1) M_(i-1) + 2 (w_(i-1) + w_i) M_i + w_i M_(i+1) = 6 (d_i - d_(i-1)).
     """
@@ -113,7 +113,7 @@ def _tridiagonal(main: Columns, beside: Columns, right: Columns) -> Columns:
 def arc_scan() -> Scan:
     """Arc length along a spline: one step for each fine knot of a piece.
 
-    State: number of the knot, length up to it, the point there, and the distance of knots.
+    State: number of the knot, length up to it, the point there, and the distance between knots.
     Constants: the piece, and the next one. Result: (knot, length up to it, and up to the next one).
     """
     state, pieces = ca.SX.sym("state", 5), ca.SX.sym("pieces", PIECE, 2)
@@ -130,7 +130,7 @@ def resample_scan(closed: bool) -> Scan:
     """Points at equal arc length, each times the basis at its θ, and summed.
 
     State: number of the next point, total length, distance of fine knots, and the sums, (2, TERMS).
-    Constants: as those of `arc`, and its results are the rows.
+    The constants are those of `arc`, and the rows are its results.
     """
     state, pieces = ca.SX.sym("state", 3 + 2 * TERMS), ca.SX.sym("pieces", PIECE, 2)
     row = ca.SX.sym("row", 3)

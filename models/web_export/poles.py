@@ -20,15 +20,15 @@ from onpath.models.systems.parameters import Parameters, look_ahead_time
 from onpath.models.web_export.fit import scan_of
 
 STEPS = 100
-"""Of the method: a double root takes about 30."""
+"""Steps of the method; a double root takes about 30."""
 SLOW = 4
 """Most poles of a channel that are shown."""
 ROUNDING = 1e-12
-"""Of an imaginary part of z."""
+"""Imaginary parts of z below this are rounding errors."""
 BEHAVIOURS = ("no_overshoot", "no_oscillation", "damping", "unstable", "swings", "not_stable")
-"""What `settling` says of a channel: a number of this list."""
+"""The behaviours of a channel, of which `settling` gives the number in this list."""
 Polynomial = Sequence[ca.SX | float]
-"""Coefficients, that of the constant first."""
+"""Coefficients, beginning with the constant."""
 
 
 def pole_functions(parameters: Parameters, settings: Layout) -> dict[str, ca.Function]:
@@ -36,7 +36,7 @@ def pole_functions(parameters: Parameters, settings: Layout) -> dict[str, ca.Fun
 
     polynomials: settings -> of the channels across and along, and first roots, see `roots_scan`
     settling: (roots, polynomial, sampling interval) -> number of slow poles; real and imaginary
-        parts of `SLOW`, [1/s]; the number of one of `BEHAVIOURS`, [s], and the damping ratio
+        parts of `SLOW` of them, [1/s]; number in `BEHAVIOURS`, its time [s], and the damping ratio
     """
     size = _size(parameters)
     return {"polynomials": _polynomials(parameters, settings, size), "settling": _settling(size)}
@@ -53,13 +53,13 @@ def roots_scan(parameters: Parameters) -> Scan:
 
 
 def _size(parameters: Parameters) -> int:
-    """Number of roots: position, velocity, integral and the accelerations on their way."""
+    """Number of roots: of position, velocity, integral and pending accelerations."""
     return 4 + int(parameters.delay)
 
 
 def _polynomials(parameters: Parameters, settings: Layout, size: int) -> ca.Function:
-    """See `pole_functions`; a polynomial begins with how many of its roots are slow, and with 1 if
-    it has an integral."""
+    """The function "polynomials"; each begins with the number of its slow roots, and with 1 if it
+    has an integral."""
     symbol, fields = settings.symbols("settings")
     k1, k2, k3, k4, k5 = (fields[f"K{i}"] for i in range(1, 6))
     with_integral = _padded(_characteristic(parameters, k1, k2, k3, kept=3), size)
@@ -111,7 +111,7 @@ def _characteristic(
 
 
 def _padded(polynomial: Polynomial, size: int) -> list[ca.SX]:
-    """The same with further roots at z = 0, the fastest place, without its leading 1."""
+    """The polynomial with further roots at z = 0, where they are fastest; without its leading 1."""
     full: Polynomial = [*polynomial, 1.0]
     while len(full) <= size:
         full = _times(full, [1.0, 1.0])
@@ -168,14 +168,14 @@ def _quotient(a: Complex, b: Complex) -> Complex:
 
 
 def _settling(size: int) -> ca.Function:
-    """See `pole_functions`, `Channel.behaviour` and `Channel.pole_words`."""
+    """The function "settling", after `Channel.behaviour` and `Channel.pole_words`."""
     state, polynomial = ca.SX.sym("roots", 2 * size), ca.SX.sym("polynomial", size + 2)
     interval, count = ca.SX.sym("interval"), polynomial[0]
     poles = _sorted([_pole(state[i], state[size + i], interval) for i in range(size)])
     stable = ca.SX(1)
     for real, _ in poles:
         stable = ca.fmin(stable, real < -LEAST_DECAY)
-    for number in range(1, size):  # one more, if it is the conjugate of the last
+    for number in range(1, size):  # one more if it is the conjugate of the last one
         (real, imaginary), (other, opposite) = poles[number - 1], poles[number]
         alike = ca.fabs(real - other) + ca.fabs(imaginary + opposite) <= 1e-6 * ca.fabs(real)
         pair = ca.fmin(alike, ca.fabs(imaginary) > 1e-6 * ca.fabs(real))

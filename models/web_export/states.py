@@ -23,15 +23,15 @@ def begin_function(robot: Robot, kind: Kind, kernel: Kernel) -> ca.Function:
 
 
 def change_function(before: Kernel, after: Kernel, law: str) -> ca.Function:
-    """State of a loop under another law -> how it goes on under this law.
+    """State of a loop under another law -> the state with which it continues under this law.
 
     As in the lab: the reference point starts at the closest point, and the integral and the memory
     of the law at 0.
     """
     symbol, state = before.state.symbols("state")
-    own = {name for name, _ in law_named(law).memory}
+    memory = {name for name, _ in law_named(law).memory}
     values = {
-        name: state[name] if name in state and name not in own else ca.SX.zeros(size)
+        name: state[name] if name in state and name not in memory else ca.SX.zeros(size)
         for name, size in after.state.fields
     }
     values |= {"theta_ref": state["theta"], "integral": 0 * state["integral"]}

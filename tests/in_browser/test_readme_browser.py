@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Frame, Page
 
 pytestmark = pytest.mark.thorough
-SECTION = (ROOT / "README.md").read_text("utf-8").split("## Pages without a server")[1].split("\n## ")[0]
+README = (ROOT / "README.md").read_text("utf-8")
+SECTION = README.split("## Pages without a server")[1].split("\n## ")[0]
 COMMANDS = re.findall(r"^onpath .*$", SECTION, re.MULTILINE)
 SERVE = re.findall(r"`(python -m http\.server [^`]*)`", SECTION)[0]
 FRAME = re.findall(r"`(<iframe .*</iframe>)`", SECTION)[0]

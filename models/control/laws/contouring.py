@@ -47,12 +47,14 @@ def contouring(view: View) -> ControlAction:
     reference, frame, gains = view.reference, view.frame, view.gains
     assert reference is not None
     rate, ratio = clock_rate(view.clock), view.own_gains["contour_ratio"]
-    rates = rate, clock_acceleration(view.clock)
-    error, error_rate, feedforward = tracking_error(reference, frame, view.y, view.y_rate, *rates)
+    acceleration = clock_acceleration(view.clock)
+    error, error_rate, feedforward = tracking_error(
+        reference, frame, view.y, view.y_rate, rate, acceleration
+    )
     if reference.sigma.numel() == 3:
-        return _in_space(view, rates, error, error_rate, feedforward)
+        return _in_space(view, (rate, acceleration), error, error_rate, feedforward)
     (gap, off), (gap_rate, off_rate) = frame.split(error, rate=True), frame.split(error_rate, True)
-    axes, turn, turn_rate = _turning_frame(reference, *rates)
+    axes, turn, turn_rate = _turning_frame(reference, rate, acceleration)
     e = axes.T @ gap
     swapped = ca.vertcat(e[1], -e[0])
     e_rate = axes.T @ gap_rate + turn * swapped
@@ -99,14 +101,15 @@ def _in_space(
 
         y'' = y_r'' + A (ε'' + 2 Ω ε' + Ω' ε + Ω² ε),   ε' = A^T e' - Ω ε,
 
-    where the first component of ε'' is that along, and both others are that across the path.
+    where the first component of ε'' is along the path, and the other two are across it.
 
     Args:
         rates: θ_r' [rad/s] and θ_r'' [rad/s²].
     """
     assert view.reference is not None
     gains, ratio = view.gains, view.own_gains["contour_ratio"]
-    axes, turn, turn_rate = _turning_axes(view.reference, *rates)
+    rate, acceleration = rates
+    axes, turn, turn_rate = _turning_axes(view.reference, rate, acceleration)
     e = axes.T @ error
     e_rate = axes.T @ error_rate - turn @ e
     stiffness = gains.k1 * ca.vertcat(ratio, 1, 1)
@@ -124,7 +127,7 @@ def _turning_axes(
     step, here = ca.SX.sym("step"), normals(reference)
     bend, rise = normals(reference.moved(step)).bends
     slopes = [ca.substitute(ca.jacobian(each, step), step, ca.SX(0)) for each in (bend, rise)]
-    per_theta = _skew(*here.bends, here.twist)
+    per_theta = _skew(here.bends[0], here.bends[1], here.twist)
     second = _skew(slopes[0], slopes[1], here.twist_rate)
     axes = ca.horzcat(here.tangent, here.left, here.up)
     return axes, per_theta * rate, second * rate**2 + per_theta * acceleration
@@ -138,8 +141,8 @@ def _skew(bend: ca.SX, rise: ca.SX, twist: ca.SX) -> ca.SX:
 def contouring_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channel]:
     """The channels of the error in the frame (T, N) at the reference point.
 
-    Along: κ K1 and √κ K2. Across: K1 and K2, on every path; with the integral also K3, whose sum is
-    kept in axes that do not turn, so that its poles depend on how the path turns at the place.
+    Along: κ K1 and √κ K2. Across: K1 and K2 on every path, and with the integral also K3. The
+    integral is kept in axes that do not turn, so that its poles depend on the turning of the path.
     """
     ratio, k1, k2 = RATIO.of(parameters), parameters.K1, parameters.K2
     along = channel("along", parameters, (ratio * k1, ratio**0.5 * k2, 0.0), "xva")

@@ -13,13 +13,14 @@ def event_based(view: View) -> ControlAction:
         y'' = σ''(θ) ω² - K2 (y' - σ'(θ) ω) - K1 (y - σ(θ)) - K3 ∫(y - σ(θ)) dt
 
     θ is the parameter of the point closest to y, and ω the wanted rate (`rate_at`), whatever the
-    actual one is: while the robot is held, the law feeds forward the curvature of a motion that
+    actual rate is: while the robot is held, the law feeds forward the curvature of a motion that
     does not take place.
 
     Source: Tarn, Xi and Bejczy, Path-based approach to integrated planning and control, [3].
     """
-    motion = view.closest, view.frame, view.y, view.y_rate, rate_at(view)
-    error, error_rate, feedforward = tracking_error(*motion)
+    error, error_rate, feedforward = tracking_error(
+        view.closest, view.frame, view.y, view.y_rate, rate_at(view)
+    )
     return ControlAction(
         pid(view, error, error_rate, feedforward), error=error, theta_ref=view.output.theta
     )

@@ -1,8 +1,8 @@
-"""Formulas that a user types, read from untrusted text and made CasADi expressions.
+"""Reads formulas that a user types, from untrusted text, as CasADi expressions.
 
 A text has lines `name = expression`, separated by line breaks or semicolons. It is checked four
-times: its length; its characters, numbers and names; its syntax tree, which Python's `ast` makes of
-each expression; and the form of every node of the tree. Nothing is ever executed. An error is a
+times: its length; its characters, numbers and names; the syntax tree of each expression, made by
+Python's `ast`; and the form of every node of the tree. Nothing is ever executed. An error is a
 `CodedError` that names the line and the column.
 """
 
@@ -45,7 +45,7 @@ FUNCTIONS: Mapping[str, tuple[int, Callable[..., ca.SX]]] = {
     "min": (2, ca.fmin),
     "max": (2, ca.fmax),
 }
-"""Number of arguments, of which `min` and `max` take more as well, and what they do."""
+"""Name -> number of arguments (`min` and `max` also take more) and function."""
 
 INSTEAD: Mapping[str, str] = {
     "^": "**",
@@ -56,7 +56,7 @@ INSTEAD: Mapping[str, str] = {
     "≠": "!=",
     **dict.fromkeys("\N{EN DASH}\N{EM DASH}\N{NON-BREAKING HYPHEN}", "-"),
 }
-"""What is written elsewhere, and how it is written here."""
+"""Signs that are usual elsewhere -> their form here."""
 
 _KEYWORDS = ("if", "else", "and", "or", "not")
 _TOKEN = re.compile(
@@ -140,7 +140,7 @@ def syntax_tree(expression: str) -> ast.expr:
     """The syntax tree of one expression.
 
     Python 3.11.7 counts the depth of the trees of all threads together, and raises `SystemError` if
-    another thread makes one at the same moment: then the tree is made once more.
+    another thread makes one at the same moment: then this function tries again.
 
     Raises:
         SyntaxError, ValueError, MemoryError, RecursionError: as `ast.parse`.
@@ -148,11 +148,11 @@ def syntax_tree(expression: str) -> ast.expr:
     for _ in range(MOST_TRIES):
         with suppress(SystemError):
             return ast.parse(expression, mode="eval").body
-    raise MemoryError  # refused as what Python has no memory for
+    raise MemoryError  # refused like an expression for which Python has no memory
 
 
 def _lines(text: str) -> Iterator[tuple[int, str]]:
-    """Where each line that is not blank begins in the text, and the line."""
+    """Beginning in the text, and contents, of each line that is not blank."""
     for line in re.finditer(r"[^\n;]+", text):
         if line[0].strip(" \t\r"):
             yield line.start(), line[0]
@@ -166,16 +166,16 @@ class _LineReader:
     """Reads one line.
 
     Args:
-        text: all of it.
-        start: where the line begins in it.
-        symbols: what the known names stand for.
+        text: the whole text.
+        start: the position in it at which the line begins.
+        symbols: known name -> its symbol.
     """
 
     def __init__(self, text: str, start: int, symbols: Mapping[str, ca.SX]) -> None:
         self._text, self._start, self._symbols = text, start, symbols
 
     def error(self, offset: int, reason: Message) -> CodedError:
-        """The error at an offset within what is being read."""
+        """The error at an offset from the present start."""
         before = self._text[: self._start + offset]
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
         return CodedError("error.law", line=line, column=column, reason=reason)
@@ -205,7 +205,7 @@ class _LineReader:
             raise self.error(0, TOO_COMPLEX) from None
 
     def _check_tokens(self, expression: str, given: Sequence[str]) -> None:
-        """Refuse other characters than those of the language, bad numbers and unknown names."""
+        """Refuse unknown characters, bad numbers and unknown names."""
         known, at, depth = (*given, *FUNCTIONS), 0, 0
         while at < len(expression):
             token = _TOKEN.match(expression, at)
@@ -234,7 +234,7 @@ class _LineReader:
             at = token.end()
 
     def _refuse_comma(self, expression: str, at: int) -> None:
-        """Refuse a comma that separates no arguments, and probably is a decimal comma."""
+        """Refuse a comma that does not separate arguments, and is probably a decimal comma."""
         before, after = (
             re.search(r"[0-9]+$", expression[:at]),
             re.match("[0-9]+", expression[at + 1 :]),
@@ -333,5 +333,5 @@ class _LineReader:
 
 
 def _shown(character: str) -> str:
-    """A character as a message shows it: in quotation marks if it can be seen, else by number."""
+    """A character for a message: in quotation marks if it is printable, else its number."""
     return repr(character) if character.isprintable() else f"U+{ord(character):04X}"

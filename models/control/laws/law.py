@@ -1,4 +1,4 @@
-"""What a control law is: a function from the view of a robot and a path to a command.
+"""Control laws: functions from the view of a robot and its path to a command.
 
 A law sees a `View` and returns a `ControlAction`: an acceleration y'' of the output, which
 `models/control/linearization.py` turns into torques, or the torques themselves. Everything is
@@ -44,7 +44,7 @@ class OwnGain:
     spec: Spec
 
     def of(self, parameters: Parameters) -> float:
-        """The value that it has."""
+        """The value of the gain."""
         return dict(parameters.own_gains).get(self.name, self.default)
 
 
@@ -57,14 +57,14 @@ def own_gain(
     *,
     label: str,
 ) -> OwnGain:
-    """A gain that one law has.
+    """Declare a gain of a single law.
 
     Args:
         name, default: see `OwnGain`.
         unit: "" for none.
         bounds: (low, high, step).
-        text: what it does, in one line.
-        label: name on a slider.
+        text: one line on what it does.
+        label: its name on a slider.
     """
     low, high, step = bounds
     spec = Spec(
@@ -141,7 +141,7 @@ class Clock:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What a law is given in a tick, predicted to the middle of the interval of its command.
+    """The arguments of a law in a tick, predicted to the middle of the interval of its command.
 
     Attributes:
         system: the equations of motion, and `q`, `v`, `model` their arguments: configuration and
@@ -156,9 +156,9 @@ class View:
         gains: K1 to K5.
         own_gains: those of `Law.own_gains`, by name.
         integral: integral of `ControlAction.error`, (p, 1).
-        lag: how old what the controller knows is at most when its torque ends, [s]: the control
-            interval, and, where there are such, the time constant of the velocity filter, the
-            computing delay and the time constant by which composite control predicts the bending.
+        lag: the greatest age of the controller's information when its torque ends, [s]: the control
+            interval plus, where they exist, the time constant of the velocity filter, the
+            computing delay and the time constant with which composite control predicts bending.
         measured: configuration and velocity as measured, not predicted, each (n, 1).
         held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """
@@ -198,15 +198,15 @@ class Along:
 
 @dataclass(frozen=True, slots=True)
 class ControlAction:
-    """What a law commands.
+    """The command of a law.
 
     Attributes:
         acceleration: y'', (p, 1), [m/s²]; None if the law commands torques.
         torque: u, (m, 1), [N m]; None if it commands an acceleration.
-        error: what the integral of K3 sums, (p, 1), [m]; None: nothing.
-        error_per_metre: units of `error` per metre; 1, but for a level set.
-        far: share of the command, from 0 to 1, that returns to the path from far away, instead of
-            following the law's formula: see `path_following.far_from_path`.
+        error: the quantity that K3 integrates, (p, 1), [m]; None: nothing.
+        error_per_metre: units of `error` per metre; 1 except for a level set.
+        far: share of the command, from 0 to 1, that returns to the path from far away instead of
+            following the law's formula; see `path_following.far_from_path`.
         theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
         along: the part of `acceleration` along the path, which a torque limit may reduce; None:
             its component along the path where the robot is.
@@ -232,8 +232,8 @@ class Law:
         label: as shown, in English.
         text: what it does, in a sentence.
         source: where it comes from.
-        good: what it is good at, in a sentence that a run shows.
-        limits: where it fails, in a sentence that a run shows.
+        good: its strength, in a sentence that a run confirms.
+        limits: its weakness, in a sentence that a run confirms.
         command: the law.
         reference: clock -> parameter θ of a further point at which the law needs the path; None if
             it needs the closest point only.
@@ -244,11 +244,11 @@ class Law:
         memory: what it keeps from tick to tick; all of it is 0 at the start.
         square: whether it needs as many motors and outputs as coordinates, n = m = p.
         commands_acceleration: whether it commands y'' rather than torques.
-        pace: what sets its speed along the path: "wanted", the wanted speed; "energy", the energy
-            that it has; "free", whatever pushes it; "none", it does not move along the path.
+        pace: what determines its speed along the path: "wanted", the wanted speed; "energy", its
+            energy; "free", whatever pushes it; "none", it does not move along the path.
         linear: whether its error has the poles of its gains; see `models/control/poles.py`.
-        channels: the motion across and along the path near a place, if it is not `linear`; None if
-            that has no poles either.
+        channels: the motion across and along the path near a place, for a law that is not `linear`;
+            None if that motion has no poles either.
         motors: number of motors that it is made for; None: any.
         spatial: whether it is made for outputs in space, p = 3.
         always_integrates: whether it uses the integral even if K3 = 0.

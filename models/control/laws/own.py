@@ -1,4 +1,4 @@
-"""A law of one's own: formulas that a user types.
+"""Typed laws: formulas that a user types.
 
 A law names what it commands, in the names of `VIEW`:
 
@@ -31,23 +31,23 @@ from onpath.models.control.laws.references import (
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import MINUS
 
-MOST_KEPT = 256  # laws of which the formulas are kept, two for each lab of a large class
-OWN = "own"  # what a typed law is called where its text does not matter
+MOST_KEPT = 256  # laws whose formulas are kept: two for each lab of a large class
+OWN = "own"  # name of typed laws where the text does not matter
 LABEL = "Own law"
 PATH_FOLLOWING = "across = -K1*xi - K2*dxi - K3*int_xi; along = -K5*(dtheta - speed)"
-"""The law that a user begins with: path following, eqs. (18) and (19), in the speed task."""
+"""The law with which a user begins: path following, eqs. (18) and (19), in the speed task."""
 
 TIME = "own_time"
 
 
 @dataclass(frozen=True, slots=True)
 class NamedValue:
-    """What one name in a law means, or the names of several components.
+    """The meaning of a name in a law, or of the names of several components.
 
     Attributes:
-        names: with the first of which a language's catalogue names the meaning, `law-own-<name>`.
+        names: the catalogues have the meaning under the first of them, `law-own-<name>`.
         meaning: in English.
-        unit: with the distance across the path in metres; under the level set ξ has its unit.
+        unit: for distances across the path in metres; a level set has its own unit.
     """
 
     names: tuple[str, ...]
@@ -86,7 +86,7 @@ SPACE_MEANINGS = (
     NamedValue(("y3",), "third coordinate of the end-point", "m"),
     NamedValue(("v3",), "third component of its velocity", "m/s"),
 )
-"""The names that there are in space besides."""
+"""Additional names in space."""
 VIEW = tuple(name for value in MEANINGS for name in value.names)
 SPACE = tuple(name for value in SPACE_MEANINGS for name in value.names)
 ERRORS = frozenset(("e1", "e2", "e3", "de1", "de2", "de3"))
@@ -113,7 +113,7 @@ def own_law(text: str) -> Law:
     """The law that a text describes.
 
     Raises:
-        ValueError: the text describes none; see `expressions.read`.
+        ValueError: the text describes no law; see `expressions.read`.
     """
     formulas = formulas_of(text)
     names = frozenset(formulas.names)
@@ -154,7 +154,7 @@ def tidy(text: str) -> str:
 
 
 def _check_targets(given: tuple[str, ...]) -> None:
-    """Refuse a law that does not say all that it commands, or says it twice over."""
+    """Refuse a law with incomplete commands, or with both accelerations and torques."""
     torques = [target for target in given if target.startswith("u")]
     if not torques:
         wanted = ["across", "along"]
@@ -168,7 +168,7 @@ def _check_targets(given: tuple[str, ...]) -> None:
 
 
 def _command(formulas: Formulas, view: View) -> ControlAction:
-    """What the formulas command, or nothing in a tick in which a number is not finite or is huge.
+    """The command of the formulas; none in a tick in which a number is not finite or is huge.
 
     After such a tick the reference point is NaN, so that the run stops as diverged.
     """
@@ -200,9 +200,9 @@ def _second_normal(
 
 
 def _values(view: View) -> dict[str, ca.SX]:
-    """What the names mean.
+    """The values of the names.
 
-    Several components are numbered from 1; of `xi`, `dxi` and `int_xi` the first has no number.
+    Components are numbered from 1; the first one of `xi`, `dxi` and `int_xi` has no number.
     """
     output, clock, gains = view.output, view.clock, view.gains
     values = {
@@ -220,8 +220,9 @@ def _values(view: View) -> dict[str, ca.SX]:
         values |= {f"{name}{i + 1 if i else ''}": parts[i] for i in range(view.frame.p - 1)}
     vectors = {"y": view.y, "v": view.y_rate}
     if view.reference is not None:
-        motion = view.reference, view.frame, view.y, view.y_rate, clock_rate(clock)
-        vectors["e"], vectors["de"], _ = tracking_error(*motion)
+        vectors["e"], vectors["de"], _ = tracking_error(
+            view.reference, view.frame, view.y, view.y_rate, clock_rate(clock)
+        )
     for name, vector in vectors.items():
         values |= {f"{name}{i + 1}": vector[i] for i in range(view.frame.p)}
     return values

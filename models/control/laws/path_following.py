@@ -25,7 +25,7 @@ def path_following(view: View) -> ControlAction:
     `task.limit`; on an open curve it is reduced near the ends, without a feedforward.
     `VirtualOutput.acceleration` turns (v_par, v_perp) into y''.
 
-    This is the paper's law, and it acts within two bounds: the integral of every law is limited,
+    This is the paper's law within two bounds: the integral of every law is limited,
     |K3 ∫λ dt| <= K1 ρ with ρ = 10 mm (`bounded` in models/closed_loop/kernel.py), and far from the
     path the command becomes a straight return (`far_from_path`).
 
@@ -72,18 +72,18 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
 
     (16) divides by 1 - λκ, which is 0 at the centre of curvature, where the closest point is not
     unique; a hand that lets go may throw the arm there. And (16) cancels θ'² as it was up to a time
-    `lag` ago, in which θ must not turn far. So s goes smoothly from 0 to 1 while
+    `lag` ago, during which θ must not turn far. So s goes smoothly from 0 to 1 while
 
         1 - λκ                     falls from 0.5 to 0.2, or
         (|θ'| - wanted) lag        rises from 0.15 to 0.3 rad, or
         the way past an open end   rises from 5 to 20 mm, where σ is the end.
 
-    With a level set it does so, too, where ∇s·N falls to such a share of what it is on the path:
-    at the centre of an ellipse it is 0, though 1 - λκ need not be; see `VirtualOutput.spread`.
+    With a level set it also does so where ∇s·N falls to such a share of its value on the path: at
+    the centre of an ellipse it is 0, although 1 - λκ need not be; see `VirtualOutput.spread`.
 
-    Elsewhere s is 0 exactly. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
-    without a force from outside, whichever of several closest points is taken: |y - σ|² is the
-    smallest of the squared distances, and each of them is pulled at alike.
+    Elsewhere s is exactly 0. Where it is 1, ½ K1 |y - σ|² + ½ |y'|² never rises in continuous time
+    without an external force, whichever of several closest points is taken: |y - σ|² is the least
+    of the squared distances, and the pull is the same towards each of them.
 
     Args:
         wanted: how fast θ is to turn, [rad/s].
@@ -101,10 +101,10 @@ def far_from_path(view: View, wanted: ca.SX) -> ca.SX:
 
 
 def wanted_turn(view: View) -> ca.SX:
-    """How fast the task lets θ turn, [rad/s].
+    """The rate of θ that the task allows, [rad/s].
 
-    In the speed task that is |ω_ref|. In the position task it is √K4 |θ - θ_ref|, which (19), from
-    rest, does not exceed.
+    It is |ω_ref| in the speed task, and √K4 |θ - θ_ref| in the position task, which (19) does not
+    exceed from rest.
     """
     task, theta = view.task, view.output.theta
     left = ca.fabs(wrap(theta - task.target, view.clock.closed))
@@ -112,7 +112,7 @@ def wanted_turn(view: View) -> ca.SX:
 
 
 def beyond_end(view: View) -> ca.SX:
-    """From an end of an open path to the closest point on its tangent there, (p, 1), [m].
+    """The vector from an end of an open path to the closest point on its tangent, (p, 1), [m].
 
     It is 0 on the path, and on a closed one.
     """

@@ -39,7 +39,7 @@ def found_laws() -> dict[str, Law]:
 
 
 def law_named(name: str) -> Law:
-    """The law of this name, or the one that is typed there: see models/control/laws/own.py.
+    """The law of this name, or the typed law of this text; see models/control/laws/own.py.
 
     Raises:
         ValueError: there is no such law.
@@ -52,7 +52,7 @@ def law_named(name: str) -> Law:
 
 
 def law_name(text: str) -> str:
-    """The name of a law that a user asks for: one of the registry, or a typed law on one line.
+    """The name of a law that a user wants: one of the registry, or a typed law on one line.
 
     Raises:
         ValueError: there is no such law.
@@ -67,7 +67,7 @@ def gains_of(laws: Iterable[Law]) -> dict[str, OwnGain]:
     """The own gains of laws, by name.
 
     Raises:
-        ValueError: a name that cannot be used, because it is none or means something else.
+        ValueError: a name that is not valid or is already in use.
     """
     found = dict[str, OwnGain]()
     for law in laws:
@@ -85,7 +85,7 @@ def gains_of(laws: Iterable[Law]) -> dict[str, OwnGain]:
 
 LAWS = found_laws()
 NAMES = (TRAJECTORY_TRACKING.name, PATH_FOLLOWING.name)
-"""The two laws that a lab begins with, and that the paper's experiments compare."""
+"""The two laws of a new lab, which the paper's experiments compare."""
 SHARED_GAINS = ("K1", "K2", "K3", "K4", "K5")
 OWN_GAINS = gains_of(LAWS.values())
 """The gains of single laws, by name."""

@@ -1,4 +1,4 @@
-"""Set-point regulation: go to a fixed point of the path, by the straight way."""
+"""Set-point regulation: go straight to a fixed point of the path."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def target(clock: Clock) -> ca.SX:
 def set_point(view: View) -> ControlAction:
     """Commanded y'' = -K1 (y - σ(θ_target)) - K2 y' - K3 ∫(y - σ(θ_target)) dt, (p, 1), [m/s²].
 
-    Source: the set-point regulators to which experiment 1 of the paper compares (III.B.4): they cut
+    Source: the set-point regulators with which the paper compares experiment 1 (III.B.4): they cut
     across the circle.
     """
     assert view.reference is not None

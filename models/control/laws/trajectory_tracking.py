@@ -22,9 +22,14 @@ def trajectory_tracking(view: View) -> ControlAction:
     Source: computed-torque control, as in any textbook.
     """
     assert view.reference is not None
-    rates = clock_rate(view.clock), clock_acceleration(view.clock)
-    motion = view.reference, view.frame, view.y, view.y_rate
-    error, error_rate, feedforward = tracking_error(*motion, *rates)
+    error, error_rate, feedforward = tracking_error(
+        view.reference,
+        view.frame,
+        view.y,
+        view.y_rate,
+        rate=clock_rate(view.clock),
+        acceleration=clock_acceleration(view.clock),
+    )
     return ControlAction(pid(view, error, error_rate, feedforward), error=error)
 
 

@@ -10,7 +10,7 @@ from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.system import coriolis
 
 FLYWHEEL = "flywheel"  # energy of the fictitious flywheel, [J]; 0: not started yet
-BEFORE = "joints"  # q at the last evaluation, [rad]: two or three of them are used
+BEFORE = "joints"  # q at the last evaluation, [rad]; two or three numbers are used
 FIELD_SHARE = 0.8  # largest energy of the field, as a share of all
 RESERVE = 0.01  # energy that stays in the flywheel, as a share of all
 TINY = 1e-12  # [J], keeps quotients finite where nothing moves
@@ -25,17 +25,17 @@ def velocity_field(view: View) -> ControlAction:
         V(q) = J⁻¹ (ω σ'(θ) - k λ N),   scaled down where ½ Vᵀ M V would exceed 0.8 Ē.
 
     A fictitious flywheel of inertia 1 kg m² and rate v_f stores the energy E_f = ½ v_f². With
-    M̄ = diag(M, 1) and V̄ = (V, V_f), V_f is such that ½ V̄ᵀ M̄ V̄ = Ē is constant. See `_turning` for
-    the torque τ that turns the velocity into the field and takes its work from the flywheel.
+    M̄ = diag(M, 1) and V̄ = (V, V_f), V_f is such that ½ V̄ᵀ M̄ V̄ = Ē is constant. `_turning` finds the
+    torque τ that turns the velocity into the field and takes its work from the flywheel.
 
     Gravity g and the viscous friction B v are compensated by the model. In an interval T the
     torques do the work u · Δq, and the flywheel pays for it exactly:
 
         u = s (τ + B v) + g,   E_f⁺ = E_f - u · Δq + ΔU + Δqᵀ B Δq / T,
 
-    with U the potential energy. The last term is at most what friction takes, so that
-    ½ vᵀ M v + E_f never rises by more than the work of a hand. So that E_f stays above 0, s ≤ 1
-    bounds the work to come, with |v|² = vᵀ M v and |τ|² = τᵀ M⁻¹ τ:
+    with U the potential energy. The last term is at most the loss by friction, so that ½ vᵀ M v +
+    E_f never rises by more than the work of a hand. To keep E_f above 0, s ≤ 1 bounds the work to
+    come, with |v|² = vᵀ M v and |τ|² = τᵀ M⁻¹ τ:
 
         s W ≤ E_f - Ē / 100,   W = T |τ| (|v| + sqrt(2 Ē)) + T vᵀ B v / 4.
 
@@ -73,8 +73,8 @@ def _turning(view: View, mass: ca.SX, gyration: ca.SX, wheel: ca.SX) -> tuple[ca
 
         τ̄ = K q̄',   K = a Pᵀ - P aᵀ,   a = w / (2 Ē) - γ p,
 
-    which has no power, because K is skew. Sampled, it has none if it is that of the velocity in the
-    middle of the interval T, to which V̄, p and w are predicted,
+    which has no power, because K is skew. When sampled, it has none if it is evaluated for the
+    velocity in the middle of the interval T, to which V̄, p and w are predicted,
 
         τ̄ = K (q̄' + T/2 M̄⁻¹ (τ̄ - C̄ q̄')) = a α - P β.
 
@@ -96,10 +96,10 @@ def _turning(view: View, mass: ca.SX, gyration: ca.SX, wheel: ca.SX) -> tuple[ca
     eased = ca.vertcat(solved[:, 0], turn[-1])  # M̄⁻¹ a
     velocity = ca.vertcat(v - half * solved[:, 1], wheel)  # in the middle, if τ were 0
     one, other = ca.dot(wanted, velocity), ca.dot(turn, velocity)
-    mixed, own = half * ca.dot(wanted, eased), half * ca.dot(turn, eased)
-    det = 1 - mixed**2 + 2 * energy * half * own
+    mixed, turned = half * ca.dot(wanted, eased), half * ca.dot(turn, eased)
+    det = 1 - mixed**2 + 2 * energy * half * turned
     alpha = ((1 + mixed) * one - half * 2 * energy * other) / det
-    beta = ((1 - mixed) * other + own * one) / det
+    beta = ((1 - mixed) * other + turned * one) / det
     torque = (alpha * turn - beta * wanted)[:-1]
     acceleration = alpha * eased[:-1] - beta * field
     return torque, ca.sqrt(ca.fmax(ca.dot(torque, acceleration), 0))

@@ -26,8 +26,8 @@ def virtual_constraint(view: View) -> ControlAction:
 
     y'' = a + b v_par is affine in v_par, eq. (16), with v_perp from (18). The law takes the v_par
     for which F has no component along the path, F · T = 0. On the path F then does no work, and in
-    continuous time the kinetic energy is constant, as that of a bead on a wire. With torques that
-    are held it grows with the square of the interval: at 1000 Hz and 0.6 m/s, by 1.4 to 2.1 % in
+    continuous time the kinetic energy is constant, like that of a bead on a wire. With torques that
+    are held, it grows with the square of the interval: at 1000 Hz and 0.6 m/s, by 1.4 to 2.1 % in
     20 s on the rigid robots.
 
     Source: virtual holonomic constraints, as in Mettin et al. [7] and Shiriaev et al. [8].
@@ -55,14 +55,21 @@ def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channe
 
         θ'' = -g θ'²,   and near a motion at θ' = w:   δθ'' = -2 g w δθ' - g' w² δθ.
 
-    Both coefficients vary along the path. Where the poles lie to the right, the bead is being
-    slowed down by a growing inertia, or the other way round; over a lap, nothing grows or decays.
+    Both coefficients vary along the path. Poles in the right half-plane mean that a growing inertia
+    slows the bead down, or a falling one speeds it up; over a lap, nothing grows or decays.
     """
     across = channels(parameters)[0]
     damping, stiffness = 2 * place.slope * place.rate, place.bend * place.rate**2
     poles: Complex = np.roots([1.0, damping, stiffness]).astype(np.complex128)
-    said = Message("behaviour.free")
-    return across, Channel("along", poles, False, False, at=place.theta, said=said)
+    along = Channel(
+        name="along",
+        poles=poles,
+        stable=False,
+        integral=False,
+        at=place.theta,
+        said=Message("behaviour.free"),
+    )
+    return across, along
 
 
 LAW = Law(

@@ -1,4 +1,4 @@
-"""Trajectory tracking by a clock that waits: it feels the error along the path."""
+"""Trajectory tracking with a clock that waits, because it feels the error along the path."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ def waiting_clock(view: View) -> ControlAction:
 
         θ_r'' = ω' + μ w',   w' = (e' · σ' + e · σ'' θ_r' - 2 w (σ' · σ'') θ_r') / |σ'|².
 
-    K3 sums the part of e across the path: along it the clock gives way. The clock runs on at the
-    rate that the previous evaluation of the law found. μ is `clock_gain`.
+    K3 integrates the part of e across the path: along the path the clock gives way. The clock runs
+    at the rate found by the previous evaluation of the law. μ is `clock_gain`.
 
     Source: the gradient update law of maneuvering, Skjetne, Fossen and Kokotović, reference [6].
     """
