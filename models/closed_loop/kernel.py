@@ -19,6 +19,7 @@ from onpath.models.closed_loop.delay import driven
 from onpath.models.closed_loop.law_view import (
     beam_estimate,
     clock_at,
+    commanded,
     interval,
     law_view,
     measured_output,
@@ -187,7 +188,7 @@ def _advance(
     q, v = look_ahead(system, state, settings, measured_q, measured_v, h)
     beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
-    command = law.command(view)
+    command = commanded(law, view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
     fresh, acts, saturated = held_torque(kind, state, settings, wanted)
     drive = driven(kind, state, settings, fresh, acts)

@@ -11,7 +11,7 @@ from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.reference_speed import task_at
 from onpath.models.closed_loop.sensing import measure
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import Clock, Gains, Law, PathReference, View
+from onpath.models.control.laws.law import Clock, ControlAction, Gains, Law, PathReference, View
 from onpath.models.control.space_output import space_output
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields
@@ -164,3 +164,24 @@ def law_view(
         measured=measure(system, kind, state, settings)[:2],
         held=state["u"],
     )
+
+
+def commanded(law: Law, view: View) -> ControlAction:
+    """What the law commands.
+
+    Raises:
+        ValueError: a command or a memory of another size than the loop has.
+    """
+    action = law.command(view)
+    sizes = {name: (action.memory.get(name), size) for name, size in law.memory}
+    if law.commands_acceleration:
+        sizes["acceleration"] = action.acceleration, view.frame.p
+    else:
+        sizes["torque"] = action.torque, view.system.m
+    for name, (given, size) in sizes.items():
+        numbers = 0 if given is None else ca.SX(given).numel()
+        if numbers != size:
+            raise ValueError(f"{law.name}: its command has {numbers} numbers as {name}, not {size}")
+    if odd := sorted(action.memory.keys() - sizes.keys()):
+        raise ValueError(f"{law.name}: its command has {', '.join(odd)}, not in Law.memory")
+    return action

@@ -57,27 +57,35 @@ def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
     Args:
         memory: fields that the law adds, `Law.memory`. They come late, so that the fields before
             them have the same positions for all laws.
+
+    Raises:
+        ValueError: a field of the memory has the name of another field.
     """
     n, m, p = system.n, system.m, system.p
-    return _layout(
-        (
-            ("q", n),
-            ("v", n),
-            ("theta", 1),  # closest point, [rad]
-            ("theta_rate", 1),  # its rate, which predicts the next one, [rad/s]
-            ("theta_ref", 1),  # reference point of laws that have one, [rad]
-            ("speed_ref", 1),  # speed reference, which ramps to the wanted speed, [rad/s]
-            ("integral", p),  # of λ, or of the error to the reference point
-            ("encoder", system.joints),  # last reading, [rad]
-            ("encoder_rate", system.joints),  # filtered velocity, [rad/s]
-            *(composite.MEMORY.fields if system.modes else ()),
-            ("u", m),  # torque that is held, [N m]
-            ("phase", 1),  # ticks since the control law was evaluated
-            *memory,
-            ("ticks", 1),  # of noise so far
-            ("queue", LONGEST * m),  # torques to take effect, newest first, [N m]
-        )
+    before = (
+        ("q", n),
+        ("v", n),
+        ("theta", 1),  # closest point, [rad]
+        ("theta_rate", 1),  # its rate, which predicts the next one, [rad/s]
+        ("theta_ref", 1),  # reference point of laws that have one, [rad]
+        ("speed_ref", 1),  # speed reference, which ramps to the wanted speed, [rad/s]
+        ("integral", p),  # of λ, or of the error to the reference point
+        ("encoder", system.joints),  # last reading, [rad]
+        ("encoder_rate", system.joints),  # filtered velocity, [rad/s]
+        *(composite.MEMORY.fields if system.modes else ()),
+        ("u", m),  # torque that is held, [N m]
+        ("phase", 1),  # ticks since the control law was evaluated
     )
+    after = (
+        ("ticks", 1),  # of noise so far
+        ("queue", LONGEST * m),  # torques to take effect, newest first, [N m]
+    )
+    layout = _layout((*before, *memory, *after))
+    if len(layout.slices) < len(layout.fields):
+        names = [name for name, _ in layout.fields]
+        twice = next(name for name, _ in memory if names.count(name) > 1)
+        raise ValueError(f"a law's memory cannot be named {twice!r}: the loop has that field")
+    return layout
 
 
 def kept_layout(system: MechanicalSystem, kind: Kind, memory: Memory = ()) -> Layout:

@@ -12,6 +12,7 @@ from weakref import WeakValueDictionary
 
 from onpath.app.lab.loops.compile_queue import CompileQueue
 from onpath.app.lab.loops.typed_loops import Key, TypedLoops
+from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
@@ -22,7 +23,7 @@ from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
 MOST = 8  # compiled loops that are kept, in use or not; 0.1 to 0.4 MB each
-MOST_REFUSED = 256  # loops remembered as not compilable; forgotten ones are tried again
+MOST_REFUSED = 256  # loops remembered as impossible; forgotten ones are tried again
 
 
 class LoopCache:
@@ -44,6 +45,7 @@ class LoopCache:
         self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the most recent last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
         self._refused = dict[Key, None]()  # not compilable; in order of discovery
+        self._broken = dict[Key, str]()  # a law with an error: its loop cannot even be interpreted
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.RLock()
@@ -67,7 +69,7 @@ class LoopCache:
         If not, the loop of a registry's law is made in the background; for others see `want`.
 
         Raises:
-            ValueError: a typed law cannot be used with this robot and these settings.
+            ValueError: the law cannot be used with this robot and these settings.
         """
         key = (robot.core, kind)
         if is_text(kind.controller):
@@ -76,6 +78,8 @@ class LoopCache:
             return self._typed.find(key) is not None
         if self._find(key) is not None:
             return True
+        if key in self._broken:
+            raise ValueError(self._broken[key])
         self.prepare(robot, kind)
         return self._pool is None or key in self._refused
 
@@ -93,7 +97,7 @@ class LoopCache:
         if is_text(kind.controller) or isinstance(self._made.get(key), CompiledLoop):
             return
         with self._lock:
-            known = key in self._making or key in self._refused
+            known = key in self._making or key in self._refused or key in self._broken
             if self._pool is not None and not known and self._waiting.ask(key):
                 self._pool.submit(self._compile_next)
 
@@ -141,7 +145,9 @@ class LoopCache:
             self._making.add(key)
         robot, kind = key
         try:
-            kernel = kernel_of(robot, kind)
+            kernel = self._kernel(key)
+            if kernel is None:
+                return
             meanwhile = self._find(key) or self._share(key, InterpretedLoop(kernel))
             self._share(key, translate_loop(kernel))
             del meanwhile  # nothing else refers to it, unless a lab uses it
@@ -153,3 +159,16 @@ class LoopCache:
                 del self._refused[next(iter(self._refused))]
         finally:
             self._making.discard(key)
+
+    def _kernel(self, key: Key) -> Kernel | None:
+        """The tick of a registry's law; None if the law has an error, which `is_ready` raises."""
+        try:
+            return kernel_of(*key)
+        except Exception as error:
+            name = key[1].controller
+            log.warning("%s cannot be used: its loop cannot be made", name, exc_info=True)
+            message = str(error).removeprefix(f"{name}: ")
+            self._broken[key] = f"{name}: {message}".splitlines()[0]
+            if len(self._broken) > MOST_REFUSED:
+                del self._broken[next(iter(self._broken))]
+            return None

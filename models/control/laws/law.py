@@ -26,7 +26,7 @@ from onpath.models.systems.system import MechanicalSystem
 ZERO, ONE = ca.SX(0), ca.SX(1)
 
 Memory = tuple[tuple[str, int], ...]
-"""Names and sizes of the fields that a law keeps from tick to tick."""
+"""Names and sizes of the fields that a law keeps from tick to tick, the same for all robots."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,9 +125,10 @@ class Clock:
         task: the wanted motion along the path.
         closed: whether the path is a closed curve.
         dt: length of a tick, [s].
-        interval: between two evaluations of the law, [s].
+        interval: between two evaluations of the law, [s]; what a law integrates grows by its rate
+            times this.
         ahead: time by which the controller looks ahead, [s].
-        memory: the law's own memory.
+        memory: the law's own memory, as its last evaluation left it.
     """
 
     theta: ca.SX
@@ -210,7 +211,7 @@ class ControlAction:
         theta_ref: θ_r after the tick, [rad]; None: it runs by the clock, `references.clock_rate`.
         along: the part of `acceleration` along the path, which a torque limit may reduce; None:
             its component along the path where the robot is.
-        memory: the law's own memory after the tick.
+        memory: the law's own memory after this evaluation; it stays so until the next one.
     """
 
     acceleration: ca.SX | None = None

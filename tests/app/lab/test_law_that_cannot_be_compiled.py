@@ -66,6 +66,29 @@ def test_others_are_still_compiled(
     assert isinstance(store.get(robot, Kind("waiting_clock")), CompiledLoop)
 
 
+def test_a_law_with_an_error_is_not_chosen_and_the_lab_goes_on(
+    store: LoopCache, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def command(view: View) -> ControlAction:
+        raise TypeError("an error in the law")
+
+    wrong = replace(PATH_FOLLOWING, name="wrong", label="Of the test", command=command)
+    monkeypatch.setitem(LAWS, "wrong", wrong)
+    lab = Lab(store)
+    before, began = dict(lab.session.laws), lab.session.time
+    do(lab, c.ChooseLaw(LEFT, "wrong"))
+    for _ in range(4):
+        run(lab, FRAME)
+        finish(store)
+    assert lab.message == "wrong: an error in the law"
+    assert lab.session.laws == before and lab.session.time > began
+    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
+    for _ in range(4):
+        run(lab, FRAME)
+        finish(store)
+    assert lab.session.laws[LEFT] == "waiting_clock"
+
+
 def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: str) -> None:
     labs = Lab(store), Lab(store)
     for lab, name in zip(labs, (law, "waiting_clock"), strict=True):

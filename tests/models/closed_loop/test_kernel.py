@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -14,6 +15,9 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
+from onpath.models.control.laws.law import ControlAction, Memory, View
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.layout import Fields
 from onpath.models.paths.curves import Curve, chebyshev_curve, circle, ellipse, segment
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
@@ -446,3 +450,26 @@ def test_settings_are_checked_by_name_and_size(rig: Rig) -> None:
     ):
         with pytest.raises(ValueError, match=message):
             layout.pack(bad)
+
+
+@pytest.mark.parametrize(
+    "memory, kept, message",
+    [
+        ((("sum", 2),), {"sum": ca.SX(0)}, "has 1 numbers as sum, not 2"),
+        ((("sum", 1),), {}, "has 0 numbers as sum, not 1"),
+        ((), {"sum": ca.SX(0)}, "has sum, not in Law.memory"),
+        ((("theta", 1),), {"theta": ca.SX(0)}, "memory cannot be named 'theta'"),
+    ],
+)
+def test_a_laws_memory_is_checked_by_name_and_size(
+    rig: Rig, memory: Memory, kept: Fields, message: str
+) -> None:
+    """What is wrong would shift or replace other fields of the state."""
+
+    def command(view: View) -> ControlAction:
+        return replace(LAWS["path_following"].command(view), memory=kept)
+
+    law = replace(LAWS["path_following"], name="keeps", command=command, memory=memory)
+    with pytest.MonkeyPatch.context() as patch, pytest.raises(ValueError, match=message):
+        patch.setitem(LAWS, "keeps", law)
+        build_kernel(rig.system, Plane(), Kind("keeps"))
