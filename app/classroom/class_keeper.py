@@ -41,7 +41,7 @@ class ClassKeeper:
         self._class, self._records, self._lost = classroom, records, lost
         self.id = class_id_of(classroom.key)
         self._kept: tuple[object, ...] = ()
-        self._asked: float | None = None  # last question to the database; None: no class here
+        self._asked: float | None = None  # when the database was last asked; None: not here
         self._claims = 0
         self._opening, self._storing = threading.Lock(), threading.Lock()
         self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.look)

@@ -67,9 +67,9 @@ def class_record(
 
     The sheet Answers has a row for each prediction, task and question of every lesson that a
     student has begun. `result` is "answered", "skipped", "open" (neither), "passed" (a task), or
-    "unknown" (the options have changed since). `right` is 1 or 0; `chosen` and `reason` are the letters of
-    options; `value` is a number, and `text` the student's own words. Sketches has the points of
-    drawn curves, in the units of their axes.
+    "unknown" (the options have changed since). `right` is 1 or 0; `chosen` and `reason` are the
+    letters of options; `value` is a number, and `text` the student's own words. The sheet Sketches
+    has the points of drawn curves, in the units of their axes.
 
     Args:
         made: time of the record, in UTC.
