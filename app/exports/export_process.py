@@ -71,7 +71,7 @@ class ExportProcess:
                 self._end()
                 if self._stops != stops:
                     raise ExportStopped("stopped") from error
-                reason = "the export process died, or was killed at its time-out"
+                reason = "the export process has died, or has been ended after its time"
                 raise ExportError(f"{reason}: {process.returncode}") from error
             finally:
                 limit.cancel()
