@@ -10,7 +10,7 @@ from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
-from onpath.lessons.words import Words
+from onpath.lessons.words import Words, language_name
 
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
@@ -128,6 +128,7 @@ def _page(
     name: str, words: Words, title: str, data: Any, around: dict[str, Any], **fields: Any
 ) -> str:
     fields |= {"words": words, "title": title, "policy": POLICY, "data": json_block(data)}
+    fields["language_name"] = language_name
     return environment().get_template(f"site/{name}.html").render({**fields, **around})
 
 
