@@ -1,1 +1,1 @@
-"""A class: who is in it, what they predicted, what the teacher wants."""
+"""A class: its members, their predictions, and the teacher's orders."""

@@ -1,4 +1,4 @@
-"""Admission to a class: limits wrong codes, and cleans nicknames."""
+"""Admission to a class: limits failed attempts at codes and keys, and cleans nicknames."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from onpath.app.common.throttle import Throttle
 from onpath.app.common.visible_text import comparison_key, readable, shortened
 from onpath.models.errors import CodedError
 
-LONGEST_NAME = 24  # [characters that are seen as one]
-CODE_LENGTH = (
-    6  # of a class code: short enough for a projector, long enough not to be guessed; `Admission`
-)
+LONGEST_NAME = 24  # [visible characters]
+CODE_LENGTH = 6
+"""Of a class code: short enough for a projector, long enough not to be guessed; see `Admission`."""
 
 
 class Admission:
@@ -27,22 +26,22 @@ class Admission:
     in total or per address would let one student lock out the class. Failures with the class code
     and with the teacher's key are counted separately.
 
-    The guesses per minute are thus `TRIES` times the number of tabs that somebody opens in it. Each
-    is a connection and a page that is built: about 340 tabs, hence 1700 guesses, per minute and
-    process. Of the 31^6 = 8.9e8 class codes, 1700 guesses a minute find the right one with a
-    probability of 0.02 % in a lesson of 90 minutes (17 % of 31^4, with four characters), and it
-    opens a seat that the teacher sees. There are 31^12 = 7.9e17 keys.
+    An attacker therefore has `TRIES` guesses for each tab opened. A process builds the pages of
+    about 340 tabs a minute, which makes 1700 guesses a minute. In a lesson of 90 minutes, these
+    find one of the 31^6 = 8.9e8 class codes with a probability of 0.02 % (it would be 17 % with
+    four characters), and whoever finds it gets a seat that the teacher sees. There are
+    31^12 = 7.9e17 keys.
     """
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._codes, self._keys = Throttle(clock), Throttle(clock)
 
     def check_key(self, typed: str, keys: Iterable[str], who: str) -> str:
-        """Check a teacher's key; returns the one that was entered.
+        """Check a teacher's key; return the one that matches.
 
         Args:
-            typed: what was entered.
-            keys: in their stored form, see `app.common.access_codes`.
+            typed: the text entered.
+            keys: valid keys, in the stored form of `app.common.access_codes`.
             who: session code of the tab.
 
         Raises:
@@ -77,9 +76,9 @@ def new_pass() -> str:
 
 
 def cleaned(name: str) -> str:
-    """A nickname in the form in which it is stored: what can be seen of it, in NFC.
+    """A nickname as it is stored: its visible characters, in NFC.
 
-    At most `MOST_MARKS` combining marks are kept on one character.
+    Each character keeps at most `MOST_MARKS` combining marks.
 
     Raises:
         ValueError: no visible character remains.
@@ -94,7 +93,7 @@ def not_among(others: set[str], name: str) -> str:
     """The name, with a number appended if it is taken.
 
     Args:
-        others: names of the others, as `comparison_key` has them.
+        others: comparison keys of the other names, from `comparison_key`.
     """
     count, unique = 1, name
     while comparison_key(unique) in others:
@@ -112,7 +111,7 @@ def new_class_code() -> str:
 def class_code_of(key: str) -> str:
     """The class code that belongs to a teacher's key, the same in every process.
 
-    Whoever tries keys needs a twentieth of a second for each, and 2^29 of them have the same code.
+    Trying a key takes a twentieth of a second, and about 9e8 keys share each code.
     """
     number, digits = int.from_bytes(_derived(key, b"onpath class code"), "big"), []
     for _ in range(CODE_LENGTH):
@@ -122,7 +121,7 @@ def class_code_of(key: str) -> str:
 
 
 def class_id_of(key: str) -> str:
-    """The name of a class in the database, which does not reveal the key."""
+    """The identifier of a class in the database, which does not reveal the key."""
     return _derived(key, b"onpath").hex()
 
 

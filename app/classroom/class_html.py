@@ -29,7 +29,7 @@ def class_code(code: str, count: int, words: Words) -> str:
 
 @dataclass(frozen=True, slots=True)
 class MemberLine:
-    """A student's line in the table."""
+    """A student's row in the table."""
 
     name: str
     lesson: str
@@ -40,10 +40,10 @@ class MemberLine:
 
 
 def table(members: Iterable[Member], course: Course, now: float, words: Words) -> str:
-    """Table of the members and their progress.
+    """The table of members and their progress.
 
     Args:
-        now: time by the class's clock, [s].
+        now: time on the class's clock, [s].
     """
     rows = [_row(member, course, now, words) for member in members]
     return render("class/table.html", rows=rows, words=words)
@@ -56,19 +56,24 @@ def _row(member: Member, course: Course, now: float, words: Words) -> MemberLine
     elif now - member.active > IDLE:
         minutes = int((now - member.active) / 60)
         colour, state = AMBER.hex, words("class.idle", minutes=minutes)
-    return MemberLine(member.name, *_place(member.progress, course, words), colour, state)
+    lesson, step, tasks = _position(member.progress, course, words)
+    return MemberLine(
+        name=member.name, lesson=lesson, step=step, tasks=tasks, colour=colour, state=state
+    )
 
 
-def _place(way: Progress, course: Course, words: Words) -> tuple[str, str, str]:
-    """A student's lesson, step and tasks."""
-    if not course.has(way.lesson):
+def _position(progress: Progress, course: Course, words: Words) -> tuple[str, str, str]:
+    """A student's lesson, step and tasks, as displayed."""
+    name = progress.lesson
+    if not course.has(name):
         return words("class.free"), "", ""
-    lesson = course.lesson(way.lesson, words.language)
-    index = min(way.notes[way.lesson].step if way.lesson in way.notes else 0, len(lesson.steps) - 1)
-    done, wanted = tasks_passed(way, lesson)
-    if way.lesson in course.tests:
-        return titles_of_tests(course, words)[way.lesson], "", ""
-    number = course.numbers()[way.lesson]
+    if name in course.tests:
+        return titles_of_tests(course, words)[name], "", ""
+    lesson = course.lesson(name, words.language)
+    step = progress.notes[name].step if name in progress.notes else 0
+    index = min(step, len(lesson.steps) - 1)
+    done, wanted = tasks_passed(progress, lesson)
+    number = course.numbers()[name]
     return (
         f"{number}. {lesson.front.title}",
         f"{index + 1}/{len(lesson.steps)} {lesson.steps[index].title}",
@@ -91,18 +96,24 @@ def prediction_view(
 
     Args:
         large: whether to use large type for a projector.
-        laws: control laws under which the prediction is put to the test.
-        second: the answers after a discussion, beside the others; None if it was asked once.
-        picks: which sketches are shown.
+        laws: control laws of the run that tests the prediction.
+        second: the answers after a discussion, shown beside the first; None if it was asked once.
+        picks: the sketches to show.
     """
     rounds = [("", found)]
     if second is not None:
         rounds = [(words("class.first"), found), (words("class.second"), second)]
     if isinstance(block, Choice):
         return choices_view(block, rounds, revealed, words, large)
-    seen = truth if revealed else None
-    told = [SketchRound(title, each, given_line(each, words)) for title, each in rounds]
-    return sketches_view(block, told, seen, robot_names(laws, words), words, large, picks)
+    return sketches_view(
+        block=block,
+        rounds=[SketchRound(title, each, given_line(each, words)) for title, each in rounds],
+        truth=truth if revealed else None,
+        robots=robot_names(laws, words),
+        words=words,
+        large=large,
+        picks=picks,
+    )
 
 
 def choices_view(
@@ -112,32 +123,32 @@ def choices_view(
     words: Words,
     large: bool = False,
 ) -> str:
-    """The options with how many have chosen them, without names; several rounds side by side.
+    """The options and how many students chose each, without names; rounds stand side by side.
 
     Args:
-        rounds: title and answers of each round in which the question was asked.
+        rounds: title and answers of each time the question was asked.
     """
-    said = [(title, found.counts, given_line(found, words)) for title, found in rounds]
+    titled = [(title, found.counts, given_line(found, words)) for title, found in rounds]
     return render(
         "class/choices.html",
         block=block,
         options=list(zip(LETTERS, block.options, strict=False)),
-        rounds=said,
+        rounds=titled,
         most=max(1, *(count for _, found in rounds for count in found.counts)),
         revealed=revealed,
-        facts=said[0][2] if len(said) == 1 else "",
+        facts=titled[0][2] if len(titled) == 1 else "",
         large=large,
     )
 
 
 def hidden_view(block: Prediction, found: Distribution, words: Words, large: bool = False) -> str:
-    """The question, and how many have answered it."""
+    """The question, and how many students have answered it."""
     facts = given_line(found, words)
     return render("class/prediction.html", block=block, facts=facts, large=large)
 
 
 def given_line(found: Distribution, words: Words) -> str:
-    """How many have answered, skipped, and not answered yet, and how many answers are lost."""
+    """How many students have answered, skipped, or not answered, and how many answers are lost."""
     given = sum(found.counts) + len(found.sketches)
-    said = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
-    return f"{said} {words('class.unknown', count=found.unknown)}" if found.unknown else said
+    line = words("class.given", given=given, skipped=found.skipped, waiting=found.waiting)
+    return f"{line} {words('class.unknown', count=found.unknown)}" if found.unknown else line

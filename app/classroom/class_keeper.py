@@ -1,9 +1,9 @@
 """Keeps a class in the database (write-behind), and notices when another process takes it over.
 
-A class is in the memory of one process, the one that claimed its row last. A process claims it
-when somebody comes to its address and the row is not its own: then its own memory, if it has any,
-is outdated, and replaced by what is stored. It cannot claim a class that another process has open,
-which holds a lease of it; see `app.storage.leases`.
+A class lives in the memory of one process, the one that claimed its row last. When somebody opens
+the address of a class whose row belongs to another process, this process claims the row, and
+replaces any outdated copy in its memory by the stored class. It cannot claim a class that another
+process has open, because that process holds a lease of it; see `app.storage.leases`.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ from onpath.app.storage.records import HeldElsewhere, NotKept, Records
 from onpath.app.storage.schema import classes
 from onpath.lessons.progress import Progress, read_progress
 
-KEEP_INTERVAL = 1.0  # [s] between writes: the most that is lost if the process is killed
-FRESH = 2.5  # [s] in which nobody who comes asks the database again
-OPENING_WAIT = 10.0  # [s] to wait while another thread asks the database
+KEEP_INTERVAL = 1.0  # [s] between writes: at most this much is lost if the process is killed
+FRESH = 2.5  # [s] for which the last answer of the database is good enough for newcomers
+OPENING_WAIT = 10.0  # [s] to wait for another thread that is asking the database
 
 
 class ClassKeeper:
     """Keeps one class with an address.
 
     Args:
-        lost: called when another process has taken the class over; it is empty here by then.
+        lost: called when another process has taken the class over and its copy here is empty.
 
     Attributes:
-        id: the name of the class in the database.
+        id: identifies the class in the database.
         rounds: the periodic writes.
     """
 
@@ -41,16 +41,16 @@ class ClassKeeper:
         self._class, self._records, self._lost = classroom, records, lost
         self.id = class_id_of(classroom.key)
         self._kept: tuple[object, ...] = ()
-        self._asked: float | None = None  # when the database was asked last; None: not here
+        self._asked: float | None = None  # when the database was last asked; None: not here
         self._claims = 0
         self._opening, self._storing = threading.Lock(), threading.Lock()
         self.rounds = Periodic("class keeper", KEEP_INTERVAL, self.look)
 
     def open(self) -> bool:
-        """Take the class over, unless it is here and up to date. May wait for the database.
+        """Claim the class unless it is here and up to date. May wait for the database.
 
         Returns:
-            Whether it is here; if not, another process has it open.
+            Whether the class is here; if not, another process has it open.
         """
         was_here = self._asked is not None
         try:
@@ -58,7 +58,7 @@ class ClassKeeper:
                 if self._asked is None or self._class.clock() - self._asked >= FRESH:
                     self._ask()
                 return True
-        except NotKept as error:  # another thread has been asking for long
+        except NotKept as error:  # another thread has been asking for too long
             log_warning("the class is not read from the database: %s", error)
             return True
         except HeldElsewhere:
@@ -67,10 +67,10 @@ class ClassKeeper:
             return False
 
     def _ask(self) -> None:
-        """Ask the database whether the class is still here, and take it over if not.
+        """Ask the database whether the class is still here, and claim it if not.
 
         Raises:
-            HeldElsewhere: another process has it open; it is empty here.
+            HeldElsewhere: another process has it open; the copy here is now empty.
         """
         try:
             if self._asked is None or not self._records.is_current(self.id, classes):
@@ -84,7 +84,7 @@ class ClassKeeper:
         self._asked = self._class.clock()
 
     def look(self) -> None:
-        """Store the class if it has changed; give it up if another process has it."""
+        """Store the class if it has changed; drop it if another process has it."""
         if self._asked is None:
             return
         claims = self._claims
@@ -97,7 +97,7 @@ class ClassKeeper:
         except HeldElsewhere:
             with self._opening:
                 if claims != self._claims:
-                    return  # it has been taken back meanwhile
+                    return  # it has been claimed again in the meantime
                 log_warning("class %s has moved to another process", self._class.code)
                 self._asked = None
                 self._class.restore(ClassState())
@@ -110,7 +110,7 @@ class ClassKeeper:
 
     def _claim(self) -> None:
         stored = self._records.claim(self.id, classes)
-        if stored is None:  # what is not stored yet could be open in two processes
+        if stored is None:  # a class without a row could be open in two processes
             self._records.save(self.id, to_stored(ClassState(), self._class.clock()), classes)
             stored = self._records.claim(self.id, classes)
         self._class.restore(from_stored(stored, self._progress, self._class.clock()))
@@ -118,7 +118,12 @@ class ClassKeeper:
         self._claims += 1
 
     def _store(self) -> None:
-        """Raises: HeldElsewhere, NotKept."""
+        """Store the class if it has changed.
+
+        Raises:
+            HeldElsewhere: another process owns the row.
+            NotKept: the database cannot be used.
+        """
         stored = to_stored(self._class.state, self._class.clock())
         mark = stored, self._records.generation
         if mark != self._kept:

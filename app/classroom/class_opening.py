@@ -1,8 +1,8 @@
-"""The classes of a server, by the teachers' keys that it is given.
+"""The classes of a server, one for each teacher's key that it is given.
 
-Without a key, a server has one class of its own, in memory, with a new key. With keys, each has a
-class with an address, which every server with the same key and database can serve. Keys are passed
-in the environment, because command lines are visible to all users.
+A server without keys has one class, in memory, with a new key. Otherwise each key has a class with
+an address, which every server with the same key and database can serve. Keys are passed in the
+environment, because command lines are visible to all users.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def given_keys() -> list[str]:
 
 
 def open_classes(keys: list[str]) -> list[Classroom]:
-    """The classes of a server.
+    """The classes of a server with these keys.
 
     Raises:
         ValueError: there are too many keys, or two have the same class code.

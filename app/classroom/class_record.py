@@ -1,8 +1,8 @@
-"""The record of a class: a workbook (.xlsx) with one row for each student and each thing asked.
+"""The record of a class: a workbook (.xlsx) with one row for each student and each item asked.
 
-Every spreadsheet opens it in columns, whatever its language, which is true of no kind of CSV: the
-separator and the decimal mark depend on it. A column holds one type, and text is text: no cell is
-a formula, also if a student has typed one.
+Every spreadsheet, in any language, opens it in columns. CSV has no such form, since its separator
+and decimal mark depend on the language. A column holds one type, and text stays text: no cell is a
+formula, even if a student has typed one.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ class Sheet:
     """A table of the workbook.
 
     Attributes:
-        columns: their headings, in order.
-        rows: cells by heading; those that are missing are empty.
+        columns: headings, in order.
+        rows: cells by heading; missing ones are empty.
     """
 
     name: str
@@ -65,14 +65,14 @@ def class_record(
 ) -> bytes:
     """The workbook.
 
-    The sheet Answers has a row for each prediction, task and question of the lessons that a student
-    has begun. `result` is "answered", "skipped", "open" (neither), "passed" (a task), or "unknown":
-    the options have changed since. `right` is 1 or 0; `chosen` and `reason` are the letters of
-    options; `value` is a number, and `text` the student's own words. Sketches has the points of
-    drawn curves, in the units of their axes.
+    The sheet Answers has a row for each prediction, task and question of every lesson that a
+    student has begun. `result` is "answered", "skipped", "open" (neither), "passed" (a task), or
+    "unknown" (the options have changed since). `right` is 1 or 0; `chosen` and `reason` are the
+    letters of options; `value` is a number, and `text` the student's own words. The sheet Sketches
+    has the points of drawn curves, in the units of their axes.
 
     Args:
-        made: when, in UTC.
+        made: time of the record, in UTC.
         more: further sheets; see `app.classroom.concept_test_results`.
     """
     members = list(members)
@@ -88,7 +88,7 @@ def class_record(
 
 
 def workbook(sheets: Iterable[Sheet], made: datetime) -> bytes:
-    """An .xlsx file of sheets."""
+    """The sheets as an .xlsx file."""
     from xlsxwriter import Workbook
 
     file = io.BytesIO()
@@ -142,9 +142,9 @@ def _of_all(members: Iterable[Member], course: Course, language: str, rows: Any)
 def _answers(lesson: Lesson, notes: Notes) -> Iterator[Row]:
     for key, kind, prediction, answer in _predictions(lesson, notes):
         index = int(key)
-        place = {"step": index + 1, "kind": kind, "item": lesson.steps[index].title}
+        where = {"step": index + 1, "kind": kind, "item": lesson.steps[index].title}
         unknown = (second_key(key) if kind == "second" else key) in notes.unknown
-        yield {**place, **_told(prediction, answer), **(_unknown() if unknown else {})}
+        yield {**where, **_predicted(prediction, answer), **(_unknown() if unknown else {})}
     for index, step in enumerate(lesson.steps):
         for task in step.tasks():
             best = notes.tasks.get(task.id)
@@ -162,7 +162,7 @@ def _answers(lesson: Lesson, notes: Notes) -> Iterator[Row]:
 def _predictions(
     lesson: Lesson, notes: Notes
 ) -> Iterator[tuple[str, str, Prediction, Answer | None]]:
-    """Key, kind and answer of each prediction, also of those that were asked a second time."""
+    """Key, kind and answer of each prediction, with the second answer if it was asked again."""
     for index, step in enumerate(lesson.steps):
         for prediction in step.predictions():
             key = str(index)
@@ -179,7 +179,7 @@ def _sketches(lesson: Lesson, notes: Notes) -> Iterator[Row]:
 
 
 def _questions(index: int, step: Step, notes: Notes) -> Iterator[Row]:
-    """Rows of the questions of a step, numbered if there are several."""
+    """The rows of a step's questions, numbered if there are several."""
     asked = [at for at, block in enumerate(step.blocks) if isinstance(block, QUESTIONS)]
     for count, at in enumerate(asked, 1):
         block, key = step.blocks[at], f"{index}.{at}"
@@ -198,7 +198,7 @@ def _questions(index: int, step: Step, notes: Notes) -> Iterator[Row]:
             yield {**place, "kind": "words", "result": "answered" if text else "open", "text": text}
 
 
-def _told(prediction: Prediction, answer: Answer | None) -> Row:
+def _predicted(prediction: Prediction, answer: Answer | None) -> Row:
     """What was predicted, how sure the student is, and why."""
     if answer is None:
         return {"result": "open"}

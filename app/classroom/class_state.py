@@ -1,4 +1,4 @@
-"""Converts a class to what is stored of it and back. What is invalid is left out with a warning."""
+"""Converts a class to its stored form and back; invalid parts are left out, with a warning."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from onpath.app.lab.setups.stored import from_data, to_data
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress
 
-SETTLED = 5.0  # [s] after a push was given to a lab, by when the lab is stored with it
+SETTLED = 5.0  # [s] after a push is given to a lab; by then the lab is stored with it
 Count = Annotated[int, msgspec.Meta(ge=0)]
 Stored = dict[str, Any]
 
 
 class StoredMember(msgspec.Struct, frozen=True):
-    """A student, without the progress, which is stored with the lab."""
+    """A student without progress, which is stored with the lab."""
 
     session: Annotated[str, msgspec.Meta(min_length=1, max_length=64)]
     number: Count
@@ -43,45 +43,49 @@ class StoredClass(msgspec.Struct, frozen=True):
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
-    """What is stored of a class.
+    """The stored form of a class.
 
-    A push given to a lab within the last `SETTLED` seconds counts as not given yet: if this
-    process ends now, the lab may be stored without it.
+    A push that was given to a lab within the last `SETTLED` seconds counts as not yet given: if the
+    process ends now, the lab may have been stored without it.
 
     Args:
-        now: time by the class's clock, [s].
+        now: time on the class's clock, [s].
     """
     orders = state.orders
     members = [
         StoredMember(session, each.number, each.name, _settled(each, now))
         for session, each in state.members.items()
     ]
-    push = None if orders.push is None else push_data(orders.push)
-    passes = sorted(state.passes)
-    kept = StoredClass(
-        state.joined, orders.frozen, orders.pushes, push, passes, members, orders.pace
+    stored = StoredClass(
+        joined=state.joined,
+        frozen=orders.frozen,
+        pushes=orders.pushes,
+        push=None if orders.push is None else push_data(orders.push),
+        passes=sorted(state.passes),
+        members=members,
+        pace=orders.pace,
     )
-    return msgspec.to_builtins(kept)
+    return msgspec.to_builtins(stored)
 
 
 def _settled(member: Member, now: float) -> int:
-    """Number of the last push that the stored lab has for certain."""
+    """Number of the last push that the stored lab certainly has."""
     return member.taken if now - member.given > SETTLED else max(member.taken - 1, 0)
 
 
 def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: float) -> ClassState:
-    """The class as it was stored; empty if there is nothing, or it is invalid.
+    """The class as it was stored; empty if there is none, or if it is invalid.
 
     Args:
-        progress: finds the progress of a session code.
-        now: time by the class's clock, [s].
+        progress: returns the progress of a session code.
+        now: time on the class's clock, [s].
     """
     if data is None:
         return ClassState()
     try:
         kept = msgspec.convert(data, StoredClass)
     except msgspec.ValidationError as error:
-        log_warning("a class cannot be read, it is begun anew: %s", error)
+        log_warning("a class cannot be read and begins anew: %s", error)
         return ClassState()
     members: dict[str, Member] = {}
     for each in kept.members[:MOST_MEMBERS]:
@@ -104,14 +108,14 @@ def _member(data: Any) -> tuple[str, Member] | None:
 
 
 def push_data(push: Push) -> Stored:
-    """What a teacher has sent, as it is stored."""
+    """The stored form of what a teacher has sent."""
     if isinstance(push, TakeSetup):
         return {"setup": to_data(push.setup)}
     return {"lesson": push.lesson, "step": push.step, "route": push.route, "again": push.again}
 
 
 def read_push(data: Stored | None) -> Push | None:
-    """The inverse of `push_data`; None if there is nothing, or it is invalid."""
+    """The inverse of `push_data`; None if there is none, or if it is invalid."""
     if data is None:
         return None
     try:

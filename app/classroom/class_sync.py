@@ -15,8 +15,6 @@ from onpath.app.lab.lab import Lab
 
 SYNC_INTERVAL = 0.25  # [s]
 GAINS = ("K1", "K2", "K3", "K4", "K5")
-
-
 Find = Callable[[str], tuple[Lab, bool] | None]
 """The lab of a session code and whether a browser is connected; None if it is not here."""
 
@@ -41,12 +39,12 @@ class ClassSync:
         """Synchronize once: send orders to the labs and report their state to the class."""
         members = self._class.members()
         for code in [code for code in self._bound if code not in members]:
-            self._let_go(code)
+            self._release(code)
         for code in members:
             self._follow(code)
 
-    def _let_go(self, code: str) -> None:
-        """Let a lab go whose student has left the class."""
+    def _release(self, code: str) -> None:
+        """Release the lab of a student who has left the class."""
         lab = self._bound.pop(code)
         self._asked.pop(code, None)
         if lab.frozen:
@@ -84,10 +82,10 @@ class ClassSync:
 
 
 def _give(orders: Orders, lab: Lab, is_new: bool) -> None:
-    """Tell a lab what the teacher has ordered, unless it is so already.
+    """Pass the teacher's orders on to a lab, as far as it does not follow them already.
 
     Args:
-        is_new: whether what was sent last has not been sent to this lab.
+        is_new: whether this lab has not received the last push yet.
     """
     if is_new and orders.push is not None:
         lab.post(orders.push)
@@ -98,6 +96,6 @@ def _give(orders: Orders, lab: Lab, is_new: bool) -> None:
 
 
 def gains_of(lab: Lab) -> tuple[float, ...]:
-    """The gains of a lab, as in `GAINS`; its parameters are an immutable record."""
+    """The gains of a lab, in the order of `GAINS`. Safe, since its parameters are immutable."""
     parameters = lab.session.parameters
     return tuple(float(getattr(parameters, name)) for name in GAINS)

@@ -1,6 +1,6 @@
-"""A class in memory: its members, its teachers' passes, and what a teacher wants. Thread-safe.
+"""A class in memory: its members, its teachers' passes, and a teacher's orders. Thread-safe.
 
-class_keeper.py keeps it in the database; class_sync.py brings it together with the labs.
+class_keeper.py keeps it in the database; class_sync.py synchronizes it with the labs.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Member:
         name: the nickname; may hold any printable characters, so it must be escaped.
         progress: progress through the lessons at the last update.
         connected: whether a browser is connected to the lab.
-        active: time of the last command in the lab, by the class's clock, [s].
+        active: time of the last command in the lab, on the class's clock, [s].
         taken: number of the last push given to the lab; 0 for none.
-        given: when that was, by the class's clock, [s].
+        given: time of that push, on the class's clock, [s].
         gains: the lab's K1 to K5 at the last update; empty before the first one.
     """
 
@@ -66,7 +66,7 @@ class Orders:
         frozen: whether all labs are stopped.
         pushes: number of pushes so far.
         push: the last one, which later joiners receive as well; None if there is none.
-        pace: the steps within which students may go; None if they may go anywhere.
+        pace: the steps to which students are kept; None if they may go anywhere.
     """
 
     frozen: bool = False
@@ -77,10 +77,10 @@ class Orders:
 
 @dataclass(frozen=True, slots=True)
 class ClassState:
-    """Everything of a class that is kept.
+    """Everything about a class that is stored.
 
     Attributes:
-        joined: number of students that have ever joined.
+        joined: number of students who have ever joined.
         passes: hashes of the teachers' passes.
         members: students by session code, in order of joining.
     """
@@ -98,10 +98,10 @@ class Classroom:
     Attributes:
         clock: monotonic time, [s].
         code: the class code that students type to join.
-        key: the teacher's, as stored by `app.common.access_codes`.
+        key: the teacher's key, in the stored form of `app.common.access_codes`.
         has_address: whether the class has an address, which contains its code; see
             `class_with_address`.
-        state: everything that is kept; replaced at each change.
+        state: everything that is stored; replaced at each change.
     """
 
     clock: Callable[[], float] = time.monotonic
@@ -117,7 +117,7 @@ class Classroom:
         self._door = Admission(self.clock)
 
     def restore(self, state: ClassState) -> None:
-        """Replace everything by what was kept."""
+        """Replace everything by a stored state."""
         with self._lock:
             self.state = state
 
@@ -130,7 +130,7 @@ class Classroom:
             who: session code of the browser.
 
         Raises:
-            ValueError: a wrong key, or too many wrong keys.
+            ValueError: the key is wrong, or too many keys have been.
         """
         self._door.check_key(typed, [self.key], who)
         new = new_pass()
@@ -141,7 +141,7 @@ class Classroom:
     def is_pass(self, shown: str | None) -> bool:
         """Whether a browser's pass is valid."""
         given = _hash(shown or "")
-        return any([hmac.compare_digest(given, own) for own in self.state.passes])
+        return any([hmac.compare_digest(given, each) for each in self.state.passes])
 
     def revoke(self, shown: str | None) -> None:
         """Revoke a browser's pass."""
@@ -158,7 +158,8 @@ class Classroom:
             typed: the class code.
 
         Raises:
-            ValueError: a wrong code or too many of them, no nickname, or the class is full.
+            ValueError: the code is wrong, or too many have been; the nickname is empty; or the
+                class is full.
         """
         self._door.check_code(typed, [self.code], session)
         with self._lock:
@@ -184,7 +185,7 @@ class Classroom:
         return dict(self.state.members)
 
     def note(self, session: str, **changes: object) -> None:
-        """Update a member; without effect if the student has left."""
+        """Update a member. Does nothing if the student has left."""
         with self._lock:
             old = self.state.members.get(session)
             if old is not None:
@@ -206,8 +207,8 @@ class Classroom:
     def push(self, push: Push | None) -> None:
         """Send a set-up or a step to all members once, and to those who join later.
 
-        It remains in effect until another is sent or the class ends. Sending None clears it
-        without changing any lab; later joiners then keep their own set-up.
+        It remains in effect until another one is sent or the class ends. None clears it without
+        changing any lab; students who join later then keep their own set-up.
         """
         with self._lock:
             count, pace = self.orders.pushes + (push is not None), self.orders.pace
@@ -217,18 +218,18 @@ class Classroom:
             self.state = replace(self.state, orders=new)
 
     def keep_within(self, pace: Pace | None) -> None:
-        """Let students go within a range of steps only; None lets them go anywhere.
+        """Keep students within a range of steps; None lets them go anywhere.
 
-        Whoever is outside, also when joining later, is brought to its first step. A step that is
-        sent and lies outside ends it.
+        Students outside the range, including those who join later, are brought to its first step.
+        Sending a step outside the range ends it.
         """
         with self._lock:
             self.state = replace(self.state, orders=replace(self.orders, pace=pace))
 
     def end(self) -> int:
-        """End the class: remove all members; returns their number.
+        """End the class: remove all members, and return their number.
 
-        The next class has a new code, unless the code is that of an address.
+        The next class has a new code, unless this one has an address.
         """
         with self._lock:
             old = self.state
@@ -241,11 +242,11 @@ class Classroom:
 
 def class_with_address(key: str, clock: Callable[[], float] = time.monotonic) -> Classroom:
     """The class of a teacher's key; every process with this key gives it the same code."""
-    return Classroom(clock, class_code_of(key), key, has_address=True)
+    return Classroom(clock=clock, code=class_code_of(key), key=key, has_address=True)
 
 
 def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:
-    """Create or rename a member with a unique name.
+    """A new or renamed member, with a unique name.
 
     Args:
         members: current members of the class.
@@ -254,7 +255,7 @@ def seated(members: Mapping[str, Member], session: str, name: str, new: Member) 
         new: initial record of a student who has not joined yet.
 
     Raises:
-        ValueError: no nickname, or the class is full.
+        ValueError: the nickname is empty, or the class is full.
     """
     name, old = cleaned(name), members.get(session)
     if old is None and len(members) >= MOST_MEMBERS:

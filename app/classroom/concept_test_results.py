@@ -1,4 +1,4 @@
-"""The class's answers to the concept test, without names: for the teacher and the record."""
+"""The class's answers to the concept test without names, for the teacher and the record."""
 
 from __future__ import annotations
 
@@ -25,27 +25,29 @@ from onpath.lessons.words import Words
 
 
 def item_distribution(
-    test: Lesson, index: int, name: str, ways: Sequence[Progress]
+    test: Lesson, index: int, name: str, students: Sequence[Progress]
 ) -> Distribution:
-    """How the class has answered a question in one of the tests; only what is handed in counts.
+    """The class's answers to a question in one of the tests; only tests handed in count.
 
     Args:
-        index: of the question.
-        name: of the test.
+        index: index of the question.
+        name: name of the test.
     """
     block = list(questions(test).values())[index]
-    handed = [notes for way in ways if (notes := notes_of(way, name)) is not None]
+    handed = [notes for each in students if (notes := notes_of(each, name)) is not None]
     chosen = [chosen_in(test, notes)[index] for notes in handed]
     counts = tuple(chosen.count(option) for option in range(len(block.options)))
-    return Distribution(counts, (), chosen.count(None), len(ways) - len(handed))
+    return Distribution(
+        counts=counts, sketches=(), skipped=chosen.count(None), waiting=len(students) - len(handed)
+    )
 
 
 def gain_view(
-    test: Lesson, ways: Sequence[Progress], revealed: bool, words: Words, large: bool = False
+    test: Lesson, students: Sequence[Progress], revealed: bool, words: Words, large: bool = False
 ) -> str:
-    """The class's normalised gain, and once revealed the right answers to each question, [%]."""
-    found = class_gain(test, ways)
-    handed = [sum(notes_of(way, name) is not None for way in ways) for name in TESTS]
+    """The class's normalised gain and, if revealed, the right answers to each question, [%]."""
+    found = class_gain(test, students)
+    handed = [sum(notes_of(each, name) is not None for each in students) for name in TESTS]
     rows = [
         (number, block.misconception, *shares)
         for number, (block, *shares) in enumerate(
@@ -54,7 +56,7 @@ def gain_view(
     ]
     return render(
         "class/test.html",
-        handed=words("test.waiting", part=handed[0], all=len(ways), after=handed[1]),
+        handed=words("test.waiting", part=handed[0], all=len(students), after=handed[1]),
         found=found,
         rows=rows if revealed else [],
         words=words,
@@ -63,18 +65,21 @@ def gain_view(
 
 
 def sheets_without_names(
-    test: Lesson, ways: Sequence[tuple[str, Progress]], code: str
+    test: Lesson, students: Sequence[tuple[str, Progress]], code: str
 ) -> list[Sheet]:
-    """Sheets of the record: every student who has handed in, without name, and the class.
+    """Sheets of the record: the class, and every student who has handed in, without names.
 
-    A student is the same pseudonym in both tests. The pseudonym does not reveal who that is.
+    A student has the same pseudonym in both tests. It does not reveal who the student is.
 
     Args:
-        ways: session code and progress of each student.
-        code: of the class.
+        students: session code and progress of each student.
+        code: the class code.
     """
-    hidden = {sha256(f"{code} {session}".encode()).hexdigest()[:8]: way for session, way in ways}
-    gain = class_gain(test, [way for _, way in ways])
+    hidden = {
+        sha256(f"{code} {session}".encode()).hexdigest()[:8]: progress
+        for session, progress in students
+    }
+    gain = class_gain(test, [progress for _, progress in students])
     columns = ("pseudonym", "test", "question", "item", "result", "chosen", "right")
     return [
         Sheet("Concept test", columns, _test_rows(test, sorted(hidden.items()))),
@@ -82,10 +87,10 @@ def sheets_without_names(
     ]
 
 
-def _test_rows(test: Lesson, ways: Iterable[tuple[str, Progress]]) -> Iterator[Row]:
-    for pseudonym, way in ways:
+def _test_rows(test: Lesson, students: Iterable[tuple[str, Progress]]) -> Iterator[Row]:
+    for pseudonym, progress in students:
         for name in TESTS:
-            if (notes := notes_of(way, name)) is None:
+            if (notes := notes_of(progress, name)) is None:
                 continue
             asked = zip(test.steps, chosen_in(test, notes), right_in(test, notes), strict=True)
             for number, (step, option, right) in enumerate(asked, 1):
@@ -101,12 +106,12 @@ def _class_rows(found: ClassGain) -> Iterator[Row]:
     """The class's results; nothing if no student has handed in both tests."""
     if not found.students:
         return
-    told = {
+    values = {
         (BEFORE, "mean [%]"): found.mean_before,
         (AFTER, "mean [%]"): found.mean_after,
         ("", "normalised gain"): found.gain,
     }
-    for (name, item), value in told.items():
+    for (name, item), value in values.items():
         row = {"test": name, "of": item, "students": found.students}
         yield row if value is None else {**row, "value": value}
 

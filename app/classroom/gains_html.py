@@ -1,4 +1,4 @@
-"""Everyone's gains as points of a diagram, without names, as HTML."""
+"""Everyone's gains as points in a diagram, without names, as HTML."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import FIVE_BAR
 
 PAIRS = (("K1", "K2"), ("K4", "K5"), ("K1", "K3"), ("K1", "K5"))
-"""Gains along the two axes: which spring goes with which damping first."""
+"""Gains along the two axes; each spring with its damping comes first."""
 SPRINGS = (("K1", "K2"), ("K4", "K5"))
-"""Pairs of a spring and its damping, which have a border between swinging and creeping."""
+"""Pairs of a spring and its damping, with a border between swinging and creeping."""
 WIDTH, HEIGHT, LEFT, BELOW, MARGIN = 640, 380, 62, 52, 14  # size of the diagram, [px]
-POINTS = 60  # of the border
+POINTS = 60  # on the border
 
 
 @dataclass(frozen=True, slots=True)
 class Dot:
-    """Students with the same gains: place and radius, [px], and how many they are."""
+    """Students with the same gains: position and radius, [px], and their number."""
 
     x: float
     y: float
@@ -34,20 +34,20 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """Converts gains to places; what is beyond the range of a slider is drawn at its end."""
+    """Converts gains to positions; values beyond the range of a slider are drawn at its end."""
 
     across: tuple[float, float]
     up: tuple[float, float]
 
-    def place(self, x: float, y: float) -> tuple[float, float]:
-        """Place of a point, [px]."""
-        part = [
+    def position(self, x: float, y: float) -> tuple[float, float]:
+        """Position of a point, [px]."""
+        shares = [
             min(max((value - low) / (high - low), 0.0), 1.0)
             for value, (low, high) in ((x, self.across), (y, self.up))
         ]
         return (
-            LEFT + part[0] * (WIDTH - LEFT - MARGIN),
-            MARGIN + (1 - part[1]) * (HEIGHT - BELOW - MARGIN),
+            LEFT + shares[0] * (WIDTH - LEFT - MARGIN),
+            MARGIN + (1 - shares[1]) * (HEIGHT - BELOW - MARGIN),
         )
 
 
@@ -61,7 +61,7 @@ def gains_view(
 
     Args:
         pair: names of the gains along the two axes.
-        gains: as in `Member.gains`; those of students whose lab is not known yet are empty.
+        gains: each student's `Member.gains`; empty if the lab is not known yet.
         large: whether to use large type for a projector.
     """
     known = [each for each in gains if each]
@@ -70,12 +70,10 @@ def gains_view(
     parameters = FIVE_BAR.parameters()
     declared = specs(parameters)
     ranges = [(declared[name].low, declared[name].high) for name in pair]
-    scale = Scale(*ranges)
-    dots = [
-        Dot(*scale.place(*values), 5 + 3 * sqrt(count), count) for values, count in counted.items()
-    ]
+    scale = Scale(across=ranges[0], up=ranges[1])
+    dots = [_dot(scale, values, count) for values, count in counted.items()]
     marks = [
-        (*scale.place(*(low + part * (high - low) for low, high in ranges)), values)
+        (*scale.position(*(low + part * (high - low) for low, high in ranges)), values)
         for part in (0.0, 0.25, 0.5, 0.75, 1.0)
         for values in [tuple(f"{low + part * (high - low):g}" for low, high in ranges)]
     ]
@@ -92,9 +90,14 @@ def gains_view(
     )
 
 
+def _dot(scale: Scale, gains: tuple[float, float], count: int) -> Dot:
+    x, y = scale.position(*gains)
+    return Dot(x=x, y=y, radius=5 + 3 * sqrt(count), count=count)
+
+
 def _border(scale: Scale) -> str:
     """Damping at which a spring neither swings nor creeps, as points of an SVG polyline."""
     most = min(scale.across[1], (scale.up[1] / 2) ** 2)
     springs = [most * (i / POINTS) ** 2 for i in range(POINTS + 1)]
-    places = [scale.place(spring, 2 * sqrt(spring)) for spring in springs]
-    return " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
+    points = [scale.position(spring, 2 * sqrt(spring)) for spring in springs]
+    return " ".join(f"{x:.1f},{y:.1f}" for x, y in points)

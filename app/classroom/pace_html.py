@@ -27,29 +27,33 @@ class Whereabouts:
     elsewhere: int
 
 
-def whereabouts(lesson: Lesson, ways: Iterable[Progress]) -> Whereabouts:
-    """Where students are, as seen from a lesson."""
+def whereabouts(lesson: Lesson, students: Iterable[Progress]) -> Whereabouts:
+    """How many students are in each step of a lesson, at its end, or elsewhere."""
     steps, ended, elsewhere = [0] * len(lesson.steps), 0, 0
-    for way in ways:
-        if way.lesson != lesson.name:
+    for progress in students:
+        if progress.lesson != lesson.name:
             elsewhere += 1
-        elif way.ended:
+        elif progress.ended:
             ended += 1
         else:
-            index = way.notes.get(lesson.name, Notes()).step
+            index = progress.notes.get(lesson.name, Notes()).step
             steps[min(index, len(steps) - 1)] += 1
     return Whereabouts(tuple(steps), ended, elsewhere)
 
 
 def pace_view(
-    lesson: Lesson, ways: Iterable[Progress], pace: Pace | None, words: Words, large: bool = False
+    lesson: Lesson,
+    students: Iterable[Progress],
+    pace: Pace | None,
+    words: Words,
+    large: bool = False,
 ) -> str:
-    """A bar for each step, and which steps the class may go to.
+    """A bar for each step, and whether the class may go there.
 
     Args:
-        large: for a projector; titles, which may tell what happens, are left out.
+        large: for a projector; titles are left out, because they may give the result away.
     """
-    found = whereabouts(lesson, ways)
+    found = whereabouts(lesson, students)
     titles = [
         f"{number} {words(f'kind.{step.kind}')}{'' if large else f': {step.title}'}"
         for number, step in enumerate(lesson.steps, start=1)

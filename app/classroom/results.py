@@ -18,7 +18,7 @@ class Distribution:
         counts: number of answers per option; empty for a sketch.
         sketches: the sketched curves.
         skipped: number of students who skipped it.
-        unknown: number of answers that cannot be known, since the lesson has changed.
+        unknown: number of answers that cannot be recovered, since the lesson has changed.
         waiting: number of students who have not answered.
     """
 
@@ -30,7 +30,7 @@ class Distribution:
 
 
 def prediction_at(lesson: Lesson, index: int) -> tuple[int, Prediction] | None:
-    """The prediction that a step asks or whose truth it shows, and the step that asks it."""
+    """The prediction that a step asks for or whose truth it shows, and the index of its step."""
     before = index - 1 if lesson.steps[index].kind == "run" else index
     for at in dict.fromkeys((index, before)):
         if at >= 0:
@@ -43,19 +43,19 @@ def distribution(
     prediction: Prediction,
     lesson: str,
     step: int,
-    ways: Sequence[Progress],
+    students: Sequence[Progress],
     again: bool = False,
 ) -> Distribution:
     """Count the answers of the class.
 
     Args:
-        step: index of the step that asks the prediction.
-        ways: progress of all students.
+        step: index of the step that asks for the prediction.
+        students: progress of all students.
         again: whether to count the second answers, after a discussion, instead of the first ones.
     """
-    notes, key = [_notes(way, lesson) for way in ways], str(step)
-    lost = sum((second_key(key) if again else key) in own.unknown for own in notes)
-    answers = [(own.second if again else own.answers).get(key) for own in notes]
+    notes, key = [_notes(each, lesson) for each in students], str(step)
+    lost = sum((second_key(key) if again else key) in each.unknown for each in notes)
+    answers = [(each.second if again else each.answers).get(key) for each in notes]
     given = [answer for answer in answers if answer is not None]
     options = range(len(prediction.options)) if isinstance(prediction, Choice) else ()
     return Distribution(
@@ -67,22 +67,22 @@ def distribution(
     )
 
 
-def is_asked_again(lesson: str, step: int, ways: Iterable[Progress]) -> bool:
+def is_asked_again(lesson: str, step: int, students: Iterable[Progress]) -> bool:
     """Whether a prediction has been asked a second time in the class."""
-    return any(str(step) in _notes(way, lesson).asked_again for way in ways)
+    return any(str(step) in _notes(each, lesson).asked_again for each in students)
 
 
-def truth_of(lesson: str, step: int, ways: Iterable[Progress]) -> Truth | None:
+def truth_of(lesson: str, step: int, students: Iterable[Progress]) -> Truth | None:
     """The truth, taken from the first lab in which it has been measured."""
-    found = (_notes(way, lesson).truths.get(str(step)) for way in ways)
+    found = (_notes(each, lesson).truths.get(str(step)) for each in students)
     return next((truth for truth in found if truth is not None and truth.times), None)
 
 
-def tasks_passed(way: Progress, lesson: Lesson) -> tuple[int, int]:
-    """Number of passed tasks of a lesson, and number of its tasks, without the optional ones."""
-    tasks, passed = lesson.required_tasks(), _notes(way, lesson.name).tasks
+def tasks_passed(progress: Progress, lesson: Lesson) -> tuple[int, int]:
+    """Numbers of passed tasks and of all tasks in a lesson, without optional ones."""
+    tasks, passed = lesson.required_tasks(), _notes(progress, lesson.name).tasks
     return sum(task.id in passed for task in tasks), len(tasks)
 
 
-def _notes(way: Progress, lesson: str) -> Notes:
-    return way.notes.get(lesson, Notes())
+def _notes(progress: Progress, lesson: str) -> Notes:
+    return progress.notes.get(lesson, Notes())

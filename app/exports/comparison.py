@@ -1,4 +1,4 @@
-"""A comparison of laws for the page: one law at a time, and the picture of all so far."""
+"""A comparison of laws for the page: one law at a time, with a picture of all results so far."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ def compared(
     obstruction: str,
     language: str,
 ) -> tuple[Results, bytes]:
-    """The results with one more law, and their picture as PNG.
+    """The results with one law added, and their picture as PNG.
 
     Args:
         robot: name in the catalogue.
         curve: the path, closed.
-        earlier: results of the laws before.
+        earlier: results of the laws compared so far.
         law: a law that suits the robot.
     """
     from onpath.app.exports.figures_comparison import comparison_figure

@@ -1,4 +1,4 @@
-"""A student's own answers to the concept test, which are told once both tests are handed in."""
+"""A student's own answers to the concept test, shown once both tests are handed in."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from onpath.lessons.schema import Lesson, Quiz
 
 
 @dataclass(frozen=True, slots=True)
-class ToldQuestion:
-    """A question with the options chosen before and after the course, None where there is none."""
+class AnsweredQuestion:
+    """A question and the options chosen before and after the course; None for no answer."""
 
     block: Quiz
     before: int | None
@@ -26,17 +26,17 @@ class ToldQuestion:
 
 
 @dataclass(frozen=True, slots=True)
-class ToldTests:
-    """What a student is told of the concept test.
+class ConceptTestResults:
+    """A student's results in the concept test.
 
     Attributes:
-        scores: number of right answers, before and after the course; None if not handed in.
+        scores: number of right answers before and after the course; None if not handed in.
         questions: empty until the test after the course has been handed in.
     """
 
     lesson: Lesson
     scores: tuple[int | None, int | None]
-    questions: list[ToldQuestion]
+    questions: list[AnsweredQuestion]
 
     @property
     def count(self) -> int:
@@ -44,8 +44,8 @@ class ToldTests:
         return len(questions(self.lesson))
 
 
-def told_tests(run: LessonState) -> ToldTests | None:
-    """What is told; None if the course has no test, or none has been handed in."""
+def told_tests(run: LessonState) -> ConceptTestResults | None:
+    """A student's results; None if the course has no test, or none has been handed in."""
     if not run.course.tests:
         return None
     lesson = run.course.lesson(BEFORE, run.progress.language)
@@ -55,6 +55,9 @@ def told_tests(run: LessonState) -> ToldTests | None:
     blocks = list(questions(lesson).values())
     nothing: list[int | None] = [None] * len(blocks)
     chosen = [chosen_in(lesson, notes) if notes else nothing for notes in (before, after)]
-    asked = [ToldQuestion(*each) for each in zip(blocks, *chosen, strict=True)] if after else []
+    answered = [
+        AnsweredQuestion(block, chosen_before, chosen_after)
+        for block, chosen_before, chosen_after in zip(blocks, *chosen, strict=True)
+    ]
     right = [sum(right_in(lesson, notes)) if notes else None for notes in (before, after)]
-    return ToldTests(lesson, (right[0], right[1]), asked)
+    return ConceptTestResults(lesson, (right[0], right[1]), answered if after else [])

@@ -1,4 +1,4 @@
-"""What a teacher's guide and a worksheet are made of: a lesson's steps with their answers."""
+"""The material of the teacher's guide and the worksheets: a lesson's steps with their answers."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from onpath.models.systems.catalogue import ROBOTS
 
 @dataclass(frozen=True, slots=True)
 class AskedBlock:
-    """A prediction, a question of any kind or a task, with what it takes to answer it.
+    """A prediction, a question of any kind, or a task, with its answer.
 
     Attributes:
         kind: see `onpath.lessons.schema.KINDS`; not "text".
         key: lesson, step and place in the step; unique in the course.
-        step: its number, from 1.
-        axes: of a sketch, nothing drawn, as an image for a page.
-        figure: of a sketch, with the true curves.
-        solution: of a task, a sentence for each instant of the reference solution.
+        step: number of the step, from 1.
+        axes: empty axes of a sketch, as an image for a page.
+        figure: the same axes with the true curves.
+        solution: a sentence for each instant of a task's reference solution.
     """
 
     kind: str
@@ -42,7 +42,7 @@ class AskedBlock:
 
 @dataclass(frozen=True, slots=True)
 class TaughtStep:
-    """A step of a lesson, its number from 1, its estimated minutes, and what it asks."""
+    """A step of a lesson: its number from 1, its estimated minutes, and what it asks."""
 
     number: int
     step: Step
@@ -56,8 +56,8 @@ class TaughtLesson:
 
     Attributes:
         number: as displayed.
-        minutes: of all steps together that are not optional.
-        optional: of the others together.
+        minutes: sum over the steps that are not optional.
+        optional: sum over the optional ones.
     """
 
     number: str
@@ -67,7 +67,7 @@ class TaughtLesson:
     steps: list[TaughtStep]
 
     def asked(self, *kinds: str) -> list[AskedBlock]:
-        """All that is asked, or only some kinds of it."""
+        """Everything that is asked, or only some kinds of it."""
         every = [asked for step in self.steps for asked in step.asked]
         return [asked for asked in every if not kinds or asked.kind in kinds]
 
@@ -93,8 +93,13 @@ def taught_lesson(course: Course, folder: Path, name: str, words: Words) -> Taug
         TaughtStep(i + 1, step, step_minutes(step), _asked(lesson, i, solutions, words))
         for i, step in enumerate(lesson.steps)
     ]
-    spent = required_minutes(lesson), optional_minutes(lesson)
-    return TaughtLesson(course.numbers()[name], lesson, *spent, steps)
+    return TaughtLesson(
+        number=course.numbers()[name],
+        lesson=lesson,
+        minutes=required_minutes(lesson),
+        optional=optional_minutes(lesson),
+        steps=steps,
+    )
 
 
 def _asked(
@@ -105,16 +110,30 @@ def _asked(
         key = f"{lesson.name}.{index}.{place}"
         if isinstance(block, Sketch):
             truth = computed_truth(lesson, index)
-            axes = _drawn(lesson, index, block, None, words)
-            figure = _drawn(lesson, index, block, truth, words)
-            asked.append(AskedBlock("sketch", key, index + 1, block, axes, figure))
+            asked.append(
+                AskedBlock(
+                    kind="sketch",
+                    key=key,
+                    step=index + 1,
+                    block=block,
+                    axes=_image(lesson, index, block, None, words),
+                    figure=_image(lesson, index, block, truth, words),
+                )
+            )
         elif not isinstance(block, Text):
             solution = solutions[block.id] if isinstance(block, Task) else ()
-            kind = KINDS[type(block)]
-            asked.append(AskedBlock(kind, key, index + 1, block, solution=solution))
+            asked.append(
+                AskedBlock(
+                    kind=KINDS[type(block)],
+                    key=key,
+                    step=index + 1,
+                    block=block,
+                    solution=solution,
+                )
+            )
     return asked
 
 
-def _drawn(lesson: Lesson, index: int, block: Sketch, truth: Truth | None, words: Words) -> str:
+def _image(lesson: Lesson, index: int, block: Sketch, truth: Truth | None, words: Words) -> str:
     names = robot_names(lesson.laws_shown(index), words)
     return draw_prediction(block, None, truth, words, names)

@@ -1,4 +1,4 @@
-"""What a sketched curve and the true ones say, in words: their peaks."""
+"""A sketched curve and the true ones in words: their peaks."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 
 
 def number(value: float, words: Words) -> str:
-    """Format a number with three digits in the style of a language."""
+    """Format a number with three significant digits, as a language writes it."""
     return words.number(value, 3)
 
 
@@ -29,23 +29,23 @@ def curve_words(
     """The peaks of the sketch and of what happened; empty if there is neither.
 
     Args:
-        names: of the robots.
+        names: names of the robots.
     """
-    unit, said = QUANTITIES[block.quantity], list[str]()
+    unit, sentences = QUANTITIES[block.quantity], list[str]()
     if answer is not None and answer.times:
         value, time = _peak(answer.times, answer.values, words)
-        said.append(words("report.drawn", value=value, unit=unit, time=time))
+        sentences.append(words("report.drawn", value=value, unit=unit, time=time))
     if truth is not None:
         peaks = list[str]()
         for role in ROLES.values():
             value, time = _peak(truth.times, getattr(truth, role), words)
             peak = {"robot": names[role], "value": value, "unit": unit, "time": time}
             peaks.append(words("report.peak", **peak))
-        said.append(words("report.happened", first=peaks[0], second=peaks[1]))
-    return " ".join(said)
+        sentences.append(words("report.happened", first=peaks[0], second=peaks[1]))
+    return " ".join(sentences)
 
 
 def _peak(times: tuple[float, ...], values: tuple[float, ...], words: Words) -> tuple[str, str]:
-    """The value furthest from zero and its time, formatted."""
+    """The value farthest from zero and its time, formatted."""
     at = int(np.argmax(np.abs(values)))
     return number(values[at], words), number(times[at], words)

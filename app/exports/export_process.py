@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-IDLE = 60.0  # [s] idle after which the process, which takes some 200 MB, is ended
+IDLE = 60.0  # [s] without a call; then the process, which takes about 200 MB, is ended
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
 
 
@@ -20,17 +20,17 @@ class ExportError(Exception):
 
 
 class ExportStopped(ExportError):
-    """The process has been stopped while a call was under way or waited for its turn."""
+    """The process was stopped while a call was running or waiting for its turn."""
 
 
 class ExportProcess:
     """Calls functions in a process of low priority, one at a time.
 
-    A process that dies, or takes too long and is killed, fails one call; the next call starts
-    another.
+    If the process dies, or takes too long and is killed, one call fails, and the next one starts
+    another process.
 
     Args:
-        idle: after how long without a call the process is ended, [s].
+        idle: time without a call after which the process is ended, [s].
     """
 
     def __init__(self, idle: float = IDLE) -> None:
@@ -53,11 +53,11 @@ class ExportProcess:
 
         Raises:
             ExportError: the call failed, timed out, or its process died.
-            ExportStopped: `stop` was called meanwhile.
+            ExportStopped: `stop` was called in the meantime.
         """
         stops = self._stops
         if seconds <= 0:
-            raise ExportError("given up before its turn")
+            raise ExportError("timed out before its turn")
         with self._calls:
             self._stop_resting()
             if self._stops != stops:
@@ -71,8 +71,8 @@ class ExportProcess:
                 self._end()
                 if self._stops != stops:
                     raise ExportStopped("stopped") from error
-                why = "the export process has died, or has been ended after its time"
-                raise ExportError(f"{why}: {process.returncode}") from error
+                reason = "the export process has died, or has been ended after its time"
+                raise ExportError(f"{reason}: {process.returncode}") from error
             finally:
                 limit.cancel()
                 self._begin_resting()
@@ -81,7 +81,7 @@ class ExportProcess:
         return result
 
     def stop(self) -> None:
-        """End the process; the calls under way or waiting fail with `ExportStopped`."""
+        """End the process; running and waiting calls fail with `ExportStopped`."""
         self._stops += 1
         if (process := self._process) is not None:
             process.kill()

@@ -1,4 +1,4 @@
-"""Export requests: the last minute as CSV, the plots as a picture, a recording, a report."""
+"""Exports that a user requests: CSV, a picture of the plots, a recording, a report."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from onpath.lessons.words import Words
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 
-PATIENCE = 120.0  # [s], time-out of a file, including the files queued before it
+PATIENCE = 120.0  # [s], of a file, including the files queued before it
 process = ExportProcess()
 _queue = ThreadPoolExecutor(1, "exports")
-"""Passes one file at a time to the process, for all tabs."""
+"""Passes one file at a time to the process, on behalf of all tabs."""
 
 
 class Exporter:
     """Creates files in another process from copies made by the simulation thread.
 
-    Only one file is made at a time; further requests are refused meanwhile, with a message.
+    A tab makes one file at a time; further requests are refused with a message.
     """
 
     def __init__(self, client: viser.ClientHandle) -> None:
@@ -61,36 +61,53 @@ class Exporter:
 
         def start(lab: Lab) -> None:
             session = lab.session
-            own, curve = session.parameters, session.editor.curve
-            if not curve.closed or own.task != "speed" or own.speed == 0:
+            parameters, curve = session.parameters, session.editor.curve
+            if not curve.closed or parameters.task != "speed" or parameters.speed == 0:
                 lab.show_message(lab.words("compare.path"), "warning")
                 self._under_way = False
                 return
-            what = session.entry.name, own, curve
             with suppress(RuntimeError):  # the interpreter is shutting down
                 self._latest = _queue.submit(
-                    self._compare, what, list(laws), obstruction, lab.words.language, show
+                    self._compare,
+                    robot=session.entry.name,
+                    parameters=parameters,
+                    curve=curve,
+                    laws=list(laws),
+                    obstruction=obstruction,
+                    language=lab.words.language,
+                    show=show,
                 )
 
         self._want(start)
 
     def _compare(
         self,
-        what: tuple[str, Parameters, Curve],
+        robot: str,
+        parameters: Parameters,
+        curve: Curve,
         laws: list[str],
         obstruction: str,
         language: str,
         show: Callable[[Results, bytes], None],
     ) -> None:
-        """Compare one law after the other; other tabs' files come in between."""
+        """Compare one law after the other, so that other tabs' files can be made in between."""
         results: Results = {}
         try:
             for law in laws:
-                arguments = *what, results, law, obstruction, language
-                results, picture = process.call(PATIENCE, compared, *arguments)
+                results, picture = process.call(
+                    PATIENCE,
+                    compared,
+                    robot,
+                    parameters,
+                    curve,
+                    results,
+                    law,
+                    obstruction,
+                    language,
+                )
                 show(results, picture)
         except ExportStopped:
-            return  # nobody is there any more
+            return  # the server is stopping
         except Exception as error:  # reported to the user; the lab continues
             log_error(error)
             words = Words(language)
@@ -109,8 +126,9 @@ class Exporter:
 
         def start(lab: Lab) -> None:
             run = lab.lessons
-            what = run.course, run.progress, code, datetime.now()
-            self._submit(name, lab.words, report_file, *what)
+            self._submit(
+                name, lab.words, report_file, run.course, run.progress, code, datetime.now()
+            )
 
         self._want(start)
 
@@ -138,9 +156,12 @@ class Exporter:
                 lab.show_message(words("export.nothing"), "warning")
                 self._under_way = False
                 return
-            what = session.entry.name, session.parameters, history
-            own = [words.language] * in_words + [session.editor.design.name] * names_path
-            self._submit(name, words, make, *what, *own)
+            arguments = [session.entry.name, session.parameters, history]
+            if in_words:
+                arguments.append(words.language)
+            if names_path:
+                arguments.append(session.editor.design.name)
+            self._submit(name, words, make, *arguments)
 
         self._want(start)
 
@@ -156,8 +177,8 @@ class Exporter:
         self._refuses = False
         lab.show_message(lab.words("export.busy"), "warning")
 
-    def _submit(self, name: str, words: Words, make: Callable[..., bytes], *what: Any) -> None:
-        until = time.monotonic() + PATIENCE
+    def _submit(self, name: str, words: Words, make: Callable[..., bytes], *arguments: Any) -> None:
+        deadline = time.monotonic() + PATIENCE
         note = self._client.add_notification(
             words("export.title"),
             words("export.making", name=name),
@@ -167,12 +188,12 @@ class Exporter:
 
         def work() -> None:
             try:
-                content = process.call(until - time.monotonic(), make, *what)
+                content = process.call(deadline - time.monotonic(), make, *arguments)
                 self._client.send_file_download(name, content, save_immediately=True)
                 note.body, note.loading = words("export.ready", name=name), False
                 note.auto_close_seconds = 3.0
             except ExportStopped:
-                return  # nobody is there any more
+                return  # the server is stopping
             except Exception as error:  # reported to the user; the lab continues
                 log_error(error)
                 note.body, note.loading = words("export.failed", name=name), False

@@ -18,15 +18,15 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
-"""Label and scale of those of `Robot.extras` that are drawn."""
+"""Label and scale of each of `Robot.extras` that is drawn."""
 STYLES = ("-", "--", ":")
-"""Of the first, second and third component of a quantity."""
+"""Line styles of the first, second and third component of a quantity."""
 Quantity = Callable[[Trajectory], tuple[np.ndarray]]
-"""What of a run is drawn, shape (n, k)."""
+"""A run -> the values that are drawn, shape (n, k)."""
 
 
 class ShownFigure(Figure):
-    """A figure that a notebook shows, whether or not pyplot is in use there."""
+    """A figure that a notebook shows whether or not pyplot is in use."""
 
     def _repr_png_(self) -> bytes:
         file = io.BytesIO()
@@ -83,12 +83,12 @@ def panels_of(words: Words = ENGLISH, level_set: bool = False) -> list[tuple[str
 
 
 def _shown_xi(run: Trajectory, level_set: bool) -> np.ndarray:
-    """xi in [mm], or without what else than s(y) it has, in [mm²]."""
+    """xi in [mm]; with a level set, its first component s(y) alone, in [mm²]."""
     return 1e6 * run.fields["xi"][:, :1] if level_set else 1e3 * run.fields["xi"]
 
 
 def _extra_panels(experiment: Experiment):
-    """Panels, as in `panels_of`, for what the robot has to plot besides what every robot has."""
+    """Panels, as in `panels_of`, for the quantities that only this robot has."""
     robot, parameters = experiment.robot(), experiment.parameters
     names = [name for name in robot.extras if name in EXTRA]
 

@@ -15,9 +15,9 @@ from onpath.lessons.words import ENGLISH, Words
 from onpath.models.studies.comparison import Outcome
 
 COLOURS = ("#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#888888")
-"""Okabe and Ito's colours, which remain distinguishable for every form of colour blindness."""
+"""Okabe and Ito's colours, which are distinguishable with every form of colour blindness."""
 MARKERS = "osD^v<>PX*dhp"  # one for each obstruction
-LEAST = 1e-4  # [mm], drawn for smaller distances
+LEAST = 1e-4  # [mm]; smaller distances are drawn here
 
 
 def draw_comparison(results: Mapping[tuple[str, str], Sequence[Outcome]], path: Path) -> None:
@@ -28,10 +28,10 @@ def draw_comparison(results: Mapping[tuple[str, str], Sequence[Outcome]], path: 
 def comparison_figure(
     results: Mapping[tuple[str, str], Sequence[Outcome]], words: Words = ENGLISH
 ) -> Figure:
-    """Plot the largest distance over the delay at the end, at the worst place of each obstruction.
+    """Plot the largest distance over the final delay, for the worst place of each obstruction.
 
     A law that stays on the path has a small distance; one that keeps to its clock has a delay of 0.
-    Those with a run that was stopped have neither, and stand hollow along the upper edge.
+    A law whose worst run was stopped has neither: its marker is hollow, at the upper edge.
     """
     laws = list(dict.fromkeys(law for law, _ in results))
     obstructions = list(dict.fromkeys(name for _, name in results))
@@ -43,15 +43,15 @@ def comparison_figure(
         worst = max(outcomes, key=lambda outcome: outcome.max_distance_m)
         marker = MARKERS[obstructions.index(name) % len(MARKERS)]
         if worst.stopped_at_s is None:
-            place = worst.delay_s, max(1e3 * worst.max_distance_m, LEAST)
-            axes.plot(*place, marker, color=colour, markersize=9, alpha=0.85)
+            distance = max(1e3 * worst.max_distance_m, LEAST)
+            axes.plot(worst.delay_s, distance, marker, color=colour, markersize=9, alpha=0.85)
         else:
             stopped += 1
             edge = {"transform": axes.transAxes, "markerfacecolor": "none", "markersize": 9}
             axes.plot(0.03 * stopped, 0.96, marker, color=colour, **edge)
     if stopped:
-        place = 0.03 * stopped + 0.02, 0.96
-        axes.text(*place, words("compare.stopped"), transform=axes.transAxes, va="center")
+        x = 0.03 * stopped + 0.02
+        axes.text(x, 0.96, words("compare.stopped"), transform=axes.transAxes, va="center")
     axes.set_yscale("log")
     axes.grid(alpha=0.25, which="major")
     axes.set_xlabel(words("compare.delay"))
@@ -63,7 +63,7 @@ def comparison_figure(
 def _explain(
     figure: Figure, axes: Axes, laws: list[str], obstructions: list[str], words: Words
 ) -> None:
-    """Say which colour is which law, and which marker which obstruction."""
+    """Add legends for the laws' colours and the obstructions' markers."""
     by_law = [
         axes.plot([], [], "o", color=colour, label=title)[0]
         for title, colour in zip(law_titles(laws, words).values(), cycle(COLOURS), strict=False)

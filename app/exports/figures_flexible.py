@@ -25,11 +25,11 @@ def draw_zero_dynamics(result: Study, path: Path) -> None:
     axes = figure.subplot_mosaic(
         [["exponents", "map"], ["exponents", "rho"]], width_ratios=(1.5, 1)
     )
-    own = result.parameters
-    name = own.plant.replace("_", " ")
-    figure.suptitle(f"Zero dynamics of the flexible link ({name}, ρ = {own.rho:g} kg/m)")
-    limit = highest(own)
-    fine = study(own, result.at, np.linspace(-limit * 2 / 3, limit, SAMPLES))
+    parameters = result.parameters
+    name = parameters.plant.replace("_", " ")
+    figure.suptitle(f"Zero dynamics of the flexible link ({name}, ρ = {parameters.rho:g} kg/m)")
+    limit = highest(parameters)
+    fine = study(parameters, result.at, np.linspace(-limit * 2 / 3, limit, SAMPLES))
     _draw_exponents(axes["exponents"], fine)
     _draw_map(axes["map"], result)
     _draw_rho(axes["rho"], result)
@@ -68,8 +68,8 @@ def _draw_map(axes: Axes, result: Study) -> None:
 
 def _draw_rho(axes: Axes, result: Study) -> None:
     for plant, style in (("lagrangian", "-"), ("unit_modes", "--")):
-        own = [replace(result.parameters, plant=plant, rho=rho) for rho in RHOS]
-        critical = [critical_alpha(one, result.at) for one in own]
+        variants = [replace(result.parameters, plant=plant, rho=rho) for rho in RHOS]
+        critical = [critical_alpha(each, result.at) for each in variants]
         axes.plot(RHOS, critical, style, marker="o", label=plant.replace("_", " "))
     axes.axhline(1, color="0.3", linewidth=0.8)
     axes.text(RHOS[-1], 1.05, "the tip", ha="right", va="bottom")

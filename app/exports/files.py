@@ -1,4 +1,4 @@
-"""Exported files as bytes, created from plain data in any process."""
+"""Exported files as bytes, made from plain data in any process."""
 
 from __future__ import annotations
 
@@ -22,14 +22,23 @@ FILM = 10.0  # [s]
 
 
 def csv_file(robot: str, parameters: Parameters, history: HistoryCopy) -> bytes:
-    """Every millisecond of the history as CSV; a robot is given by its name and parameters."""
+    """Every millisecond of the history as CSV.
+
+    Args:
+        robot: name in the catalogue.
+    """
     return csv_bytes(ROBOTS[robot].make(parameters), history.segments())
 
 
 def picture_file(
     robot: str, parameters: Parameters, history: HistoryCopy, language: str, path: str = "circle"
 ) -> bytes:
-    """The plots of the history as PNG; `path` is the name of the present path."""
+    """The plots of the history as PNG.
+
+    Args:
+        robot: name in the catalogue.
+        path: name of the present path.
+    """
     from onpath.app.exports.history_figure import draw_history  # only this file needs Matplotlib
 
     runs = replay(ROBOTS[robot].make(parameters), history.segments())
@@ -39,15 +48,19 @@ def picture_file(
 def film_file(
     robot: str, parameters: Parameters, history: HistoryCopy, language: str, path: str = "circle"
 ) -> bytes:
-    """A standalone page with the scene of the last seconds, and their plots to be unfolded."""
+    """A standalone page with the scene of the last seconds, and their plots in a fold.
+
+    Args:
+        robot, path: see `picture_file`.
+    """
     from onpath.app.exports.history_figure import draw_history
     from onpath.app.exports.recording import record_scene  # only this file needs viser
 
-    made, segments = ROBOTS[robot].make(parameters), last_seconds(history.segments(), FILM)
+    machine, segments = ROBOTS[robot].make(parameters), last_seconds(history.segments(), FILM)
     words = Words(language)
-    picture = draw_history(replay(made, segments), words, parameters, robot, path)
+    picture = draw_history(replay(machine, segments), words, parameters, robot, path)
     plots = render("report/film_plots.html", words=words, picture=b64encode(picture).decode())
-    return record_scene(made, segments, words) + plots.encode()  # what follows is of the body, too
+    return record_scene(machine, segments, words) + plots.encode()  # browsers append it to the body
 
 
 def report_file(course: Course, progress: Progress, code: str, made: datetime) -> bytes:
@@ -66,6 +79,6 @@ def csv_bytes(robot: Robot, history: list[Segment]) -> bytes:
 
 
 def last_seconds(history: list[Segment], seconds: float) -> list[Segment]:
-    """The end of a history."""
+    """The last seconds of a history."""
     end = history[-1].time
     return [s for s in history if s.time >= end - seconds]

@@ -20,7 +20,7 @@ from onpath.lessons.words import Words
 def guide(course: Course, folder: Path, names: Iterable[str], words: Words) -> str:
     """The teacher's guide to some lessons as a standalone page.
 
-    The guide to all lessons has the concept test, too.
+    A guide to all lessons also has the concept test.
 
     Args:
         folder: contains the lessons' own folders.
@@ -48,5 +48,5 @@ def worksheet(course: Course, folder: Path, name: str, words: Words) -> tuple[st
         ValueError: see `guide`.
     """
     taught = taught_lesson(course, folder, name, words)
-    given = {"taught": taught, "words": words, "letters": LETTERS}
-    return render("guide/worksheet.html", **given), render("guide/key.html", **given)
+    fields = {"taught": taught, "words": words, "letters": LETTERS}
+    return render("guide/worksheet.html", **fields), render("guide/key.html", **fields)

@@ -1,4 +1,4 @@
-"""The picture of the lab's last minute: title, parameters, plots, and what their lines mean."""
+"""The picture of the lab's last minute: title, parameters, plots and legends."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
 
 ALWAYS = ("K1", "K2", "K3", "K4", "K5", "speed")
-"""Parameters that are told in any case; the others only if they are not those of a new lab."""
-WIDE = 150
+"""Parameters that are always stated; the others only if they differ from those of a new lab."""
+WIDTH = 150
 """Characters in a line of parameters."""
 SMALL = 9.0
-"""Size of the type that explains [pt]."""
+"""Size of explanatory text [pt]."""
 MEANS = {
     "xi": "figure.xi_means",
     "eta1": "figure.eta1_means",
@@ -35,7 +35,7 @@ MEANS = {
     "u": "figure.u_means",
     "level_set": "figure.level_set_means",
 }
-"""Message that explains a quantity's symbols, by panel."""
+"""Message that explains the symbols of a panel, by name of the panel."""
 GREY = "0.35"
 Runs = Mapping[str, Sequence[Trajectory]]
 """What each side did under its control laws, one after the other, by side."""
@@ -51,8 +51,8 @@ def draw_history(
     """The lab's plots over the last minute as PNG.
 
     Args:
-        parameters: of now; None: they are not told.
-        robot, path: names of the robot and of the path of now.
+        parameters: the present ones, which are stated; None: none are.
+        robot, path: names of the robot and of the present path.
     """
     figure = history_figure(runs, words, parameters, robot, path)
     file = io.BytesIO()
@@ -63,7 +63,7 @@ def draw_history(
 def history_figure(
     runs: Runs, words: Words, parameters: Parameters | None, robot: str, path: str
 ) -> Figure:
-    """See `draw_history`."""
+    """The figure of `draw_history`."""
     every = [run for parts in runs.values() for run in parts]
     level_set = any(run.level_set for run in every)
     panels = panels_of(words, level_set)
@@ -74,8 +74,8 @@ def history_figure(
         axis.set_ylabel(label)
         axis.grid(alpha=0.25)
         if name in MEANS:
-            said = words(MEANS["level_set" if name == "xi" and level_set else name])
-            axis.set_title(said, loc="left", fontsize=SMALL, color=GREY)
+            meaning = words(MEANS["level_set" if name == "xi" and level_set else name])
+            axis.set_title(meaning, loc="left", fontsize=SMALL, color=GREY)
         if count > 1:
             _add_styles(axis, _line_names(name, count, words))
     entry = ROBOTS[robot]
@@ -89,20 +89,20 @@ def history_figure(
         fontsize=15,
     )
     if parameters is not None:
-        told = fill(parameter_line(parameters, entry.parameters(), words), WIDE)
-        axes[0].set_title(told, loc="left", fontsize=SMALL, color=GREY)
+        stated = fill(parameter_line(parameters, entry.parameters(), words), WIDTH)
+        axes[0].set_title(stated, loc="left", fontsize=SMALL, color=GREY)
     axes[0].legend(handles=_legend(runs, words), loc="upper right", fontsize=SMALL)
     axes[-1].set_xlabel("t  [s]")
     return figure
 
 
 def parameter_line(parameters: Parameters, usual: Parameters, words: Words) -> str:
-    """The gains, the speed, and whatever else is not as in a new lab, in one line."""
-    known, normal = specs(parameters), values_of(usual)
+    """The gains, the speed, and whatever else differs from a new lab, in one line."""
+    known, defaults = specs(parameters), values_of(usual)
     shown = {
         name: value
         for name, value in values_of(parameters).items()
-        if name in ALWAYS or value != normal[name]
+        if name in ALWAYS or value != defaults[name]
     }
     return ", ".join(_written(name, known[name], value, words) for name, value in shown.items())
 
@@ -121,13 +121,13 @@ def _span(runs: Sequence[Trajectory]) -> float:
 
 
 def _draw(axis: Axes, runs: Runs, column: Quantity) -> int:
-    """Draw one quantity of all runs, holds and changes of law; returns how many lines each has."""
+    """Draw a quantity, holds and changes of law; return the number of lines of a run."""
     count = 1
     for side, parts in runs.items():
         for run in parts:
-            drawn = column(run)
-            count = max(count, drawn[0].shape[1])
-            draw_column(axis, run, OF_SIDE[side], *drawn)
+            (values,) = column(run)
+            count = max(count, values.shape[1])
+            draw_column(axis, run, OF_SIDE[side], values)
             for begin, end in held_times(run):
                 axis.axvspan(begin, end, color=OF_SIDE[side].hex, alpha=0.08, linewidth=0)
         for run in parts[1:]:
@@ -136,7 +136,7 @@ def _draw(axis: Axes, runs: Runs, column: Quantity) -> int:
 
 
 def held_times(run: Trajectory) -> list[tuple[float, float]]:
-    """Beginning and end of each time in which the robot was held back [s]."""
+    """Beginning and end of each period in which the robot was held back [s]."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], run.held.astype(int), [0]])))
     last = len(run.t) - 1
     pairs = zip(edges[::2], edges[1::2], strict=True)
@@ -151,7 +151,7 @@ def _line_names(panel: str, count: int, words: Words) -> list[str]:
 
 
 def _add_styles(axis: Axes, names: list[str]) -> None:
-    """A legend of the styles of one robot's lines."""
+    """Add a legend of the line styles of one robot."""
     lines = [
         Line2D([], [], color=GREY, linestyle=style, label=name)
         for style, name in zip(STYLES, names, strict=False)
@@ -160,7 +160,7 @@ def _add_styles(axis: Axes, names: list[str]) -> None:
 
 
 def _legend(runs: Runs, words: Words) -> list[Line2D | Patch]:
-    """The robots' colours, and what marks a hold and a change of law if there is any."""
+    """The robots' colours, and the marks of holds and changes of law, if there are any."""
     laws = {side: tuple(run.controller for run in parts) for side, parts in runs.items()}
     titles = side_titles(laws, words)
     found: list[Line2D | Patch] = [

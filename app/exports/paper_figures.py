@@ -1,4 +1,4 @@
-"""Draws the paper's figures 2, 3, 5, 6 and 7 with Matplotlib, from runs with its settings."""
+"""Draws the paper's figures 2, 3, 5, 6 and 7 with Matplotlib, from runs with the same settings."""
 
 from __future__ import annotations
 
@@ -34,8 +34,8 @@ class Panel:
         label: with its unit.
         values: run -> lines, shape (n, lines), in that unit.
         names: of the lines, if there are several.
-        reference: run -> reference, shape (n,), or None.
-        enlarged: whether small lines are drawn larger, by the power of ten beside their name.
+        reference: run -> reference, shape (n,); None: no reference.
+        enlarged: whether small lines are multiplied by a power of ten, stated beside their names.
     """
 
     label: str
@@ -53,19 +53,19 @@ def draw_paper_figure(figure: PaperFigure, runs: list[Trajectory], path: Path) -
 def paper_figure(figure: PaperFigure, runs: list[Trajectory]) -> Figure:
     """One of the paper's figures, with its axes and signals."""
     experiment = figure.planned()
-    drawn = ShownFigure(figsize=_SIZES[figure.number], layout="constrained")
-    drawn.suptitle(f"Figure {figure.number}: {figure.title}", fontsize=12)
+    picture = ShownFigure(figsize=_SIZES[figure.number], layout="constrained")
+    picture.suptitle(f"Figure {figure.number}: {figure.title}", fontsize=12)
     if figure.number == 2:
-        _plane(drawn, experiment, runs)
+        _plane(picture, experiment, runs)
     elif figure.number == 6:
-        _space(drawn, experiment, runs[0])
+        _space(picture, experiment, runs[0])
     elif figure.number == 7:
         across = [*_transversal(), *_in_space()]
         along = [*_tangential(experiment), *_internal(experiment)]
-        _over_time(drawn, [across, along], runs)
+        _over_time(picture, [across, along], runs)
     else:
-        _over_time(drawn, [[*_transversal(), *_tangential(experiment), _torque()]], runs)
-    return drawn
+        _over_time(picture, [[*_transversal(), *_tangential(experiment), _torque()]], runs)
+    return picture
 
 
 _SIZES = {2: (9.5, 5.5), 3: (7.5, 8.5), 5: (7.5, 8.5), 6: (7.0, 6.5), 7: (11.0, 8.5)}
@@ -79,7 +79,7 @@ def _transversal() -> list[Panel]:
 
 
 def _in_space() -> list[Panel]:
-    """The second pair, of the distance from the path's plane."""
+    """The second transversal pair: the distance from the path's plane and its rate."""
     return [
         Panel(r"$\xi_3$  [mm]", lambda run: 1e3 * run.fields["xi"][:, 1:]),
         Panel(r"$\xi_4$  [mm/s]", lambda run: 1e3 * run.fields["xi_rate"][:, 1:]),
@@ -107,9 +107,9 @@ def _tangential(experiment: Experiment) -> list[Panel]:
 
 
 def _internal(experiment: Experiment) -> list[Panel]:
-    """η1: what each mode contributes to the tip's deflection, and its rate.
+    """η1: the contribution of each mode to the tip's deflection, and its rate.
 
-    The modes move in such a way that the output does not.
+    Together, the modes move in such a way that the output does not.
     """
     robot = experiment.robot()
     m, names = robot.system.m, robot.system.parameter_names
@@ -137,8 +137,8 @@ def _torque() -> Panel:
     return Panel(r"$u$  [N m]", lambda run: run.fields["u"], ("$u_1$", "$u_2$"))
 
 
-def _over_time(drawn: Figure, columns: list[list[Panel]], runs: list[Trajectory]) -> None:
-    grid = drawn.subplots(len(columns[0]), len(columns), sharex=True, squeeze=False)
+def _over_time(picture: Figure, columns: list[list[Panel]], runs: list[Trajectory]) -> None:
+    grid = picture.subplots(len(columns[0]), len(columns), sharex=True, squeeze=False)
     for i, panels in enumerate(columns):
         for axes, panel in zip(grid[:, i], panels, strict=True):
             _draw(axes, panel, runs[0])
@@ -151,8 +151,8 @@ def _draw(axes: Axes, panel: Panel, run: Trajectory) -> None:
     shades = SHADES if panel.enlarged else [AZURE] * len(LINES)
     looks = zip(LINES, shades, (*panel.names, *LINES), strict=False)
     for line, factor, (style, shade, name) in zip(lines, larger, looks, strict=False):
-        told = name if factor == 1 else f"{name}, {factor:.0f}×"
-        label = told if panel.names else None
+        scaled_name = name if factor == 1 else f"{name}, {factor:.0f}×"
+        label = scaled_name if panel.names else None
         axes.plot(run.t, factor * line, style, color=shade.hex, linewidth=1.4, label=label)
     if panel.reference is not None:
         axes.plot(run.t, panel.reference(run), "--", color="0.25", linewidth=1.1, label="reference")
@@ -169,7 +169,7 @@ def _draw(axes: Axes, panel: Panel, run: Trajectory) -> None:
 
 
 def enlargements(lines: Array) -> Array:
-    """Powers of ten with which no line is less than a tenth of the largest, (k, n) -> (k,)."""
+    """Powers of ten that bring every line to at least a tenth of the largest, (k, n) -> (k,)."""
     sizes = np.abs(lines).max(axis=1)
     sizes[sizes == 0] = sizes.max()
     return 10.0 ** np.floor(np.log10(sizes.max() / sizes))
@@ -182,18 +182,18 @@ def _wrapped(theta: Array) -> Array:
     return wrapped
 
 
-def _plane(drawn: Figure, experiment: Experiment, runs: list[Trajectory]) -> None:
+def _plane(picture: Figure, experiment: Experiment, runs: list[Trajectory]) -> None:
     """The end-point in the output space, one law beside the other."""
-    drawn.set_layout_engine("compressed")  # axes of equal scales are smaller than their cells
+    picture.set_layout_engine("compressed")  # axes of equal scales are smaller than their cells
     path = 1e3 * experiment.curve().at(np.linspace(-np.pi, np.pi, 400))
-    place = 1e3 * experiment.curve().at(np.array(experiment.parameters.target))
-    grid = drawn.subplots(1, len(runs), sharex=True, sharey=True, squeeze=False)
+    target = 1e3 * experiment.curve().at(np.array(experiment.parameters.target))
+    grid = picture.subplots(1, len(runs), sharex=True, sharey=True, squeeze=False)
     for axes, run, colour in zip(grid[0], runs, COLOURS, strict=False):
         y = 1e3 * run.fields["y"]
         axes.plot(*path.T, "--", color="0.35", linewidth=1.2, label=r"path $\gamma$")
         axes.plot(*y.T, color=colour.hex, linewidth=1.8, label="end-point")
         axes.plot(*y[0], "o", color=colour.hex, markersize=7, label="start")
-        axes.plot(*place, "*", color="0.1", markersize=12, label=r"$\eta_2^{1\mathrm{ref}}$")
+        axes.plot(*target, "*", color="0.1", markersize=12, label=r"$\eta_2^{1\mathrm{ref}}$")
         axes.set_title(LAWS[run.controller].label, fontsize=11)
         axes.set_aspect("equal")
         axes.set_xlabel("$y_1$  [mm]")
@@ -202,9 +202,9 @@ def _plane(drawn: Figure, experiment: Experiment, runs: list[Trajectory]) -> Non
     grid[0, 0].legend(loc="center", fontsize=8)
 
 
-def _space(drawn: Figure, experiment: Experiment, run: Trajectory) -> None:
+def _space(picture: Figure, experiment: Experiment, run: Trajectory) -> None:
     """The tip in the output space."""
-    axes: Any = drawn.add_subplot(projection="3d")
+    axes: Any = picture.add_subplot(projection="3d")
     frame = experiment.robot().frame
     path = 1e3 * frame.lift(experiment.curve().at(np.linspace(-np.pi, np.pi, 400)))
     y = 1e3 * run.fields["y"]

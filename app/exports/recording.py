@@ -40,12 +40,12 @@ def record_scene(
     studio, stage = FilmServer(), stage_of(robot)
     set_initial_camera(studio, stage)
     scene = Scene(studio, stage, words=words)  # type: ignore[arg-type]  # has scene, atomic()
-    scene.build(_snapshot(robot, frames[0], 0, []))
+    scene.build(_snapshot(robot, frames[0], []))
     serializer = studio.get_scene_serializer()
     for number, segment in enumerate(frames):
         if time.monotonic() > until:
             raise TimeoutError("the recording takes too long")
-        snapshot = _snapshot(robot, segment, number, frames[max(0, number - 45) : number])
+        snapshot = _snapshot(robot, segment, frames[max(0, number - 45) : number])
         scene.update(snapshot.motion)
         if number % 3 == 0:
             scene.update_traces(snapshot)
@@ -60,9 +60,9 @@ def _frames(history: list[Segment]) -> list[Segment]:
     return [history[i] for i in np.searchsorted(times, wanted).clip(max=len(times) - 1)]
 
 
-def _snapshot(robot: Robot, segment: Segment, number: int, before: list[Segment]) -> Snapshot:
-    where = sample_layout(robot).slices["y"]
-    traces = np.array([s.sample[:, where] for s in [*before, segment]], dtype=float)
+def _snapshot(robot: Robot, segment: Segment, before: list[Segment]) -> Snapshot:
+    outputs = sample_layout(robot).slices["y"]
+    traces = np.array([s.sample[:, outputs] for s in [*before, segment]], dtype=float)
     views = robot_views(robot, segment.curve, segment.instant(), traces[:-1])
     theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
     path = PathView(
@@ -72,5 +72,15 @@ def _snapshot(robot: Robot, segment: Segment, number: int, before: list[Segment]
         selected=None,
         refused=np.zeros((0, 3)),
     )
-    wall = wall_then(robot, segment)
-    return Snapshot(segment.time, True, 1.0, views, path, False, None, "", "info", wall=wall)
+    return Snapshot(
+        time=segment.time,
+        running=True,
+        achieved_speed=1.0,
+        robots=views,
+        path=path,
+        held=False,
+        grabbed=None,
+        message="",
+        message_level="info",
+        wall=wall_then(robot, segment),
+    )

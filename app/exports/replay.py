@@ -27,10 +27,10 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
     A robot that is stopped after a divergence has no data for that time.
 
     Returns:
-        What each side did, by side: one trajectory for each time under one control law.
+        The trajectories of each side, by side: one for each period under one control law.
 
     Raises:
-        ValueError: all robots were stopped all the time.
+        ValueError: all robots were stopped throughout.
     """
     found = {side: _replayed(robot, side, history) for side in history[0].drives}
     runs = {
@@ -45,7 +45,8 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
 
 def _replayed(robot: Robot, side: str, history: list[Segment]) -> list[Trajectory]:
     parts: list[Trajectory] = []
-    robots = {id(own): _made(robot, own) for own in (s.drives[side].parameters for s in history)}
+    variants = (s.drives[side].parameters for s in history)
+    robots = {id(parameters): _made(robot, parameters) for parameters in variants}
 
     def key(s: Segment) -> tuple[int, float, Kind, int]:
         drive = s.drives[side]
@@ -70,7 +71,7 @@ def _made(robot: Robot, parameters: Parameters | None) -> Robot:
 
 
 def _of_one_unit(parts: list[Trajectory]) -> list[Trajectory]:
-    """The same parts, without the ξ of those in which it has another unit than in the last one."""
+    """The same parts, without ξ where its unit is not that of the last part."""
 
     def kept(part: Trajectory) -> Trajectory:
         if part.level_set == parts[-1].level_set:
@@ -83,7 +84,7 @@ def _of_one_unit(parts: list[Trajectory]) -> list[Trajectory]:
 
 @lru_cache(maxsize=8)
 def _fast_loop(robot: Robot, kind: Kind) -> Loop:
-    """The compiled loop if available; it computes a minute in less than a second."""
+    """The compiled loop, if available, which computes a minute in less than a second."""
     return fastest_loop(kernel_of(robot, kind))
 
 
@@ -97,7 +98,7 @@ def _rows(loop: Loop, side: str, segments: list[Segment]) -> Iterable[tuple[Segm
 
 
 def merged(logged: list) -> list:
-    """Merge consecutive log rows of one curve and hold, so that distances take a single call."""
+    """Merge consecutive log rows with the same curve and hold, so that one call gives distances."""
     result: list = []
     for (_, held), group in groupby(logged, key=lambda s: (id(s[1]), s[2])):
         members = list(group)

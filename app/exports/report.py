@@ -47,14 +47,14 @@ class SketchFigure:
 
 @dataclass(frozen=True, slots=True)
 class AskedPrediction:
-    """A prediction requested by a step.
+    """A prediction that a step asks for.
 
     Attributes:
-        step: index of the step that asks.
+        step: index of the step.
         chosen: index of the option chosen, if any.
         second: the answer after a discussion, if it was asked again.
-        unknown: whether the answer cannot be known, since the lesson has changed.
-        figure: figure of a sketch, if there is anything to draw.
+        unknown: whether the answer cannot be recovered, since the lesson has changed.
+        figure: the figure of a sketch, if there is anything to draw.
     """
 
     step: int
@@ -74,10 +74,10 @@ class ChapterRecord:
     Attributes:
         counts: completed and total steps, tasks, predictions, correct choices.
         foreign: whether the lesson is unavailable in the student's language.
-        tasks: each with the message of a passed task, otherwise empty.
+        tasks: each with its message if it is passed, otherwise with an empty text.
         questions: each with the index of the option chosen, if any, and whether it is unknown.
-        numbers: questions, each with the number that was answered, if any.
-        written: questions, each with the student's words; empty if there are none.
+        numbers: questions for a number, each with the answer, if any.
+        written: open questions, each with the student's words; empty if there are none.
     """
 
     chapter: Chapter
@@ -115,22 +115,24 @@ def _record(chapter: Chapter, words: Words) -> ChapterRecord:
     made = sum(not a.skipped or key in notes.unknown for key, a in notes.answers.items())
     asked, tasks = predictions(lesson), lesson.tasks()
     return ChapterRecord(
-        chapter,
-        (
+        chapter=chapter,
+        counts=(
             (notes.seen, len(lesson.steps)),
             (len(notes.tasks), len(tasks)),
             (made, len(asked)),
             (sum(chosen), len(chosen)),
         ),
-        lesson.language == DEFAULT != words.language,
-        [_asked(chapter, key, block, words) for key, block in asked.items()],
-        [(task, _passed(task, notes.tasks.get(task.id), words)) for task in tasks],
-        [
+        foreign=lesson.language == DEFAULT != words.language,
+        predictions=[_asked(chapter, key, block, words) for key, block in asked.items()],
+        tasks=[(task, _passed(task, notes.tasks.get(task.id), words)) for task in tasks],
+        questions=[
             (quiz, notes.quiz.get(key), key in notes.unknown)
             for key, quiz in quizzes(lesson).items()
         ],
-        [(block, notes.numbers.get(key)) for key, block in numbers(lesson).items()],
-        [(block, notes.written.get(key, "")) for key, block in open_questions(lesson).items()],
+        numbers=[(block, notes.numbers.get(key)) for key, block in numbers(lesson).items()],
+        written=[
+            (block, notes.written.get(key, "")) for key, block in open_questions(lesson).items()
+        ],
     )
 
 
@@ -138,10 +140,16 @@ def _asked(chapter: Chapter, key: str, block: Prediction, words: Words) -> Asked
     answer, truth = chapter.notes.answers.get(key), chapter.notes.truths.get(key)
     names = robot_names(chapter.lesson.laws_shown(int(key)), words)
     figure = _figure(block, answer, truth, words, names) if isinstance(block, Sketch) else None
-    chosen = answer.option if answer else None
-    second = chapter.notes.second.get(key)
-    unknown = key in chapter.notes.unknown
-    return AskedPrediction(int(key), block, answer, truth, chosen, figure, second, unknown)
+    return AskedPrediction(
+        step=int(key),
+        block=block,
+        answer=answer,
+        truth=truth,
+        chosen=answer.option if answer else None,
+        figure=figure,
+        second=chapter.notes.second.get(key),
+        unknown=key in chapter.notes.unknown,
+    )
 
 
 def _passed(task: Task, best: float | None, words: Words) -> str:
@@ -163,11 +171,12 @@ def _figure(
     """Figure of the sketch and the result on the same axes, with the peaks as text.
 
     Args:
-        names: of the robots.
+        names: names of the robots.
     """
-    said = curve_words(block, answer, truth, words, names)
-    if not said:
+    caption = curve_words(block, answer, truth, words, names)
+    if not caption:
         return None
     robot, quantity = names[block.robot], words(f"quantity.{block.quantity}")
     name = words("report.curve", robot=robot, quantity=quantity)
-    return SketchFigure(name, draw_prediction(block, answer, truth, words, names), said)
+    picture = draw_prediction(block, answer, truth, words, names)
+    return SketchFigure(name, picture, caption)

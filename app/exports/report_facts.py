@@ -29,8 +29,8 @@ class Chapter:
     """One lesson and the student's work on it.
 
     Attributes:
-        number: in the course, as displayed.
-        notes: entries that match the lesson.
+        number: number of the lesson, as displayed.
+        notes: the entries that match the lesson.
         opened: whether the student has opened it.
         strange: number of entries that do not match it.
     """
@@ -43,7 +43,7 @@ class Chapter:
 
     @property
     def ended(self) -> bool:
-        """Whether the student has come to the last step."""
+        """Whether the student has reached the last step."""
         return self.notes.seen >= len(self.lesson.steps)
 
     def happened(self, key: str) -> bool:
@@ -51,7 +51,7 @@ class Chapter:
         return key in self.notes.truths
 
     def chosen(self) -> list[bool]:
-        """Correctness of each choice whose result has been observed."""
+        """Whether each choice whose result has been observed is right."""
         asked = predictions(self.lesson)
         return [
             block.options[answer.option].right
@@ -68,7 +68,14 @@ def chapters(run: LessonState) -> list[Chapter]:
     for name, number in run.course.numbers().items():
         lesson = run.course.lesson(name, progress.language)
         notes, strange = fitting(lesson, progress.notes.get(name, Notes()))
-        found.append(Chapter(number, lesson, notes, name in progress.notes, strange))
+        chapter = Chapter(
+            number=number,
+            lesson=lesson,
+            notes=notes,
+            opened=name in progress.notes,
+            strange=strange,
+        )
+        found.append(chapter)
     return found
 
 
@@ -89,7 +96,7 @@ def numbers(lesson: Lesson) -> dict[str, NumberQuestion]:
 
 
 def open_questions(lesson: Lesson) -> dict[str, OpenQuestion]:
-    """Questions that are answered in own words, by note key: step and block."""
+    """Questions answered in the student's own words, by note key: step and block."""
     return _of_kind(lesson, OpenQuestion)
 
 

@@ -36,7 +36,7 @@ def draw_prediction(
     """Data URI of an SVG: the sketch as a thick line, the robots as solid and dashed lines.
 
     Args:
-        names: of the robots.
+        names: names of the robots.
     """
     figure = Figure(figsize=SIZE, layout="constrained")
     axes = figure.subplots()
@@ -48,7 +48,7 @@ def draw_prediction(
             style = {"color": OF_SIDE[side].hex, "linestyle": dashes, "linewidth": 1.8}
             values = getattr(truth, role)
             _draw(axes, sketch, truth.times, values, label=names[role], **style)
-    _dress(axes, sketch, words)
+    _label(axes, sketch, words)
     return _data_uri(figure)
 
 
@@ -61,7 +61,8 @@ def _draw(
     axes.plot(np.clip(times, -sketch.seconds, 2 * sketch.seconds), shown, **style)
 
 
-def _dress(axes: Axes, sketch: Sketch, words: Words) -> None:
+def _label(axes: Axes, sketch: Sketch, words: Words) -> None:
+    """Set limits, labels, grid and legend."""
     axes.set_xlim(0.0, sketch.seconds)
     axes.set_ylim(sketch.bottom, sketch.top)
     axes.set_xlabel("t [s]")

@@ -1,4 +1,4 @@
-"""Plays a step of a lesson without a browser, and puts what happened into numbers."""
+"""Plays a step of a lesson without a browser, and puts the result into numbers."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class PlayedScript:
     Attributes:
         title: "script", or the task's id and "solution" or "failure".
         parts: see `parts_of`.
-        verdicts: on the task's checks at the end.
+        verdicts: verdicts on the task's checks at the end.
         passed: whether the task was passed at any time.
     """
 
@@ -50,4 +50,10 @@ def play_script(
     for last in play(lab, script, task):
         passed |= bool(last) and all(verdict.passed for verdict in last)
         samples.follow(lab.session)
-    return PlayedScript(title, script, parts_of(script, *samples.columns()), last, passed)
+    return PlayedScript(
+        title=title,
+        script=script,
+        parts=parts_of(script, *samples.columns()),
+        verdicts=last,
+        passed=passed,
+    )

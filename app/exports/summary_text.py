@@ -1,4 +1,4 @@
-"""The summary of a run as text, and for JSON."""
+"""The summary of a run, as text and for JSON."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ ROWS: tuple[tuple[str, str, Callable[[float], str]], ...] = (
     ("stopped_at_s", "stopped at", lambda v: f"{v:.3f} s"),
 )
 STOPPED = "stopped"
-"""What tables have for the numbers of a run that was stopped."""
+"""Stands in tables for the numbers of a run that was stopped."""
 
 
 def summary_lines(values: Mapping[str, Any]) -> list[str]:
     """One line per quantity; quantities that a run lacks are omitted.
 
     Args:
-        values: of one controller, from `models.studies.experiments.summary`.
+        values: summary of one controller, from `models.studies.experiments.summary`.
     """
     return [
         f"{title:26s} {STOPPED if math.isinf(values[key]) else show(values[key])}"
@@ -32,7 +32,7 @@ def summary_lines(values: Mapping[str, Any]) -> list[str]:
 
 
 def finite(data: Any) -> Any:
-    """Data for JSON, which has no infinity: None instead."""
+    """Data for JSON: infinities, which it lacks, become None."""
     if isinstance(data, Mapping):
         return {name: finite(value) for name, value in data.items()}
     if isinstance(data, list):

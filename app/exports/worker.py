@@ -1,7 +1,7 @@
 """The process that creates files: reads jobs from stdin and writes their results to stdout.
 
-Started by export_process.py as `python -m onpath.app.exports.worker`. It ends when its input
-is closed, so it does not outlive the lab.
+export_process.py starts it as `python -m onpath.app.exports.worker`. It ends when its input is
+closed, so it does not outlive the lab.
 """
 
 from __future__ import annotations

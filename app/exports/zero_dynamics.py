@@ -16,7 +16,7 @@ from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dyn
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
 REACH = 0.1  # [m], half-width of the map of critical alpha
 SETTABLE = ("plant", "rho", "frequency", "zeta", "b", "d", "centre")
-"""Parameters of the internal dynamics; the table is over alpha and modes."""
+"""Parameters of the internal dynamics besides alpha and modes, which the table varies."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -24,12 +24,12 @@ class Study:
     """Internal dynamics of the flexible link with the controlled output held constant.
 
     Attributes:
-        parameters: plant, rho, frequency, zeta; their alpha, modes and payload are ignored.
+        parameters: the plant; alpha, modes and payload are ignored.
         at: (y2, y3) of the straight link's tip, [m].
         unit: sqrt(EI / rho) / l^2, [1/s].
         alphas: shape (a,).
         fastest: largest real part for 1 to 6 modes, shape (6, a), [1/s].
-        critical: alpha from which it is positive, shape (6,); infinity if it never is.
+        critical: alpha above which it is positive, shape (6,); infinity if it never is.
     """
 
     parameters: FlexibleParameters
@@ -44,8 +44,8 @@ def changed_all(assignments: dict[str, str]) -> FlexibleParameters:
     """Return the default parameters with the given values replaced.
 
     Raises:
-        ValueError: an unknown name, one without effect, or a bad value; the message
-            says which.
+        ValueError: a name is unknown or without effect, or a value is bad; the message says
+            which.
     """
     parameters: Any = FlexibleParameters()
     for name, text in assignments.items():
@@ -69,19 +69,26 @@ def study(
     alphas = np.array(TABLE_ALPHAS) if alphas is None else alphas
     rows, critical = list[np.ndarray](), list[float]()
     for modes in range(1, MOST_MODES + 1):
-        own = replace(parameters, modes=modes, payload=0.0)
-        robot, zero = robot_for(own), flexible_zero_dynamics(modes, own.plant)
-        q, plant = robot.rest(robot.frame.lift(np.array(at))), robot.plant(own)
+        variant = replace(parameters, modes=modes, payload=0.0)
+        robot, zero = robot_for(variant), flexible_zero_dynamics(modes, variant.plant)
+        q, plant = robot.rest(robot.frame.lift(np.array(at))), robot.plant(variant)
         rows.append(zero.exponents(q, zero.with_alpha(plant, alphas))[:, 0].real)
-        critical.append(critical_alpha(own, at))
+        critical.append(critical_alpha(variant, at))
     robot = robot_for(parameters)
     values = dict(zip(robot.system.parameter_names, robot.plant(parameters), strict=True))
     unit = natural_rate(values, float(beam_modes(1, 1.0).roots[0]))
-    return Study(parameters, at, unit, alphas, np.array(rows), np.array(critical))
+    return Study(
+        parameters=parameters,
+        at=at,
+        unit=unit,
+        alphas=alphas,
+        fastest=np.array(rows),
+        critical=np.array(critical),
+    )
 
 
 def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> float:
-    """Alpha from which the internal dynamics are unstable at rest; infinity if they never are."""
+    """Alpha above which the internal dynamics are unstable at rest; infinity if they never are."""
     parameters = replace(parameters, payload=0.0)
     robot = robot_for(parameters)
     zero = flexible_zero_dynamics(parameters.modes, parameters.plant)
@@ -90,7 +97,7 @@ def critical_alpha(parameters: FlexibleParameters, at: tuple[float, float]) -> f
 
 
 def highest(parameters: FlexibleParameters) -> float:
-    """Upper limit of alpha in the search; unit_modes act as if alpha were rho times as large."""
+    """Upper limit of the search for alpha; with unit_modes, alpha acts as if multiplied by rho."""
     return HIGHEST_ALPHA / (parameters.rho if parameters.plant == "unit_modes" else 1.0)
 
 
@@ -106,7 +113,7 @@ def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.nd
 
 
 def as_json(result: Study) -> dict[str, Any]:
-    """Data for `--json`; numbers to nine digits, null where nothing is unstable."""
+    """Data for `--json`: numbers with nine digits, null where nothing is unstable."""
 
     def finite(value: float) -> float | None:
         return float(f"{value:.9g}") if math.isfinite(value) else None
@@ -133,12 +140,12 @@ def as_json(result: Study) -> dict[str, Any]:
 
 def as_table(result: Study) -> str:
     """The study as a text table."""
-    own, (y2, y3) = result.parameters, result.at
+    parameters, (y2, y3) = result.parameters, result.at
     lines = [
         f"internal dynamics of the flexible link, output held at y2 = {y2 * 1e3:g} mm,"
         f" y3 = {y3 * 1e3:g} mm",
-        f"plant {own.plant.replace('_', ' ')}, rho = {own.rho:g} kg/m,"
-        f" first frequency {own.frequency:g} Hz, zeta = {own.zeta:g} in every mode",
+        f"plant {parameters.plant.replace('_', ' ')}, rho = {parameters.rho:g} kg/m,"
+        f" first frequency {parameters.frequency:g} Hz, zeta = {parameters.zeta:g} in every mode",
         f"largest real part of the exponents [1/s]; above 0 the inside is unstable"
         f" (sqrt(EI/rho)/l^2 = {result.unit:.3f} 1/s)",
         "",

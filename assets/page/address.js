@@ -1,8 +1,8 @@
-// The lab is at this page's own address, whatever a link says. viser takes the address of its server
-// from the query, and a server may run scripts in the page; it also plays any recording that is named
-// there. Without one, it would ask for this address without its last slash, which a proxy that serves
-// the lab in a folder answers with a redirection. It writes the server's address into the query, too,
-// from where a user would copy it.
+// Binds the page to the lab at its own address, whatever a link says. viser takes the address of its
+// server from the query, although a server can run scripts in the page, and plays any recording named
+// there. Without an address in the query, viser would use this page's without its last slash, which a
+// proxy that serves the lab in a folder answers with a redirection. viser also writes the server's
+// address into the query, from where a user would copy it.
 (() => {
   "use strict";
 

@@ -1,5 +1,5 @@
-// The answers of a question are pressed themselves. What the lab hears is the button with the letter
-// of the answer: one of a row that follows the question, and that style.css does not show.
+// Lets users press the answers of a question directly. A press is passed on to the button with the
+// answer's letter, in the row after the question, which style.css hides.
 (() => {
   "use strict";
 

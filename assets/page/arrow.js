@@ -1,5 +1,5 @@
-// viser draws an arrow of its own from what is dragged to the mouse, over the very place that is
-// looked at. three.js shows its scenes to developers' tools; this takes the arrow out of them.
+// Removes the arrow that viser draws from a dragged object to the mouse, because it covers the place
+// that users look at. three.js announces its scenes to developer tools, and so to this script.
 (() => {
   "use strict";
 

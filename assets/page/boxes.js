@@ -1,11 +1,11 @@
-// Boxes over the scene, in the middle of what is seen of it, above what covers its lower part: the
-// panel on a telephone, or the window with a step's plot. A later one in the document stands above an earlier one.
+// Boxes over the scene, in the middle of its visible part and above whatever covers its lower part: the
+// panel on a telephone, or the window with a step's plot. A box later in the document is above an earlier one.
 const boxesOverScene = (() => {
   "use strict";
 
   const BOX = ".op-over-scene";
 
-  // A box that is hidden, and not in the document yet.
+  // A hidden box, not yet in the document.
   function make(tag, id, ...parts) {
     const box = document.createElement(tag);
     box.id = id;
@@ -28,7 +28,7 @@ const boxesOverScene = (() => {
     made.className = className;
     made.dataset.key = key;
     made.addEventListener("click", () => {
-      made.blur();  // it may be about to go, and the focus with it
+      made.blur();  // it may be about to disappear, and the focus with it
       press(made.dataset.key);
     });
     return made;
@@ -44,7 +44,7 @@ const boxesOverScene = (() => {
     const bottom = Math.min(scene.bottom, ...tops);
     let above = innerHeight - bottom + 12;
     for (const each of document.querySelectorAll(BOX)) {
-      const onTop = each.dataset.place === "top";  // what it speaks of is below it
+      const onTop = each.dataset.place === "top";  // what it is about is below it
       each.style.top = onTop ? `${scene.top + 8}px` : "auto";
       each.style.left = `${scene.left + scene.width / 2}px`;
       each.style.bottom = onTop ? "auto" : `${above}px`;

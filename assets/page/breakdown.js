@@ -1,5 +1,5 @@
-// A robot has stopped, [data-replays]: its last moments are shown by themselves, once, by the lab's own
-// key; not while a finger is on the page, nor to whoever asks for less motion, who has a button for it.
+// When a robot has stopped, [data-replays], shows its last moments once, by the lab's own key; but not
+// while a finger is on the page, nor to users who ask for less motion, who have a button for it.
 (() => {
   "use strict";
 

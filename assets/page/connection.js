@@ -1,5 +1,5 @@
-// Who waits for the lab in vain is told so, in the browser's language: the page has no other words
-// yet. viser's worker tells when it has connected, and when the connection has ended.
+// Tells users who wait in vain that the lab does not answer, in the browser's language, since the page
+// has no texts yet. viser's worker reports when it has connected, and when the connection has ended.
 (() => {
   "use strict";
 
@@ -20,7 +20,7 @@
 
   function hear({ data }) {
     if (data?.type !== "connected" && data?.type !== "closed") return;
-    if (data.type === "closed") {  // comes again with every attempt
+    if (data.type === "closed") {  // repeated at every attempt
       waiting ||= setTimeout(tell, PATIENCE);
       return;
     }

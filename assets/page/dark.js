@@ -1,8 +1,8 @@
-// A dark page for whoever asks for one: viser's own, by what it offers to pages that embed it, and
-// dark labels in the scene, whose colours are in its shaders. The lab, which draws the rest of the
-// scene, reads the same place; see DARK_KEY in app/server/lab_server.py. Who asks for the other kind
-// later gets it by a reload, which comes back to the same lab: at once, or when nothing is being typed
-// or dragged. A printer's page is no reason.
+// A dark page for users who prefer one: viser's dark mode, through its interface for pages that embed
+// it, and dark labels in the scene, whose colours are in viser's shaders. The lab, which draws the rest
+// of the scene, reads the same entry; see DARK_KEY in app/server/lab_server.py. If the preference
+// changes, the page is reloaded and comes back to the same lab, as soon as nothing is being typed or
+// dragged. Printing does not count as a change.
 (() => {
   "use strict";
 
@@ -13,7 +13,7 @@
       "gl_FragColor = vec4(0.09, 0.11, 0.14, 0.8 * vAlpha);"],
   ];
 
-  const BUSY = 500;  // [ms] until it is tried again
+  const BUSY = 500;  // [ms] until the next attempt
   const asked = matchMedia("(prefers-color-scheme: dark)"), dark = asked.matches;
   let pressed = false;
 
@@ -31,7 +31,7 @@
   asked.addEventListener("change", renew);
   try {
     localStorage.setItem(KEPT_AS, dark ? "yes" : "no");
-  } catch {}  // a browser that keeps nothing has a light scene
+  } catch {}  // a browser without storage has a light scene
   if (!dark) return;
 
   window.__VISER_EMBED_CONFIG__ = { darkMode: true };

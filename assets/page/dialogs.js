@@ -1,11 +1,11 @@
-// Dialogs close by Escape, by a press beside them, and by an x: each presses the dialog's own
-// button [data-close], because only the lab can close a dialog of viser's.
+// Closes dialogs by Escape, a press beside them, or an x. Each presses the dialog's own
+// button [data-close], because only the lab can close viser's dialogs.
 (() => {
   "use strict";
 
   const DIALOG = ".mantine-Modal-content";
 
-  // The button that follows the mark, in the dialog that is on top.
+  // The button after the mark, in the topmost dialog.
   function closing() {
     const dialog = [...document.querySelectorAll(DIALOG)].pop();
     const mark = dialog?.querySelector("[data-close]");

@@ -1,5 +1,5 @@
-// An equation that is wider than its panel is made smaller until it fits; not so small that it
-// cannot be read: then it can be scrolled.
+// Shrinks an equation that is wider than its panel until it fits, but not so far that it becomes
+// illegible; then it can be scrolled.
 (() => {
   "use strict";
 

@@ -1,11 +1,11 @@
-// A folder that its user has opened is open again when the page is drawn anew, as after a change of
-// robot. It is known by its heading.
+// Reopens the folders that the user had opened when the page is drawn anew, for instance after a change
+// of robot. A folder is identified by its heading.
 (() => {
   "use strict";
 
   const HEADING = ".mantine-Paper-root > .mantine-Paper-root:has(> svg)";
   const opened = new Set();  // headings
-  const known = new WeakSet();  // headings on the page that have been seen to
+  const known = new WeakSet();  // headings on the page that have been handled
 
   const isOpen = (heading) => heading.nextElementSibling?.getAttribute("aria-hidden") !== "true";
 
@@ -13,7 +13,7 @@
     const heading = event.target instanceof Element ? event.target.closest(HEADING) : null;
     if (heading === null) return;
     known.add(heading);
-    if (isOpen(heading)) opened.delete(heading.textContent);  // it is about to be closed
+    if (isOpen(heading)) opened.delete(heading.textContent);  // it is about to close
     else opened.add(heading.textContent);
   }, { capture: true });
 

@@ -1,5 +1,5 @@
-// Invitations to a newcomer, from [data-invitation], over the scene. Their button presses a key of
-// the lab; whoever skips them is not asked again: the lab reads the same place, see first_minute.py.
+// Shows invitations to newcomers, from [data-invitation], over the scene. Their button presses a key of
+// the lab. Users who skip them are not asked again: the lab reads the same entry, see first_minute.py.
 (() => {
   "use strict";
 
@@ -18,7 +18,7 @@
     skipped = true;
     try {
       localStorage.setItem(KEPT_AS, end);
-    } catch {}  // a browser that keeps nothing asks again next time
+    } catch {}  // a browser without storage asks again next time
     look();
   });
 

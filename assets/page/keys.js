@@ -1,8 +1,8 @@
-// Keys belong to the control that has the focus, and to the lab; none of them moves the camera.
+// Gives keys to the focused control and to the lab; none of them moves the camera.
 //
-// viser's page listens to all keys where they come last: its hotkeys, which are the lab's keys, at
-// the <html> element, and its camera at the document. This script runs before viser's, so at each
-// of these it hears a key first, after the focused control has had it, and can end its way there.
+// viser's page listens to keys at the end of their propagation: its hotkeys, which are the lab's keys,
+// at the <html> element, and its camera at the document. This script runs before viser's, so at each
+// of these it gets a key first, after the focused control, and can stop its propagation.
 (() => {
   "use strict";
 
@@ -20,8 +20,8 @@
   ];
   const TICKED = 'input[type="checkbox"], input[type="radio"]';
 
-  // In a box of several lines Enter presses the button below it, and with Shift begins a line. viser
-  // passes on the newest message of 50 ms alone: what was typed has to go before the press.
+  // In a box of several lines, Enter presses the button below it, and Shift+Enter begins a new line. viser
+  // sends only the newest message of every 50 ms, so the text must be sent before the press.
   const TYPED_GOES = 60;  // [ms]
 
   function pressBelow(box) {
@@ -35,8 +35,8 @@
     return found !== undefined && found[1].includes(key);
   }
 
-  // viser's hotkeys take everything named <input> for a field to type in; a letter means nothing
-  // to a box that is ticked, so it is told again as if nothing had the focus.
+  // viser's hotkeys treat every <input> as a text field. A checkbox has no use for letters, so they are
+  // dispatched again as if nothing had the focus.
   function tellAgain(event) {
     event.stopImmediatePropagation();
     const again = new KeyboardEvent(event.type, event);

@@ -1,4 +1,4 @@
-// Until the lab's page has come, a cover (see style.css) hides viser's own panel.
+// Until the lab's page arrives, a cover (see style.css) hides viser's own panel.
 (() => {
   "use strict";
 

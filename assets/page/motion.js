@@ -1,9 +1,9 @@
-// Whoever asks for less motion finds the robots at rest: the lab is paused when its page opens, by
-// its own key. The key may come before viser listens to it, so it is pressed again until it helps.
+// For users who ask for less motion, pauses the lab when its page opens, by the lab's own key. viser may
+// not listen to keys yet, so the key is pressed again until it works.
 (() => {
   "use strict";
 
-  const REST = 2000;  // [ms], in which an answer has come
+  const REST = 2000;  // [ms], by which an answer has arrived
   const MOST = 5;
 
   if (!matchMedia("(prefers-reduced-motion: reduce)").matches) return;

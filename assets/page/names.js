@@ -1,12 +1,12 @@
-// What viser draws without it: the page's language, names for screen readers, and folder headings
-// that are buttons. Names come from the labels on the page, or from the lab's words in [data-page].
+// Adds what viser's page lacks: the page's language, names for screen readers, and folder headings
+// that are buttons. Names come from the labels on the page, or from the lab's texts in [data-page].
 //
-// viser's page is drawn by React, which may draw any part of it anew at any time: so everything is
-// looked at again soon after the page has changed, and what is named already is left alone.
+// React draws viser's page and may draw any part of it anew at any time, so everything is checked
+// again soon after a change; elements that have a name are left alone.
 (() => {
   "use strict";
 
-  const SOON = 150;  // [ms], within which changes of the page are looked at together
+  const SOON = 150;  // [ms], within which changes of the page are handled together
   const FIELD = '[role="slider"], input:not([type="hidden"]), textarea';
   const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:has(> svg)";
   const ROW = ".mantine-Flex-root:has(label)";
@@ -45,7 +45,7 @@
     }
   }
 
-  // Buttons with the same label are told apart by what stands before them.
+  // Buttons with the same label are distinguished by the text before them.
   function nameButtons() {
     const marks = document.querySelectorAll("[data-names-next]");
     const buttons = marks.length ? [...document.querySelectorAll(".mantine-Modal-body button")] : [];

@@ -1,9 +1,9 @@
-// What the lab says, from [data-said]: messages over the scene, where the eye is, and for a screen
-// reader what happens, in a live region that is not seen.
+// Shows the lab's messages, from [data-said], over the scene, where users look, and tells screen readers
+// what happens, in an invisible live region.
 (() => {
   "use strict";
 
-  const AGAIN = 8000;  // [ms], between announcements that differ in their numbers only
+  const AGAIN = 8000;  // [ms], between announcements that differ only in numbers
   const REST = 1500;  // [ms], between any two
 
   const upright = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)");
@@ -59,7 +59,7 @@
     const { said: now, level, spoken: next, close, summary, summaries } = source.dataset;
     if (!document.body.contains(box)) document.body.append(box, region);
     cross.setAttribute("aria-label", close);
-    if (now !== said) {  // what was closed, or has given way to a summary, does not come back
+    if (now !== said) {  // a message that was closed or replaced by a summary does not come back
       said = now;
       show(said, level);
     }
@@ -72,7 +72,7 @@
       boxesOverScene.place();
     }
     clearTimeout(waiting);
-    if (summaries !== told) {  // asked for: now, and to be read, too
+    if (summaries !== told) {  // requested, so announced at once and also shown
       told = summaries;
       spoken = region.textContent = summary;
       spokenAt = performance.now();

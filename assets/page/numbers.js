@@ -1,15 +1,15 @@
-// Boxes for numbers keep what is typed, and say what is wrong with it. viser's drop every character
-// that no number of theirs has, so that 1e9 becomes 19, take every digit for a number at once, so that
-// 4 is on the way to 400, and stay empty once they are emptied.
+// Number boxes that keep what is typed, and say what is wrong with it. viser's boxes drop characters
+// that they do not know, so that 1e9 becomes 19; they use every digit at once, so that 4 takes effect on
+// the way to 400; and they stay empty once they are emptied.
 //
-// Typing in a box opens a field of text over it, which takes anything. It is read when it is left, or
-// by Enter: as a number it goes into the box, else it stays, and a note says why. A keyboard on a
-// screen may not let its letters be taken away; then the box is checked when it is left.
+// Typing in a box opens a text field over it, which accepts anything. The text is read on Enter or when
+// the field loses the focus: a number goes into the box, anything else stays, and a note says why. Not
+// every on-screen keyboard lets its input be redirected; then the box is checked when it loses the focus.
 (() => {
   "use strict";
 
   const BOX = "input[inputmode]";
-  const SOON = 100;  // [ms], after which a box has changed what it does not take
+  const SOON = 100;  // [ms], by which a box has changed what it does not accept
 
   const field = document.createElement("input"), note = document.createElement("div");
   field.id = "op-typed";
@@ -30,7 +30,7 @@
     return plain === "" ? NaN : Number(plain);
   }
 
-  // Whether a text looks like a whole number with its thousands apart, as the page's language has them.
+  // Whether a text looks like an integer with separated thousands, as the page's language writes them.
   function grouped(text) {
     const german = document.querySelector("[data-page]")?.dataset.language === "de";
     return (german ? /^[-\u2212]?[1-9]\d{0,2}\.\d{3}$/ : /^[-\u2212]?[1-9]\d{0,2},\d{3}$/).test(text.trim());
@@ -65,7 +65,7 @@
     marked = null;
   }
 
-  // Give a box a text as if it had been typed.
+  // Put a text into a box as if it had been typed.
   function fill(into, text) {
     filling = true;
     Object.getOwnPropertyDescriptor(HTMLInputElement.prototype, "value").set.call(into, text);
@@ -73,7 +73,7 @@
     filling = false;
   }
 
-  // What a box has made of a text, once it has been left.
+  // The value that a box has made of a text once it has lost the focus.
   function check(left, text, last) {
     setTimeout(() => {
       if (!left.isConnected) return;
@@ -114,7 +114,7 @@
     if (text.trim() !== "") {
       fill(from, number.toLocaleString("en-US", { useGrouping: false, maximumFractionDigits: 20 }));
     }
-    from.dispatchEvent(new FocusEvent("focusout", { bubbles: true }));  // it keeps to its limits
+    from.dispatchEvent(new FocusEvent("focusout", { bubbles: true }));  // it clamps to its limits
     check(from, text, last);
   }
 
@@ -184,7 +184,7 @@
   document.addEventListener("scroll", place, { capture: true, passive: true });
   addEventListener("resize", place);
 
-  // What is said of a box goes with it.
+  // A note is removed with its box.
   new MutationObserver(() => {
     if (marked !== null && marked !== field && !marked.isConnected) unsay();
     if (box !== null && !box.isConnected) putBack();

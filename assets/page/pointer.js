@@ -1,8 +1,8 @@
 // The mouse in the scene: the left button and one finger are for the robots alone, so that a press
-// beside an end-point does not tilt the view; the right button turns it, two fingers move it.
+// beside an end-point does not tilt the view; the right button turns the view, and two fingers move it.
 //
-// viser's camera listens to movements at the document, and what is dragged at the window, which
-// hears later. This script runs before viser's and hears first at the document.
+// viser's camera listens to movements at the document, and its drags at the window, which gets events
+// later. This script runs before viser's, so at the document it gets them first.
 (() => {
   "use strict";
 
@@ -22,7 +22,7 @@
     target.dispatchEvent(new PointerEvent(event.type, { ...copied(event), ...changes }));
   }
 
-  // Constructors read what is inherited, too, but Object.assign does not.
+  // Constructors also read inherited properties, but Object.assign does not.
   function copied(event) {
     const names = ["pointerId", "pointerType", "isPrimary", "clientX", "clientY", "screenX", "screenY",
       "buttons", "button", "ctrlKey", "shiftKey", "altKey", "metaKey", "pressure", "movementX", "movementY"];

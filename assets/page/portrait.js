@@ -1,6 +1,6 @@
-// A window that is higher than wide, as of a tablet that is held upright, is laid out as on a
-// telephone: the panel below the scene instead of beside it. viser asks for a telephone's width; see
-// PORTRAIT in app/scene/stage.py for the server's side of it.
+// Lays out a window that is taller than wide, such as an upright tablet's, as on a telephone: with the
+// panel below the scene instead of beside it. viser asks for a telephone's width; PORTRAIT in
+// app/scene/stage.py is the same on the server.
 (() => {
   "use strict";
 
@@ -8,8 +8,8 @@
   const ask = window.matchMedia;
   window.matchMedia = (query) => ask.call(window, query === TELEPHONE ? `${query}, ${PORTRAIT}` : query);
 
-  // There the scene has its two buttons with it, since the panel shows a lesson's text or controls;
-  // also where a page is so much enlarged that little is left beside the panel. See NARROW there.
+  // In this layout, and on a page enlarged so much that little room is left beside the panel, the scene
+  // has its own two buttons, since the panel shows a lesson's text or controls. See NARROW there.
   const NARROW = 0.8;
   const upright = ask.call(window, `${TELEPHONE}, ${PORTRAIT}`);
 

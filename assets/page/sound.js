@@ -1,5 +1,5 @@
-// The distances from the path as two tones, from [data-tones]: the left robot's in the left ear, the
-// right one's in the right. A tone rises by an octave in 25 mm, and is silent while the lab rests.
+// Plays the distances from the path as two tones, from [data-tones]: the left robot's in the left ear,
+// the right one's in the right. A tone rises by an octave in 25 mm, and is silent while the lab is paused.
 (() => {
   "use strict";
 
@@ -20,7 +20,7 @@
     });
   }
 
-  // Browsers let a page sound after somebody has pressed something on it.
+  // Browsers allow sound only after the user has pressed something on the page.
   function wake() {
     if (context?.state === "suspended") context.resume();
   }

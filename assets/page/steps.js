@@ -1,5 +1,5 @@
-// A step of a lesson opens at its top: left alone, its panel stays scrolled as the step before was.
-// What is to be done after a prediction, [data-act], is brought into view with its button.
+// Scrolls the panel of a lesson's new step to its top; otherwise it would stay where the step before was.
+// After a prediction, brings what to do next, [data-act], into view with its button.
 (() => {
   "use strict";
 

@@ -1,17 +1,17 @@
-// Questions whose answers are looked up at once: of a quiz, numbers, and in own words.
+// Questions that are answered at once: quizzes, numbers, and open questions.
 
 import { made } from "../standalone/controls"
 import { said, type BlockData, type PageData } from "./data"
 import type { Notes } from "./notes"
 import { accepted } from "./own"
 
-/** The order in which a student sees the options: always the same for one student. */
+/** The order of the options for a student, which is always the same. */
 export function ordered(list: Element, student: string, question: string): void {
     const drawn = [...list.children].map((each, i) => [hash(`${student} ${question} ${i}`), each] as const)
     list.append(...drawn.sort((a, b) => a[0] - b[0]).map(([, each]) => each))
 }
 
-/** What was chosen, whether it is right, and why; with the words that stand in the page. */
+/** Show what was chosen, whether it is right, and why, with texts from the page. */
 export function judged(page: PageData, element: Element, right: number, own: number | undefined): HTMLElement {
     const answers = (option: number) => [...element.querySelector(`[data-answer="${option}"]`)!.cloneNode(true).childNodes]
     const lines: HTMLElement[] = []

@@ -11,7 +11,7 @@ export interface Happening {
     robots: Robot[]
 }
 
-/** Since a step began or since the last reset; each instant lasts until the next one. */
+/** The record since a step began or since the last reset; each instant lasts until the next one. */
 export interface RunRecord {
     times: number[]
     end: number
@@ -19,7 +19,7 @@ export interface RunRecord {
     happenings: Happening[]
     run: number
     settings: Record<string, Setting>
-    /** Names of the settings that are not as the step began. */
+    /** Names of the settings that have changed since the step began. */
     changed: string[]
 }
 
@@ -103,7 +103,7 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
 }
 
-/** Nothing is said of what holds. */
+/** A check that holds has no message. */
 function only({ names, labels }: Only, record: RunRecord, words: Words): Verdict {
     const others = record.changed.filter(name => !names.includes(name))
     if (!others.length) return { passed: true, words: "" }
@@ -207,7 +207,7 @@ function within(value: number, below: number | null, above: number | null): bool
     return (below === null || value <= below) && (above === null || value >= above)
 }
 
-/** With as few digits as keep it on its side of the bounds; see `_rounded` in lessons/checks.py. */
+/** A value with the fewest digits that keep it on its side of the bounds; see `_rounded` in lessons/checks.py. */
 function digits(value: number, below: number | null, above: number | null, words: Words): string {
     const bounds = [below, above].filter(each => each !== null && each !== 0).map(each => Math.abs(each!))
     const least = bounds.length ? Math.min(...bounds) : 1

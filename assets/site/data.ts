@@ -1,4 +1,4 @@
-// What Python puts into the pages: see app/exports/site.
+// The data that Python puts into the pages: see app/exports/site.
 
 import type { FigureData, Place } from "../standalone/data"
 import type { Curves } from "./notes"
@@ -7,7 +7,7 @@ export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
 export type Setting = number | string
 
-/** One thing that a script or a link does; it has one of these fields, besides `side`. */
+/** One action of a script or a link; it has one of these fields besides `side`. */
 export interface Act {
     hold?: boolean
     pull?: [number, number]
@@ -139,7 +139,7 @@ export interface PageData {
     lessons: Record<string, { steps: number; required: number; tasks: string[] }>
 }
 
-/** A text of the page, with its values filled in. */
+/** A text of the page with its values filled in. */
 export function said(page: PageData, key: string, values: Said = {}): string {
     const text = page.words[key]
     if (text === undefined) throw new Error(`no words for ${key}`)

@@ -1,16 +1,16 @@
-// What a learning platform is told of a student's work in a lesson. Pure functions.
+// The progress and score that a learning platform receives for a lesson. Pure functions.
 
 import type { StepData } from "./data"
 import { given, type Notes } from "./notes"
 import { accepted } from "./own"
 
-/** Shares from 0 to 1 of what is not optional. */
+/** Shares, from 0 to 1; optional steps do not count. */
 export interface Grade {
-    /** Of all parts, those that are done: steps that were opened, runs that were seen to their end, predictions
-     * that were committed, questions that were answered, tasks that were passed. */
+    /** The share of parts that are done: steps opened, runs seen to their end, predictions
+     * committed, questions answered, tasks passed. */
     progress: number
-    /** Of quizzes, numbers and tasks, those that are right; null if there are none. A first answer counts, since
-     * the page then shows the right one; a task may be tried until it is passed. */
+    /** The share of quizzes, numbers and tasks that are right; null if there are none. The first answer counts,
+     * since the page then shows the right one; a task may be tried until it is passed. */
     score: number | null
 }
 

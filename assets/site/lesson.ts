@@ -21,7 +21,7 @@ export class LessonPage {
     private readonly next = document.querySelector<HTMLButtonElement>("#next")!
     private readonly back = document.querySelector<HTMLButtonElement>("#back")!
     private tasks: Task[] = []
-    private turn = 0 // so that a figure that comes late is not shown
+    private turn = 0 // so that a figure that arrives late is not shown
 
     constructor(readonly page: PageData, private readonly progress: Progress) {
         this.notes = notesOf(progress, page.lesson)
@@ -31,7 +31,7 @@ export class LessonPage {
         addEventListener("hashchange", () => this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
         document.querySelector("main")!.addEventListener("keydown", event => {
-            // keys of what is focused are not the figure's
+            // keys of the focused control are not the figure's
             if ((event.target as HTMLElement).closest("textarea, select, input, summary, a")) event.stopPropagation()
         })
         setInterval(() => this.follow(), JUDGED)
@@ -47,7 +47,7 @@ export class LessonPage {
         this.go(by)
     }
 
-    /** Turn the page; a prediction that was not made is skipped. */
+    /** Go to another step; a prediction that was not made is skipped. */
     private go(by: number): void {
         const found = this.prediction(this.index)
         if (by > 0 && found && this.waits(found)) {
@@ -76,7 +76,7 @@ export class LessonPage {
             each.classList.toggle("seen", i < notes.seen)
         })
         history.replaceState(null, "", `#${this.index + 1}`)
-        dispatchEvent(new Event("resize")) // what was hidden is drawn
+        dispatchEvent(new Event("resize")) // so that what was hidden is drawn
         if (move) {
             section.focus({ preventScroll: true })
             scrollTo(0, 0)
@@ -193,7 +193,7 @@ export class LessonPage {
         return comparison
     }
 
-    /** Whether a run was seen here; what only the lab can play is seen in its picture. */
+    /** Whether a run has been seen; a run that only the lab can play is seen in its picture. */
     private readonly happened = (index: number): boolean =>
         Boolean(this.notes.played[String(index)]) || !this.page.steps[index]!.script
     /** Show of a run what may be seen: nothing before the prediction, the words after it. */
@@ -243,7 +243,7 @@ export class LessonPage {
         progress.grade(gradeOf(page.steps, notes))
     }
 
-    /** Where the student is. */
+    /** Show where the student is. */
     private marks(): void {
         const { page, index, next, back } = this
         const { length } = page.steps
@@ -256,7 +256,7 @@ export class LessonPage {
         next.textContent = said(page, skips ? "lesson.skip" : index === length - 1 ? "lesson.finish" : "lesson.next")
     }
 
-    /** What was predicted, and what happened. */
+    /** Show what was predicted, and what happened. */
     private end(): void {
         const { page, notes } = this
         const words = this.sections[this.index]!.querySelector(".words")!

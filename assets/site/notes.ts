@@ -18,7 +18,7 @@ export interface Curves {
     follower: number[]
 }
 
-/** By number of the step from 0; of questions by step and block, such as "3.1". */
+/** Keys are numbers of steps, from 0; for questions, step and block, such as "3.1". */
 export interface Notes {
     step: number
     seen: number
@@ -27,7 +27,7 @@ export interface Notes {
     played: Record<string, boolean>
     tasks: Record<string, number>
     quiz: Record<string, number>
-    /** First answers to quizzes and questions for numbers; after them the page shows the right ones. */
+    /** First answers to quizzes and questions for numbers, after which the page shows the right ones. */
     first: Record<string, number>
     numbers: Record<string, number>
     written: Record<string, string>
@@ -59,7 +59,7 @@ export function exported(progress: Progress, page: PageData): string {
     return JSON.stringify({ format: FORMAT, lessons: Object.fromEntries(kept) })
 }
 
-/** Take over a file; false if it is none of ours. */
+/** Read the notes from a file; false if it is not one of ours. */
 export function imported(progress: Progress, page: PageData, text: string): boolean {
     const read = parsed(text) as { format?: unknown; lessons?: unknown } | null
     if (read?.format !== FORMAT || typeof read.lessons !== "object" || !read.lessons) return false
@@ -73,7 +73,7 @@ export function forget(progress: Progress, page: PageData): void {
     for (const name of Object.keys(page.lessons)) progress.set(key(name), "{}")
 }
 
-/** A curve with fewer points; of every part its extremes are kept. */
+/** A curve with fewer points; the extremes of every part are kept. */
 export function thinned({ times, tracker, follower }: Curves): Curves {
     const parts = Math.floor(MOST_POINTS / 4)
     const kept = new Set([0, times.length - 1])
@@ -101,7 +101,7 @@ export function parsed(text: string): unknown {
     }
 }
 
-/** Whether what was read has the form of notes: numbers and texts where they belong. */
+/** Whether data have the form of notes: numbers and texts where they belong. */
 function isNotes(read: unknown): read is Partial<Notes> {
     if (typeof read !== "object" || !read || Array.isArray(read)) return false
     const number = (each: unknown) => typeof each === "number" && Number.isFinite(each)

@@ -1,6 +1,6 @@
-// Numbers as Python and numpy have them, so that checks say the same words as in the lab.
+// Numbers as Python and NumPy format and sum them, so that checks give the same texts as in the lab.
 
-/** A sum as numpy forms it: in pairs of parts. */
+/** A sum in NumPy's order: pairwise. */
 export function sum(values: ArrayLike<number>, from = 0, count = values.length): number {
     if (count < 8) {
         let total = 0
@@ -21,7 +21,7 @@ export function sum(values: ArrayLike<number>, from = 0, count = values.length):
     return sum(values, from, half) + sum(values, from + half, count - half)
 }
 
-/** So many digits of a number, and its exponent; a tie goes to the even digit, as in Python. */
+/** The leading digits of a number, and its exponent; ties go to the even digit, as in Python. */
 function rounded(value: number, digits: number): [string, number] {
     const [mantissa, exponent] = value.toExponential(60).split("e") as [string, string]
     const all = mantissa.replace(".", "")

@@ -1,4 +1,4 @@
-// What a page shows of a student's own answers: numbers in texts, and texts for some answers only.
+// Shows a student's own answers: numbers in texts, and texts for some answers only.
 
 import type { BlockData, PageData } from "./data"
 import type { Notes } from "./notes"

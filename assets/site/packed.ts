@@ -1,7 +1,7 @@
-// Notes as a text for which a learning platform has room: 4,096 characters in SCORM 1.2. Pure functions.
+// Packs notes into a text that fits a learning platform: 4,096 characters in SCORM 1.2. Pure functions.
 
-/** What a text may do without: curves of runs, which can be seen again; points of a drawn curve, which keeps its
- * ends and its extremes; and the ends of long texts, which is to be told. */
+/** What packing may leave out: curves of runs, which can be seen again; points of a drawn curve, which keeps its
+ * ends and extremes; and the ends of long texts, which the page must say. */
 interface Size {
     truths: boolean
     points: number
@@ -10,7 +10,7 @@ interface Size {
 
 export interface Packed {
     text: string
-    /** Whether texts of the student are cut. */
+    /** Whether the student's texts are cut. */
     cut: boolean
 }
 
@@ -23,7 +23,7 @@ const SIZES: Size[] = [
     ...Array.from({ length: 47 }, (_, i) => ({ truths: false, points: 10, letters: 980 - 20 * i })),
 ]
 
-/** The text that leaves out least of those with at most `room` characters; null if there is none. */
+/** The most complete text with at most `room` characters; null if none fits. */
 export function packed(kept: unknown, room: number): Packed | null {
     for (const size of SIZES) {
         const text = JSON.stringify(kept, (name, own: unknown) => reduced(name, own, size))
@@ -32,7 +32,7 @@ export function packed(kept: unknown, room: number): Packed | null {
     return null
 }
 
-/** What was packed; undefined if the text is none of ours. */
+/** The packed notes; undefined if the text is not one of ours. */
 export function unpacked(text: string): unknown {
     try {
         return JSON.parse(text, (_, own) => {
@@ -54,7 +54,7 @@ function reduced(name: string, own: unknown, size: Size): unknown {
 }
 
 function shortened(text: string, letters: number): string {
-    const all = [...text] // an emoji is not cut in two
+    const all = [...text] // so that an emoji is not cut in two
     return all.length <= letters ? text : `${all.slice(0, letters - 1).join("")}…`
 }
 
@@ -82,8 +82,8 @@ function pair(value: number, from: number, to: number): string {
     return LETTERS[Math.floor(part / LETTERS.length)]! + LETTERS[part % LETTERS.length]!
 }
 
-/** Places of at most so many points: ends, extremes, and then always the point that is farthest from the line
- * through those that are kept. */
+/** Indices of a limited number of points: the ends, the extremes, and then repeatedly the point farthest from the
+ * line through those that are kept. */
 function fewest(times: number[], values: number[], most: number): number[] {
     if (times.length <= most) return [...times.keys()]
     const extremes = [Math.min(...values), Math.max(...values)].map(value => values.indexOf(value))

@@ -1,4 +1,4 @@
-// Predictions: a choice or a curve, to which a student commits before it happens.
+// Predictions: a choice or a curve, to which a student commits before the run.
 
 import { made } from "../standalone/controls"
 import { judged } from "./asked"
@@ -27,7 +27,7 @@ export function elementOf(prediction: Prediction): HTMLElement {
     return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
 }
 
-/** Make it answerable. It cannot be changed once it is committed; one that was skipped can still be made. */
+/** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
 export function predict(page: PageData, prediction: Prediction, notes: Notes, changed: () => void): void {
     const element = elementOf(prediction)
     const key = String(prediction.step)
@@ -91,7 +91,7 @@ export class Comparison {
         } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
     }
 
-    /** Where the truth is not kept, the page says how it is seen again. */
+    /** If the truth is not kept, the page says how to see it again. */
     draw(truth: Notes["truths"][string] | undefined): void {
         this.again.hidden = truth !== undefined
         this.chart?.draw(this.answer, truth)
@@ -102,7 +102,7 @@ export class Comparison {
     }
 }
 
-/** How sure the student is, and why, if it is said. */
+/** How sure the student is, and why, if stated. */
 function beside(element: HTMLElement): Answer {
     const value = (name: string) => element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(name)?.value ?? ""
     const found: Answer = {}

@@ -1,11 +1,11 @@
-// Where a student's progress is kept. A page in a learning platform has another place for it.
+// Keeps a student's progress in the browser; for a learning platform see scorm.ts.
 
 import type { Grade } from "./grade"
 
-/** Says something about what is kept, in words of the page. */
+/** Shows a message about what is kept, in the page's texts. */
 export type Tell = (key: string, values?: Record<string, string>) => void
 
-/** Texts by key, and what is told of a lesson. */
+/** Texts by key, and reports on a lesson. */
 export interface Progress {
     get(key: string): string | null
     set(key: string, value: string): void

@@ -1,4 +1,4 @@
-// A simulation that keeps what the lessons ask for: events, and all quantities 60 times a second.
+// A simulation that records what the lessons need: events, and all quantities 60 times a second.
 
 import type { Kernels } from "../standalone/kernels"
 import { Simulation } from "../standalone/simulation"
@@ -66,7 +66,7 @@ export class Recorded extends Simulation {
     override set(slider: number, value: number): void {
         super.set(slider, value)
         const name = this.data.names?.[slider]
-        if (!name || !this.happenings) return // while it is made
+        if (!name || !this.happenings) return // while it is being constructed
         this.settings[name] = value
         this.note("set", name)
     }
@@ -84,7 +84,7 @@ export class Recorded extends Simulation {
         this.restart()
     }
 
-    /** Do what a script or a link says. */
+    /** Perform an action of a script or a link. */
     act(act: Act): void {
         const sides = act.side == null ? ROBOTS.map((_, i) => i) : [act.side]
         if (act.hold !== undefined) this.holdSome(sides, act.hold)
@@ -141,7 +141,7 @@ export class Recorded extends Simulation {
         this.times = []
         this.samples = this.nothing()
         const kept = [...this.happenings]
-        super.reset() // which sets all sliders
+        super.reset() // this sets all sliders
         this.happenings = kept
         for (const [place, value] of this.written) for (const side of this.sides) side.set(place, value)
         this.data.sliders.forEach(({ place }, i) => {

@@ -1,4 +1,4 @@
-// Progress in a learning platform, by the run-time of SCORM 1.2 or of SCORM 2004.
+// Keeps progress in a learning platform, through the run-time of SCORM 1.2 or SCORM 2004.
 
 import type { Grade } from "./grade"
 import { parsed } from "./notes"
@@ -22,7 +22,7 @@ export type Version = keyof typeof NAMES
 export class ScormProgress implements Progress {
     private kept: Record<string, unknown> = {}
     private open = false // whether there is a session
-    private records = false // whether it is no review
+    private records = false // false in a review
     private credit = false // whether a score is wanted
 
     private constructor(private readonly names: (typeof NAMES)[Version], private readonly api: Api, private readonly tell: Tell) {
@@ -54,7 +54,7 @@ export class ScormProgress implements Progress {
         this.keep()
     }
 
-    /** A score never becomes less, and what is passed or completed remains so. */
+    /** A score never decreases, and what is passed or completed remains so. */
     grade({ progress, score }: Grade): void {
         const { names } = this
         if (this.credit) {
@@ -77,7 +77,7 @@ export class ScormProgress implements Progress {
         this.records = this.open && !["review", "browse"].includes(this.value(this.names.mode))
         this.credit = this.records && this.value(`${this.names.core}credit`) !== "no-credit"
         if (this.open && !this.records) this.tell("site.review")
-        if (this.records) this.put(`${this.names.core}exit`, "suspend") // a lesson may be left, and gone on with
+        if (this.records) this.put(`${this.names.core}exit`, "suspend") // a lesson may be left and resumed
         if (this.credit) this.status("incomplete", ["passed", "completed", "failed"])
     }
 
@@ -101,7 +101,7 @@ export class ScormProgress implements Progress {
     private readonly value = (name: string): string => this.ask("GetValue", name)
     private readonly put = (name: string, value: string): boolean => this.checked("SetValue", name, value)
     private readonly raises = (name: string, value: number): boolean => value >= Number(this.value(name))
-    /** Whether it is done; if the platform refuses, its reason is told. */
+    /** Whether it succeeded; if the platform refuses, the page says why. */
     private checked(verb: string, ...values: string[]): boolean {
         if (!this.open) return false
         if (this.ask(verb, ...values) !== "false") return true
@@ -110,7 +110,7 @@ export class ScormProgress implements Progress {
         return false
     }
 
-    /** What the platform answers; empty without a session, "false" if it fails. */
+    /** The platform's answer; empty without a session, "false" if it fails. */
     private ask(verb: string, ...values: string[]): string {
         try {
             return this.open ? String(this.api[this.names.verb + verb]!(...values)) : ""
@@ -121,7 +121,7 @@ export class ScormProgress implements Progress {
     }
 }
 
-/** The platform's object, in a page or in one around it; null in another site's page. */
+/** The platform's object in a window or in one that encloses it; null if that is another site's. */
 function apiOf(page: Window | null, name: string, deep = 10): Api | null {
     try {
         if (!page || !deep) return null

@@ -7,7 +7,7 @@ import { local } from "./numbers"
 import { inkOf } from "../standalone/view"
 
 const MARGIN = { left: 46, right: 12, top: 26, bottom: 26 }
-const POINTS = 9 // of a curve that is typed
+const POINTS = 9 // of a typed curve
 const MOST = 160 // points that are kept
 
 export class Chart {
@@ -52,7 +52,7 @@ export class Chart {
         return MARGIN.top + ((top - value) / (top - bottom)) * height
     }
 
-    /** A colour of the page's style, which may be a dark one. */
+    /** A colour of the page's style, light or dark. */
     private colour(name: string): string {
         return getComputedStyle(this.canvas).getPropertyValue(`--chart-${name}`)
     }
@@ -152,7 +152,7 @@ export class Board extends Chart {
         this.show()
     }
 
-    /** Numbers that were typed; empty boxes are left out. */
+    /** The numbers that were typed, without empty boxes. */
     private typed(): void {
         const point = this.page.words["point"]!
         const typed = this.inputs.map(input => Number(input.value.trim().replace(point, ".").replace("−", "-") || NaN))

@@ -1,4 +1,4 @@
-// The live figure of a step: its kernels are a script that pages share.
+// The live figure of a step, whose kernels are in a script that pages share.
 
 import { isTyped } from "../standalone/controls"
 import { Figure } from "../standalone/figure"
@@ -59,7 +59,7 @@ export class Stage {
         this.figure.controls.show()
     }
 
-    /** Do what a link says; sliders follow. */
+    /** Perform a link's actions; sliders follow. */
     act(acts: Act[]): void {
         for (const act of acts) {
             if (act.run !== undefined) this.run(act.run)
@@ -70,7 +70,7 @@ export class Stage {
         this.figure.controls.show()
     }
 
-    /** Play a script from the step's beginning; `ended` is told whether all of it, or a reset came. */
+    /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
     play(script: Script, ended: (whole: boolean) => void): void {
         const { simulation, figure } = this
         const waiting = [...script.do].sort((a, b) => a[0] - b[0])

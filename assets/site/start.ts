@@ -1,4 +1,4 @@
-// The start page: the free lab, and how far the student is.
+// The start page: the free lab, and the student's progress.
 
 import { refused } from "../standalone/controls"
 import { Figure } from "../standalone/figure"
@@ -8,7 +8,7 @@ import { exported, forget, imported, notesOf } from "./notes"
 import type { LocalProgress } from "./progress"
 import { kernelsOf } from "./stage"
 
-const LARGEST = 5_000_000 // [B], of a file of progress
+const LARGEST = 5_000_000 // [B], of a progress file
 
 export class StartPage {
     figure: Figure | null = null

@@ -1,4 +1,4 @@
-// The tasks of a step, judged by its record twice a second.
+// The tasks of a step, checked against its record twice a second.
 
 import { made } from "../standalone/controls"
 import { judge, statistic, type Verdict } from "./checks"

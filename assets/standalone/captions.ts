@@ -1,4 +1,4 @@
-// What each robot is doing just now, as app/scene/captions.py says it.
+// Captions of what each robot is doing, as in app/scene/captions.py.
 
 import type { Side } from "./side"
 import { said, written, type FigureData } from "./data"
@@ -15,7 +15,7 @@ function kind(side: Side, off: boolean, data: FigureData): string {
     return byClock ? "chases" : bounded ? "off_bounded" : "off"
 }
 
-/** Empty for a robot that does what its law's title says. */
+/** A robot's caption; empty if it simply does what its law's title says. */
 export function caption(side: Side, data: FigureData): string {
     const distance = side.held ? side.most : side.distance
     const which = kind(side, distance >= data.off, data)
@@ -29,7 +29,7 @@ export function spoken(simulation: Simulation, captions: string[]): string {
     return captions.map((caption, i) => caption && line(caption, i)).filter(Boolean).join(" ")
 }
 
-/** Why robots have stopped, why the path goes no further, or which point keys move. */
+/** Why robots have stopped, why the path goes no further, or which point the keys move. */
 export function notes(simulation: Simulation): string {
     const { sides, followed, selected, data } = simulation
     const lines = sides.map((side, i) => {

@@ -1,4 +1,4 @@
-// Buttons, the choice of a path, and sliders.
+// Buttons, menus and sliders of a figure.
 
 import { said, significant, type FigureData, type Point, type SliderData } from "./data"
 import type { Figure } from "./figure"
@@ -22,13 +22,13 @@ export function written(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text
 }
 
-/** Whether a key is the browser's, or that of the focused field. */
+/** Whether a key belongs to the browser or to the focused field. */
 export function isTyped({ ctrlKey, metaKey, altKey, target }: KeyboardEvent): boolean {
     const field = (target as Partial<HTMLElement>).closest?.("textarea, select, input:not([type=range])")
     return ctrlKey || metaKey || altKey || Boolean(field)
 }
 
-/** Why a figure does not run, in its place. */
+/** Show why a figure does not run, in its place. */
 export function refused(data: FigureData, error: unknown): HTMLElement {
     console.error(error)
     const line = made("p", "note", said(data, "standalone.refused", { reason: String(error) }))
@@ -59,7 +59,7 @@ export class Controls {
         document.addEventListener("keydown", event => this.key(event), { signal: ended })
     }
 
-    /** Write the present state on the buttons. */
+    /** Show the present state on the buttons. */
     show(): void {
         const { data, held } = this.simulation
         const both = data.sides.length > 1 ? "_both" : ""
@@ -148,7 +148,7 @@ export class Controls {
         return made("label", "slider", made("span", "", slider.label), input, shown)
     }
 
-    /** The lab's keys, unless the focused control takes them. */
+    /** The lab's keys, unless the focused control uses them. */
     private key(event: KeyboardEvent): void {
         const target = event.target as HTMLElement
         if (isTyped(event) || target.closest("input")) return

@@ -1,6 +1,6 @@
-// What Python puts into the page: see app/exports/standalone/figure_data.py.
+// The data that Python puts into the page: see app/exports/standalone/figure_data.py.
 
-/** Place of the first number in a flat vector, and how many there are. */
+/** Index of the first number in a flat vector, and how many there are. */
 export type Place = [number, number]
 
 /** To the right and up, [m]. */
@@ -46,7 +46,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     controls: string[]
     box: [number, number, number, number]
     off: number
-    /** Shares from which on a law counts as returning from far away, and its integral as bounded. */
+    /** Shares above which a law counts as returning from far away, and its integral as bounded. */
     returns: number
     full: number
     strip: number
@@ -57,7 +57,7 @@ export interface FigureData extends Texts<"language" | "module"> {
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }
 }
 
-/** A text, with its values filled in. */
+/** A text with its values filled in. */
 export function said(data: FigureData, key: string, values: Record<string, string> = {}): string {
     const text = data.words[key]
     if (text === undefined) throw new Error(`no words for ${key}`)
@@ -69,7 +69,7 @@ export function written(data: FigureData, value: number, digits?: number): strin
     return (digits === undefined ? String(value) : value.toFixed(digits)).replace("-", "−").replace(".", data.words["point"] ?? ".")
 }
 
-/** The same with so many significant digits. */
+/** The same with a number of significant digits. */
 export function significant(data: FigureData, value: number, digits: number): string {
     return written(data, Number(value.toPrecision(digits)))
 }

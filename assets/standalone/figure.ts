@@ -1,4 +1,4 @@
-// Builds a figure in a page, and lets time run.
+// Builds a figure in a page, and runs its time.
 
 import { caption, notes, spoken } from "./captions"
 import { Controls, isTyped, made, written } from "./controls"
@@ -8,12 +8,12 @@ import type { Simulation } from "./simulation"
 import { View } from "./view"
 
 const FRAME = 1 / 60 // [s], of a step
-const LONGEST = 0.1 // [s], that a picture may be late before simulated time falls behind
-const SILENCE = 3000 // [ms], at least, between two lines of the same kind
-const LATE = 0.15 // [s], lost lately, from which on it is said that time runs late
+const LONGEST = 0.1 // [s] that a picture may be late before simulated time falls behind
+const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
+const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
 const DARK = matchMedia("(prefers-color-scheme: dark)")
-DARK.addEventListener("change", () => dispatchEvent(new Event("resize"))) // all is drawn anew
-const TRACE = 4 // [s], of the tips' ways
+DARK.addEventListener("change", () => dispatchEvent(new Event("resize"))) // everything is drawn anew
+const TRACE = 4 // [s], of the tips' traces
 const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
@@ -29,17 +29,17 @@ export class Figure {
     private readonly poles = made("p", "poles")
     private readonly axis = made("p", "axis")
     readonly controls = new Controls(this.simulation, this, this.ended)
-    private pending: (() => void) | null = null // what is to be done before the next picture: a drag
+    private pending: (() => void) | null = null // a drag to be handled before the next picture
     rate = 1 // of time; less in slow motion
     private last = performance.now()
     private due = 0
-    private lost = 0 // of simulated time, lately, [s]
+    private lost = 0 // simulated time lost lately, [s]
     private stale = true
     private shown = 0 // simulated time in the picture, in ticks
     private kind = ""
     private said = 0
 
-    /** `ended` stops the figure, for a page that puts another one in its place. */
+    /** `ended` stops the figure when a page puts another one in its place. */
     constructor(
         readonly simulation: Simulation,
         into: HTMLElement,
@@ -69,7 +69,7 @@ export class Figure {
         this.stale = true
     }
 
-    /** Advance by so many ticks, apart from the clock. */
+    /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
     private parts(): HTMLElement[] {
@@ -99,7 +99,7 @@ export class Figure {
         const passed = (now - this.last) / 1e3
         this.due += this.rate * Math.min(passed, LONGEST)
         this.last = now
-        if (this.running && passed < 1) // longer, the page was hidden
+        if (this.running && passed < 1) // otherwise the page was hidden
             this.lost = 0.98 * this.lost + Math.max(0, passed - LONGEST)
         this.drag()
         const ticks = Math.floor(this.due / this.data.dt)
@@ -132,7 +132,7 @@ export class Figure {
         this.say(captions, note)
     }
 
-    /** Say what robots do when it changes, and from time to time each millimetre of it. */
+    /** Announce what robots do when it changes, and from time to time their millimetres. */
     private say(captions: string[], note: string): void {
         const line = `${spoken(this.simulation, captions)} ${note}`.trim()
         const kind = line.replace(/[0-9]+/g, "")
@@ -184,7 +184,7 @@ export class Figure {
 
     private keys(): void {
         const { ended: signal } = this
-        let pulling = "" // the key that does
+        let pulling = "" // the key that pulls
         addEventListener("keydown", event => {
             const key = event.key.toLowerCase()
             if (!PULLS[key] || event.repeat || isTyped(event)) return

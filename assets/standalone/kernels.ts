@@ -8,7 +8,7 @@ type Exported = (...places: number[]) => void
 const DOUBLE = 8 // bytes
 const PAGES = 64 // of 64 KiB
 
-/** Vectors are named by the number of their first double in `numbers`. */
+/** A vector is given by the index of its first double in `numbers`. */
 export class Kernels {
     readonly numbers = new Float64Array(this.memory.buffer)
     private end = 0
@@ -27,7 +27,7 @@ export class Kernels {
         return new Kernels(instance.exports as unknown as Record<string, Exported>, memory)
     }
 
-    /** Room for so many numbers. */
+    /** Allocate a vector of a number of doubles. */
     room(count: number): number {
         const place = this.end
         this.end += count
@@ -35,7 +35,7 @@ export class Kernels {
         return place
     }
 
-    /** Room for a vector, with its values. */
+    /** Allocate a vector with its values. */
     put(values: ArrayLike<number>): number {
         const place = this.room(values.length)
         this.numbers.set(values, place)

@@ -9,10 +9,10 @@ import { Simulation } from "./simulation"
 async function begin(): Promise<void> {
     const data = JSON.parse(document.getElementById("data")!.textContent!) as FigureData
     const place = document.getElementById("figure")!
-    place.replaceChildren() // what is said where no script runs
+    place.replaceChildren() // the text for browsers without scripts
     try {
         const simulation = new Simulation(data, await Kernels.from(data.module))
-        // For a page around it, and for tests: advance(ticks), simulation.hold(true) and so on.
+        // For an enclosing page, and for tests: advance(ticks), simulation.hold(true) and so on.
         Object.assign(window, { onpath: new Figure(simulation, place) })
     } catch (error) {
         place.replaceChildren(refused(data, error))

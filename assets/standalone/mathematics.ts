@@ -9,7 +9,7 @@ const pow = (x: number, y: number) =>
 
 const fmod = (x: number, y: number) => x % y
 
-/** x - n y with the whole number n nearest to x / y, of two equally near the even one. Doubling is exact. */
+/** x - n y with the integer n nearest to x / y, or the even one of two equally near. Doubling is exact. */
 const remainder = (x: number, y: number) => {
     const size = Math.abs(y)
     let rest = Math.abs(x) % (2 * size)

@@ -1,13 +1,13 @@
-// A path, and its control points while readers drag them: an edit goes as far as it may, and shows
-// where it would not do, as in app/lab/path_editor.py.
+// A path, and its control points while readers drag them: an edit goes as far as possible, and shows
+// where the path would be refused, as in app/lab/path_editor.py.
 
 import type { FigureData, PathData, Point } from "./data"
 import type { Kernels } from "./kernels"
 
 const ARC = 3 // numbers of a row of arc length
 
-/** Why a curve cannot be followed: keys of the words, and where, in the picture; and its length if
- * it is too short, [mm]. Without marks, there is no such curve. */
+/** Why a curve cannot be followed: keys of messages, and places in the picture; and its length if
+ * it is too short, [mm]. Without places, there is no such curve. */
 export interface Fault {
     reasons: string[]
     marks: Point[]
@@ -17,7 +17,7 @@ export interface Fault {
 export class Path {
     private readonly edit = this.figure.edit
     private readonly flat = this.data.points.flat()
-    /** The curve that is followed, points of it, and what is drawn of it. */
+    /** The curve that is followed, points on it, and its outline. */
     readonly table = this.kernels.put(this.data.table)
     readonly grid = this.kernels.put(this.data.grid)
     outline = this.data.outline
@@ -37,7 +37,7 @@ export class Path {
 
     /** Places of the control points in the picture. */
     readonly spots = (): Point[] => this.data.points.map((_, i) => this.spot(this.shown[0] + 2 * i))
-    /** Move a point from where it was before the edit, by so much in the picture. */
+    /** Move a point by a vector in the picture, from where it was before the edit. */
     drag(index: number, by: Point): void {
         const { work } = this
         this.kernels.numbers.set([0, 0, ...by], work)
@@ -45,14 +45,14 @@ export class Path {
         this.move(index, this.kernels.pair(work + 4))
     }
 
-    /** Move a point by so many steps, and keep it there. */
+    /** Move a point by a number of steps, and keep it there. */
     nudge(index: number, right: number, up: number): void {
         const [x, y] = this.kernels.pair(this.kept[0] + 2 * index)
         this.move(index, [x + this.edit.nudge * right, y + this.edit.nudge * up])
         this.finish()
     }
 
-    /** Move a point towards a target, [m]; where that does not do, find out by bisection how far. */
+    /** Move a point towards a target, [m]; if that is refused, find by bisection how far it may go. */
     move(index: number, target: Point): void {
         this.fault = this.refusal(index, target, 1)
         if (this.fault && !this.fault.marks.length) return
@@ -69,9 +69,9 @@ export class Path {
         this.edited = true
     }
 
-    /** Keep what an edit has come to. */
+    /** Keep the result of an edit. */
     readonly finish = () => this.take(this.shown, this.kept)
-    /** Let the curve that is followed approach the one that is shown; whether it does. */
+    /** Move the followed curve towards the shown one; returns whether it moves. */
     advance(seconds: number): boolean {
         if (this.progress >= 1) return false
         const { work, kernels, table, edit, rows } = this
@@ -87,14 +87,14 @@ export class Path {
         return true
     }
 
-    /** Follow at once what is shown. */
+    /** Follow the shown curve at once. */
     settle(): void {
         this.finish()
         this.fault = null
         this.advance(this.edit.blend)
     }
 
-    /** Try a share of the way to a target. */
+    /** Try a share of the move to a target. */
     private refusal(index: number, target: Point, share: number): Fault | null {
         const { kept, tried, work } = this
         this.take(kept, tried)
@@ -103,7 +103,7 @@ export class Path {
         return this.fit() ?? this.check()
     }
 
-    /** Fit a curve to the points that are tried. */
+    /** Fit a curve to the tried points. */
     private fit(): Fault | null {
         const { kernels, work, edit, data } = this
         const { numbers } = kernels
@@ -130,7 +130,7 @@ export class Path {
         }
     }
 
-    /** Whether a robot could follow the curve that is tried. */
+    /** Whether a robot could follow the tried curve. */
     private check(): Fault | null {
         const { work, rows, edit } = this
         const { numbers } = this.kernels

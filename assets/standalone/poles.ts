@@ -1,4 +1,4 @@
-// What the lab says of the poles of the laws: see app/page/panels/gains_panel.py.
+// What the page says about the poles of the laws, as in app/page/panels/gains_panel.py.
 
 import { said, significant, written, type FigureData } from "./data"
 import type { Kernels } from "./kernels"
@@ -12,7 +12,7 @@ export class Poles {
 
     constructor(private readonly data: FigureData, private readonly kernels: Kernels) {}
 
-    /** A line for the motion across the path, and one for that along it. */
+    /** A line for the motion across the path, and one for the motion along it. */
     lines(settings: number): string[] {
         const { kernels, first, roots, result, data, sizes } = this
         kernels.call("polynomials", settings, ...this.polynomials, first)

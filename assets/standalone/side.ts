@@ -1,4 +1,4 @@
-// One robot under a law: its state, what acts on it, and what is seen of it.
+// One robot under a law: its state, the forces on it, and its drawing.
 
 import type { SideData, FigureData, LawData, Point } from "./data"
 import type { Kernels } from "./kernels"
@@ -9,11 +9,11 @@ export const MOST_TICKS = 128 // in one call of a loop
 export class Side {
     held = false
     pulled = false
-    /** Why it has stopped, counted from 1: see `stops` of its law. */
+    /** The reason why it has stopped, counted from 1 in `stops` of its law. */
     stopped = 0
     ticks = 0
     distance = 0
-    most = 0 // largest distance since it has been held back
+    most = 0 // largest distance since it was held back
     law = this.data.law
     private readonly sizes = this.figure.sizes
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
@@ -37,7 +37,7 @@ export class Side {
     }
 
     readonly does = (): LawData => this.figure.laws[this.law]!
-    /** Begin anew on a path, at rest, with the settings that it comes with. */
+    /** Begin anew on a path, at rest, with the path's settings. */
     begin(path: Path): void {
         const { kernels, state } = this
         this.path = path
@@ -49,7 +49,7 @@ export class Side {
         this.seeStart()
     }
 
-    /** Go on from here under another law, with its memory empty. */
+    /** Go on from the present state under another law, whose memory is empty. */
     change(law: number): void {
         if (law !== this.law) this.call(`change${this.law}to${law}`, this.state, this.state)
         this.law = law
@@ -85,7 +85,7 @@ export class Side {
         this.set(places.hold_active[0], on ? 1 : 0)
     }
 
-    /** Pull the tip by so much in the picture, from where it was when the pull began; null: let go. */
+    /** Pull the tip by a vector in the picture from where it was when the pull began; null: let go. */
     pull(by: Point | null): void {
         const { settings: places } = this.figure
         if (by && !this.pulled) this.kernels.copy(this.field("y"), this.grabbed, this.sizes.p)
@@ -96,7 +96,7 @@ export class Side {
         this.call("hand", this.grabbed, this.result, this.result + 2, this.settings + places.hand_target[0])
     }
 
-    /** Ends of bars, begin and end of each, then joints, as x and y in the picture. */
+    /** Both ends of each bar, then joints, as x and y in the picture. */
     picture(): Float64Array {
         const { bars, joints } = this.sizes
         this.call("picture", this.field("q"), this.points, this.points + 4 * bars)
@@ -106,9 +106,9 @@ export class Side {
     readonly tip = (): Point => this.point("place", this.field("y"))
     /** The point that the law aims at. */
     readonly aim = (): Point => this.point("aim", this.path.table, this.field(this.does().aim))
-    /** The reference point, whatever the law aims at. */
+    /** The reference point, even if the law does not aim at it. */
     readonly reference = (): Point => this.point("aim", this.path.table, this.field("theta_ref"))
-    /** Of a flexible link: the deflection of its tip, [m], and the energy in it, [J]. */
+    /** The deflection of a flexible link's tip, [m], and the energy in the link, [J]. */
     readonly measured = (): Point => this.point("measured", this.field("q"), this.field("v"))
     /** The end of the arrow of the force. */
     readonly arrow = (): Point => this.point("arrow", this.field("y"), this.field("force"))
@@ -116,7 +116,7 @@ export class Side {
     readonly share = (name: "far" | "integral_used"): number => this.kernels.numbers[this.field(name)]!
     /** The last row of the log. */
     readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
-    /** The row before the first tick: that of a tick which is then undone, without torque and force. */
+    /** The row before the first tick: the row of a tick that is undone, without torque and force. */
     private seeStart(): void {
         const { kernels, figure, state, log } = this
         kernels.copy(state, this.begun, this.longest)

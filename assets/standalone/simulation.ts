@@ -1,4 +1,4 @@
-// The simulated figure: sides on a path, time, and what its reader does. It knows no page.
+// The simulated figure: sides on a path, time, and the reader's actions. It does not depend on a page.
 
 import { Side, MOST_TICKS } from "./side"
 import { said, type FigureData, type Point } from "./data"
@@ -6,10 +6,10 @@ import type { Kernels } from "./kernels"
 import { Path } from "./path"
 import { Poles } from "./poles"
 
-export const SECONDS = 8 // that are remembered
+export const SECONDS = 8 // kept in memory
 const PERIOD = 1 / 60 // [s], between two moments, however seldom a picture is drawn
 
-/** What a picture shows of a moment: the tips, in the picture, and their distances to the path. */
+/** A moment: the tips in the picture, and their distances to the path. */
 export interface Moment {
     time: number
     held: boolean
@@ -37,7 +37,7 @@ export class Simulation {
     get time(): number { return this.ticks * this.data.dt }
     get followed(): Path { return this.paths[this.path]! }
 
-    /** What a robot is called: its law, and its side if both have the same. */
+    /** The name of a robot: its law, and its side if both have the same law. */
     title(side: number): string {
         const law = this.sides[side]!.does().title
         const alike = this.sides.filter(each => each.does().title === law).length > 1
@@ -45,13 +45,13 @@ export class Simulation {
     }
 
     readonly sideName = (side: number): string => said(this.data, side ? "side.right" : "side.left")
-    /** What is said of the poles, if a law has them. */
+    /** The lines about the poles, if a law has them. */
     lines(): string[] {
         const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)
         return side ? this.poles.lines(side.settings) : []
     }
 
-    /** What is seen now. */
+    /** The present moment. */
     moment(): Moment {
         const { time, held, sides } = this
         return { time, held, tips: sides.map(side => side.tip()), millimetres: sides.map(side => 1e3 * side.distance) }
@@ -80,7 +80,7 @@ export class Simulation {
         for (const side of this.sides) side.hold(on)
     }
 
-    /** Pull all tips by so much in the picture; null: let go. */
+    /** Pull all tips by a vector in the picture; null: let go. */
     pull(by: Point | null): void {
         for (const side of this.sides) side.pull(by)
     }
@@ -107,7 +107,7 @@ export class Simulation {
         this.followed.fault = null
     }
 
-    /** Give a slider's value to the loops. */
+    /** Set a slider's value in the loops. */
     set(slider: number, value: number): void {
         this.values[slider] = value
         const { place } = this.data.sliders[slider]!

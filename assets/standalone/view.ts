@@ -6,7 +6,7 @@ import type { Path } from "./path"
 
 const FAINT = "66" // how opaque the trace is, of "ff"
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
-const TIE = 8 // [px], by which a point must be nearer than the tip, unless it is selected
+const TIE = 8 // [px] by which a point must be nearer than the tip, unless it is selected
 
 /** An empty canvas, in pixels of the page. */
 export function inkOf(canvas: HTMLCanvasElement): CanvasRenderingContext2D | null {
@@ -26,9 +26,9 @@ export class View {
 
     constructor(private readonly side: Side, private readonly data: FigureData) {}
 
-    /** Metres of the picture that a way of so many pixels is. */
+    /** Converts pixels to metres in the picture. */
     readonly metres = (dx: number, dy: number): Point => [dx / this.scale, -dy / this.scale]
-    /** What is grabbed at a place in the window: the nearest control point, "tip", or null. */
+    /** What a press in the window grabs: the nearest control point, "tip", or null. */
     grabbed(x: number, y: number, path: Path, selected: number | null): number | "tip" | null {
         const { controls } = this.data
         const { left, top } = this.canvas.getBoundingClientRect()
@@ -80,7 +80,7 @@ export class View {
         this.disc(ink, this.side.tip(), 5, colours.ink)
     }
 
-    /** A ring at a reference point that a law aims at, a dot with a white rim at a closest point. */
+    /** Draw a ring at a reference point that a law aims at, or a dot with a white rim at a closest point. */
     private marker(ink: CanvasRenderingContext2D): void {
         const { dark } = this.side.data
         const { aim } = this.side.does()

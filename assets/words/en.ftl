@@ -124,7 +124,7 @@ lesson-discuss = Discuss the question with your neighbour, then answer it again.
 lesson-discuss_letter = Discuss the question with your neighbour, then answer it again. Your first answer was { $letter }.
 lesson-second = After the discussion:
 lesson-drawn_again = you drew the curve again
-lesson-unknown = You answered this in an earlier version of the lesson. Its answers have changed since, so there is no telling which one you chose.
+lesson-unknown = You answered this in an earlier version of the lesson. Its answers have changed since, so the lab cannot tell which one you chose.
 lesson-skipped = You skipped the prediction.
 lesson-predict_before = First go back and make the prediction, or skip it.
 lesson-next_unseen = Next, without seeing it
@@ -252,7 +252,7 @@ test-students = { $count ->
     }
 test-means = Right answers: { $before } % before, { $after } % after.
 test-gain = Normalised gain: { $gain }
-test-gain_means = Of what the class did not know before, it has learned this share: (after − before) / (100 % − before).
+test-gain_means = The class has learned this share of what it did not know before: (after − before) / (100 % − before).
 test-gain_none = Normalised gain: not defined, since all answers were right before.
 test-waiting = { $part } of { $all } have handed in the test before the course, { $after } the one after it.
 test-number = No.
@@ -289,7 +289,7 @@ class-ask_again = Ask this again, after a discussion
 class-show_answers = Show what the class has answered
 class-first = First answer
 class-second = After the discussion
-class-unknown = { $count } answered an earlier version of the question; what they chose cannot be known.
+class-unknown = { $count } answered an earlier version of the question; their choices can no longer be known.
 class-code_for_all = Type this code under “Class”:
 class-count = { $count } in the class
 class-name = Nickname
@@ -383,12 +383,12 @@ aim-theta_ref = aims at its reference point
 ## The page: what is always there
 
 connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
-page-scene = Two robots that follow a path, seen from the front. What they do is said as it happens; the keys of the lab are under “Help and keys”.
+page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-viewer = Settings of the viewer
 number-none = “{ $typed }” is not a number. The value is still { $value }; 0.5 and 1e9 are numbers.
 number-changed = “{ $typed }” is not possible here: it is { $value } now.
-number-grouped = “{ $typed }” has been read as { $value }: a thousand is 1000, without a mark between its digits.
+number-grouped = “{ $typed }” was read as { $value }: write a thousand as 1000, without a mark between its digits.
 number-empty = An empty box keeps its value: { $value }.
 
 spoken-running = Running.
@@ -460,7 +460,7 @@ laws-bounds = Every law's integral is limited: K3 moves the balance by at most {
 laws-source = Source: { $source }
 laws-own_text = A line across = … gives the acceleration across the path in m/s², a line along = … that along it in rad/s²; or u1 = …, u2 = … give the torques of all motors in N m.
 laws-own_space = On a robot that moves in space, across2 = … is the acceleration along the second normal.
-laws-own_language = A formula has numbers, the names below, + - * /, ** with an exponent from 0 to { $most }, { $functions }, and a if xi > 0 else b, where a condition may have and, or and not.
+laws-own_language = A formula consists of numbers, the names below, + - * /, ** with an exponent from 0 to { $most }, { $functions }, and a if xi > 0 else b, where a condition may have and, or and not.
 laws-name = Name
 laws-meaning = Meaning
 laws-unit = Unit
@@ -476,7 +476,7 @@ run-direction = Hold
 run-direction_along = along the path
 run-direction_across = across the path
 run-direction_both = in both directions
-run-direction_hint = In which directions a brake holds the end-points; in the others they are free
+run-direction_hint = Directions in which a brake holds the end-points; in the others they are free
 run-run = Run
 run-pause = Pause
 run-run_hint = Simulated time stops. Key: space
@@ -524,7 +524,7 @@ design-path_hint = Both robots follow it. Drag its points in the scene to bend i
 design-own = a path of your own
 design-refused = { $path } (is refused)
 design-draw = Draw freehand
-design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to leave it.
+design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to cancel.
 design-edit = Edit
 design-undo = Undo
 design-redo = Redo
@@ -535,7 +535,7 @@ design-selected = Selected
 design-selected_hint = Number of the control point; 0: none
 design-coordinate = { $name } [mm]
 design-arrows = The arrow keys move the selected point by 1 mm; N selects the next one. To drag a point that the end-point covers, select it first.
-design-slanted = The path lies in the plane y₁ = b y₂ + d of (23). What is a circle of (y₂, y₃) is an ellipse in space, as in the paper. Its centre is at y₂ = 0 and the height below; the paper's, y₃ = ℓ₁, is out of this arm's reach. With another plane the run begins anew.
+design-slanted = The path lies in the plane y₁ = b y₂ + d of (23). A circle in (y₂, y₃) is an ellipse in space, as in the paper. Its centre is at y₂ = 0 and the height below; the paper's, y₃ = ℓ₁, is out of this arm's reach. With another plane the run begins anew.
 design-slanted_circle = ellipse of (23)
 design-rank = Rank test (11) along the path: at least **{ $number }** of 1.
 design-zone = Show singular zone
@@ -654,7 +654,7 @@ past-ago_hint = Pauses and shows the lab as it was
 past-go_on = Go on from here
 past-go_on_hint = Discards what came after; can be undone. Run returns to the present instead. Key: G
 past-undo = Restore what was discarded
-past-undo_hint = Takes back “Go on from here”, and sets aside what was done since. Key: U
+past-undo_hint = Reverses “Go on from here”, and sets aside what was done since. Key: U
 
 export-title = Export
 export-table = CSV, last 60 s
@@ -679,7 +679,7 @@ compare-distance = largest distance to the path  [mm]
 compare-delay = delay at the end  [s]
 compare-force = largest force  [N]
 compare-stopped = stopped
-compare-stopped_text = “stopped”: at one of the places at least, the motion diverged and the simulation was ended.
+compare-stopped_text = “stopped”: at one or more of the places, the motion diverged and the simulation was ended.
 compare-picture = Largest distance to the path over delay at the end, for each law
 compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
 obstruction-none = nothing
@@ -819,7 +819,7 @@ guide-curves = The true curves of both robots
 guide-solution = A solution
 guide-why = Why it works:
 guide-test = Concept test
-guide-test_intro = The same questions before and after the course. Open them for the class on the page “Predictions”; the answers are told when the second test is handed in, so do not discuss them before. The class's normalised gain is then on the same page and in the CSV, without names.
+guide-test_intro = The same questions before and after the course. Open them for the class on the page “Predictions”; the answers are shown when the second test is handed in, so do not discuss them before. The class's normalised gain is then on the same page and in the class record, without names.
 guide-aims = Aims at the belief:
 guide-at = at { $time } s: { $what }
 guide-pull = pull by { $right } mm to the right and { $up } mm up
@@ -845,10 +845,10 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the r
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
 say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
-say-deviates = The path is smooth: in places it is { $deviation } mm away from the lines between the given points.
+say-deviates = The path is smooth: at some places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
-say-begun_anew = With this change, both robots have begun anew, at the start.
+say-begun_anew = With this change, both robots have restarted.
 say-ramps_at_start = The speed ramps up from the start of a run: press Reset to see it.
 say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo
@@ -857,7 +857,7 @@ say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
 say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
 say-present = Back in the present.
-say-set_up = The lab is set up from the code. Undo in the path editor brings the former path back.
+say-set_up = The lab is set up from the code. Undo in the path editor restores the previous path.
 say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded; key U restores them.
 say-brought_back = Back at { $time } s, as it was before going on. What was done instead is set aside; key U changes back to it.
 
@@ -946,7 +946,7 @@ cause-poles_across = these gains are unstable across the path at this control ra
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
 cause-limit = the motors were at their limit of { $limit } N m (raise it, or lower the speed)
 cause-force = a force of { $force } N acted on it
-cause-far = it was where the closest point is not to be trusted
+cause-far = it was at a place where the closest point is unreliable
 cause-turned = it turned by { $turned } rad in a control interval (a faster controller helps)
 cause-model = the controller's model is wrong (set the payload and the model's errors to 0)
 
@@ -961,7 +961,7 @@ error-stroke_without_points = a stroke needs points
 error-points_coincide = a path needs at least { $least } points apart from each other
 error-path_too_short = the path is too short: { $length } mm, at least { $least } mm
 error-path_takes_no_numbers = the path { $name } takes no numbers
-error-half_a_point = half a point: a path needs as many x as y
+error-half_a_point = a point is incomplete: a path needs as many values of x as of y
 error-points_out_of_bounds = 2 to { $most } points, within { $reach } m of the middle
 error-coefficients = a drawn path has { $wanted } coefficients, not { $count }
 error-implicit_lines =
@@ -973,7 +973,7 @@ error-implicit_lines =
 error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
 error-no_level_set = this path has no level set s(y): only circles and ellipses have one here, and on the command line paths with an equation
 error-level_no_polynomial = only a polynomial of z1 and z2 is followed by its level set; any path with an equation is followed by its distance
-error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s does not point away from it any more, and the tube around the path is { $tube } mm wide
+error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s no longer points away from it, and the tube around the path is { $tube } mm wide
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 ## Refusals: numbers and names
@@ -998,8 +998,8 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 ## Refusals: a law that is typed (models/control/laws)
 
-error-no_translation = { $owner } uses CasADi's operation { $operation }, which cannot be translated to { $target }
-error-law_cannot_run = a law of one's own is not possible with this robot and these settings
+error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
+error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
 error-law = line { $line }, column { $column }: { $reason }
@@ -1052,7 +1052,7 @@ error-table_quotes = line { $line }: a quotation mark is missing or out of place
 error-table_no_column = line { $line }: there is no column { $name }
 error-table_column_twice = line { $line }: there are several columns { $name }
 error-table_cells = line { $line }: expected { $wanted } cells, got { $count }
-error-table_empty = line { $line }: there are no rows after the names of the columns
+error-table_empty = line { $line }: no rows follow the names of the columns
 error-table_not_a_number = line { $line }, column { $column }: { $text } is not a number
 error-table_large_number = line { $line }, column { $column }: { $text } is out of range
 error-table_decimal_sign =
@@ -1061,7 +1061,7 @@ error-table_decimal_sign =
        *[point] point
     }; digits cannot be grouped
 error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
-error-record_of_one_row = line { $line }: a single row of a law is no motion
+error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
 
@@ -1085,13 +1085,13 @@ error-session_code_letters = this is not a session code: 0, 1, i, l and o do not
 
 error-database = the database reports: { $reason }
 error-database_at = cannot use { $place }: { $reason }
-error-database_keeps_breaking = the database breaks again and again
+error-database_keeps_breaking = the database fails again and again
 error-database_busy = the database is busy
 error-database_table = its table { $table } is not OnPath's
-error-database_tables_newer = its tables ({ $revision }) are of a newer OnPath, which is needed here
-error-database_newer = it is of version { $version }, made by a newer OnPath, which is needed here
-error-lab_newer = this lab was kept by a newer OnPath
-error-lab_unreadable = what was kept of this lab cannot be read
+error-database_tables_newer = its tables ({ $revision }) were made by a newer OnPath, which is needed here
+error-database_newer = it has version { $version } and was made by a newer OnPath, which is needed here
+error-lab_newer = this lab was stored by a newer OnPath
+error-lab_unreadable = the stored state of this lab cannot be read
 say-laws_of_then = This OnPath does not have these laws or gains, which were kept with this lab: { $names }. It goes on without them.
 say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }

@@ -10,15 +10,15 @@ from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
-from onpath.lessons.words import Words
+from onpath.lessons.words import Words, language_name
 
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
     "img-src 'self' data:; base-uri 'none'; form-action 'none'"
 )
-"""The pages' Content-Security-Policy: scripts and styles of the site alone, no eval but
-WebAssembly, pictures of the site and of the lessons' texts, no request to anybody else."""
-SAID = (
+"""The pages' Content-Security-Policy: only scripts and styles of the site, no eval except
+WebAssembly, pictures of the site and of the lessons' texts, no requests to other servers."""
+MESSAGES = (
     *("lesson.playing", "lesson.replay", "lesson.play", "lesson.yours", "lesson.right"),
     *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
     *("lesson.drawn", "lesson.numbers", "lesson.passed", "lesson.predict_before", "lesson.finish"),
@@ -32,7 +32,7 @@ SAID = (
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A picture of a run: its file, and what it shows."""
+    """A picture of a run: its file, and a description in words."""
 
     address: str
     text: str
@@ -55,7 +55,7 @@ def start_page(
 
     Args:
         figure: data of the free lab's figure.
-        around: what all pages have: their own start page, and the same page in other languages.
+        around: fields of every page: the address of its start page, and its other languages.
     """
     lessons = {
         entry.lesson.name: {
@@ -65,20 +65,20 @@ def start_page(
         }
         for entry in entries
     }
-    data = {"words": _said(words), "lesson": "", "figures": [figure], "lessons": lessons}
-    shown = {"description": words("site.intro"), "entries": entries}
-    return _page("start", words, words("site.title"), data, around, **shown)
+    data = {"words": _messages(words), "lesson": "", "figures": [figure], "lessons": lessons}
+    fields = {"description": words("site.intro"), "entries": entries}
+    return _page("start", words, words("site.title"), data, around, **fields)
 
 
 def entry_of(lesson: Lesson, number: str, address: str, words: Words) -> LessonEntry:
-    """A lesson in the list."""
+    """A lesson's entry in the list of the start page."""
     minutes, optional = lesson_minutes(lesson)
     facts = [words("lesson.minutes", minutes=minutes)]
     if optional:
         facts.append(words("lesson.minutes_optional", minutes=optional))
     if lesson.language != words.language:
         facts.append(words("lesson.english"))
-    return LessonEntry(number, lesson, address, facts)
+    return LessonEntry(number=number, lesson=lesson, address=address, facts=facts)
 
 
 def lesson_page(
@@ -94,17 +94,17 @@ def lesson_page(
     """The page of a lesson.
 
     Args:
-        steps: with their figures' modules replaced by the names of their files.
-        pictures: by number of the step.
+        steps: the steps; their figures have names of files in place of modules.
+        pictures: pictures by number of the step.
         following: address and title of the next lesson, if there is one.
-        scorm: version of the package to which the page belongs.
+        scorm: version of the SCORM package to which the page belongs, if any.
     """
     figures = list[dict[str, Any]]()
     for step in steps:
         if step.figure and step.figure not in figures:
             figures.append(step.figure)
     data = {
-        "words": _said(words) | check_words(words),
+        "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
         "scorm": scorm,
         "figures": figures,
@@ -114,9 +114,9 @@ def lesson_page(
         ],
     }
     title = f"{number}. {lesson.front.title} · OnPath"
-    shown = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
-    shown |= {"description": lesson.front.summary, "next": following}
-    return _page("lesson", words, title, data, around, **shown)
+    fields = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
+    fields |= {"description": lesson.front.summary, "next": following}
+    return _page("lesson", words, title, data, around, **fields)
 
 
 def site_style() -> str:
@@ -125,20 +125,22 @@ def site_style() -> str:
 
 
 def _page(
-    name: str, words: Words, title: str, data: Any, around: dict[str, Any], **shown: Any
+    name: str, words: Words, title: str, data: Any, around: dict[str, Any], **fields: Any
 ) -> str:
-    shown |= {"words": words, "title": title, "policy": POLICY, "data": json_block(data)}
-    return environment().get_template(f"site/{name}.html").render({**shown, **around})
+    fields |= {"words": words, "title": title, "policy": POLICY, "data": json_block(data)}
+    fields["language_name"] = language_name
+    return environment().get_template(f"site/{name}.html").render({**fields, **around})
 
 
-def _said(words: Words) -> dict[str, str]:
-    said = {key: words(key) for key in SAID}
-    said["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
-    said["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
-    said["lesson.at"] = words("lesson.at", time="{time}", unit="{unit}")
-    said["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
-    said["site.refused"] = words("site.refused", reason="{reason}")
-    said["site.cut"] = words("site.cut", most="{most}")
-    drawn = {name: f"{{{name}}}" for name in ("quantity", "unit", "seconds")}
-    said["site.sketch"] = words("site.sketch", **drawn)
-    return said | {"point": words("report.point")}
+def _messages(words: Words) -> dict[str, str]:
+    """The messages of a page's script; it fills in the {names} in them."""
+    messages = {key: words(key) for key in MESSAGES}
+    messages["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
+    messages["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
+    messages["lesson.at"] = words("lesson.at", time="{time}", unit="{unit}")
+    messages["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
+    messages["site.refused"] = words("site.refused", reason="{reason}")
+    messages["site.cut"] = words("site.cut", most="{most}")
+    names = {name: f"{{{name}}}" for name in ("quantity", "unit", "seconds")}
+    messages["site.sketch"] = words("site.sketch", **names)
+    return messages | {"point": words("report.point")}

@@ -1,4 +1,4 @@
-"""Pictures of the runs of a lesson, for readers whose browser runs no scripts, and for print."""
+"""Pictures of the runs of a lesson, for browsers without scripts and for print."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from onpath.lessons.schema import Lesson, Sketch
 from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words
 
-ROUND = (1.0, 2.0, 5.0, 10.0)  # tops of an axis, times a power of ten
+ROUND = (1.0, 2.0, 5.0, 10.0)  # upper ends of an axis, times a power of ten
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +24,8 @@ class RunPicture:
     """A picture of a run.
 
     Attributes:
-        svg: the file.
-        text: what it shows, in words.
+        svg: content of the file.
+        text: description of the picture.
     """
 
     svg: bytes
@@ -33,7 +33,7 @@ class RunPicture:
 
 
 def shown_sketch(lesson: Lesson, index: int) -> Sketch | None:
-    """The sketch that a run is compared with: of its own step, or of the one before."""
+    """The sketch with which a run is compared, from its own step or the one before."""
     for step in (lesson.steps[index], *lesson.steps[max(index - 1, 0) : index]):
         for prediction in step.predictions():
             if isinstance(prediction, Sketch):
@@ -42,7 +42,7 @@ def shown_sketch(lesson: Lesson, index: int) -> Sketch | None:
 
 
 def run_truth(lesson: Lesson, index: int, store: LoopCache) -> Truth | None:
-    """What happens in a step with a script; None if it has none."""
+    """The result of a step's script; None if it has none."""
     step, sketch = lesson.steps[index], shown_sketch(lesson, index)
     if step.script is None:
         return None
@@ -54,7 +54,7 @@ def run_truth(lesson: Lesson, index: int, store: LoopCache) -> Truth | None:
 
 
 def run_picture(lesson: Lesson, index: int, truth: Truth, words: Words) -> RunPicture:
-    """The picture of a run, in the axes of its prediction if that was a sketch."""
+    """The picture of a run, on the axes of its prediction if that is a sketch."""
     step, sketch = lesson.steps[index], shown_sketch(lesson, index)
     assert step.script is not None
     if sketch is None:
@@ -66,14 +66,14 @@ def run_picture(lesson: Lesson, index: int, truth: Truth, words: Words) -> RunPi
         f"{names[robot]} {words.number(max(getattr(truth, robot), key=abs), 3)}"
         for robot in ("tracker", "follower")
     ]
-    said = words(
+    text = words(
         "site.picture",
         quantity=words(f"quantity.{truth.quantity}"),
         unit=QUANTITIES[truth.quantity],
         seconds=words.number(sketch.seconds),
         peaks=", ".join(peaks),
     )
-    return RunPicture(base64.b64decode(uri.partition(",")[2]), said)
+    return RunPicture(base64.b64decode(uri.partition(",")[2]), text)
 
 
 def _top(most: float) -> float:

@@ -16,7 +16,7 @@ Version = Literal["1.2", "2004"]
 TEMPLATES: dict[Version, str] = {"1.2": "imsmanifest_12.xml", "2004": "imsmanifest_2004.xml"}
 MANIFEST = "imsmanifest.xml"
 DATE = (1980, 1, 1, 0, 0, 0)
-"""Of all files, so that the same lesson gives the same package."""
+"""Date of all files, so that the same lesson gives the same package."""
 
 
 def write_package(

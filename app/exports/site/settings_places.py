@@ -1,4 +1,4 @@
-"""Which numbers of a figure's settings a parameter sets, and what they are for a value."""
+"""The numbers that a parameter sets in a figure's settings."""
 
 from __future__ import annotations
 
@@ -19,21 +19,21 @@ Writes = list[tuple[int, float]]
 
 
 class Unsupported(ValueError):
-    """A page without a server cannot do it, because other loops or numbers would be needed."""
+    """A page without a server cannot do this, because it would need other loops or numbers."""
 
 
 def writes(figure: FigureChoice, values: Mapping[str, Value], before: Parameters) -> Writes:
-    """What has to be written into the settings so that some parameters have other values.
+    """The numbers to write into the settings to give some parameters other values.
 
     Args:
-        before: the parameters until then.
+        before: the parameters before the change.
 
     Raises:
-        Unsupported: the loop would be another one, or the sides would need different numbers.
+        Unsupported: another loop would be needed, or different numbers for the sides or paths.
     """
     after = with_values(before, values)
     per_side = [_writes(figure, law, values, before, after) for law in figure.laws]
-    if any(own != per_side[0] for own in per_side):
+    if any(each != per_side[0] for each in per_side):
         raise Unsupported(f"{', '.join(values)}: another number for each side")
     return per_side[0]
 
@@ -56,8 +56,8 @@ def _writes(
     for curve in curves:
         if not _goes_on(figure, law, curve, before, after):
             raise Unsupported(f"{', '.join(values)}: another loop")
-        now, then = (figure.settings(law, curve, own) for own in (before, after))
-        found |= set(np.flatnonzero(now != then).tolist())
+        old, new = (figure.settings(law, curve, each) for each in (before, after))
+        found |= set(np.flatnonzero(old != new).tolist())
     for place in sorted(found):
         numbers = {float(figure.settings(law, curve, after)[place]) for curve in curves}
         if len(numbers) > 1:
@@ -76,25 +76,25 @@ def _others(parameters: Parameters, name: str) -> Iterator[Parameters]:
 def _differing(
     figure: FigureChoice, law: str, curve: Curve, after: Parameters, other: Parameters, name: str
 ) -> set[int]:
-    """Places that depend on one parameter, whatever its value was before."""
+    """Places that depend on one parameter, whatever its previous value."""
     swapped = changed(after, name, value_of(other, name))
     if not _goes_on(figure, law, curve, after, swapped):
         return set()
-    now, then = (figure.settings(law, curve, own) for own in (after, swapped))
-    return set(np.flatnonzero(now != then).tolist())
+    old, new = (figure.settings(law, curve, each) for each in (after, swapped))
+    return set(np.flatnonzero(old != new).tolist())
 
 
 def _goes_on(
     figure: FigureChoice, law: str, curve: Curve, before: Parameters, after: Parameters
 ) -> bool:
-    """Whether the same loop and the same states serve for both."""
-    own, other = (dataclasses.replace(figure, parameters=each) for each in (before, after))
+    """Whether the same loop and the same first state serve both."""
+    old, new = (dataclasses.replace(figure, parameters=each) for each in (before, after))
     try:
         check_level_set(after, curve)
         return (
-            own.kind(law, curve) == other.kind(law, curve)
+            old.kind(law, curve) == new.kind(law, curve)
             and time_step(before) == time_step(after)
-            and np.array_equal(own.start(law, curve), other.start(law, curve))
+            and np.array_equal(old.start(law, curve), new.start(law, curve))
         )
     except ValueError:
         return False

@@ -1,4 +1,4 @@
-"""What scripts and links of a lesson do in a figure, as data for its page."""
+"""The scripts and links of a lesson as data for a figure's page."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def script_acts(script: Script, figure: FigureChoice) -> dict[str, Any]:
 
 
 def link_acts(actions: Iterable[Action], figure: FigureChoice) -> list[Act]:
-    """What a link does, as data.
+    """The actions of a link as data.
 
     Raises:
         Unsupported: a figure cannot do one of its actions.
@@ -45,7 +45,7 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
     """One action as data.
 
     Args:
-        parameters: those until then.
+        parameters: the parameters before the action.
 
     Raises:
         Unsupported: a figure cannot do it.
@@ -68,12 +68,12 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
 
 
 def _side(only: RobotName | str) -> int | None:
-    """Number of the side that an action concerns; None: all."""
+    """Number of the side that an action concerns; None: both."""
     return list(ROBOTS).index(only) if only in ROBOTS else None  # type: ignore[arg-type]
 
 
 def _in_picture(figure: FigureChoice, by: tuple[float, float]) -> list[float]:
-    """A displacement in the path's plane, [mm], as one in the picture, [m]."""
+    """A displacement in the path's plane, [mm], as a displacement in the picture, [m]."""
     robot, curve = figure.machine, next(iter(figure.paths.values()))
     place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
     y = robot.frame.lift(np.zeros(2))

@@ -1,4 +1,4 @@
-"""A step of a lesson as its page needs it: the words as HTML, the rest as data."""
+"""A step of a lesson for its page: the texts as HTML, the rest as data."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class SiteBlock:
 
     Attributes:
         kind: see `onpath.lessons.schema.KINDS`.
-        here: of a task, whether it can be done on the page.
+        here: whether a task can be done on the page; True for other parts.
     """
 
     kind: str
@@ -49,10 +49,10 @@ class SiteStep:
     """A step of a lesson.
 
     Attributes:
-        number: from 1.
-        blocks: its parts.
-        data: for the page's script; see assets/site/data.ts.
-        figure: data of its figure; empty if only the lab can show it.
+        number: number of the step, from 1.
+        blocks: parts of the step.
+        data: data for the page's script; see assets/site/data.ts.
+        figure: data of the step's figure; empty if only the lab can show it.
         lacking: what only the lab has here, in words; may be empty.
         lab_only: whether its run can only be seen in the lab.
     """
@@ -69,7 +69,7 @@ class SiteStep:
 def site_step(
     lesson: Lesson, index: int, references: dict[str, Reference], words: Words
 ) -> SiteStep:
-    """A step for a page."""
+    """The step for its page."""
     step, figure = lesson.steps[index], step_figure(lesson, index)
     links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
     actions = [action for link in links for action in link.actions]
@@ -91,12 +91,19 @@ def site_step(
         "blocks": [_block(each, lesson, index, i, figure, words) for i, each in enumerate(blocks)],
     }
     lab_only = step.script is not None and script is None
-    shown = figure_of(figure, words) if figure.faithful else {}
-    return SiteStep(index + 1, step, blocks, data, shown, lacking_words(figure, words), lab_only)
+    return SiteStep(
+        number=index + 1,
+        step=step,
+        blocks=blocks,
+        data=data,
+        figure=figure_of(figure, words) if figure.faithful else {},
+        lacking=lacking_words(figure, words),
+        lab_only=lab_only,
+    )
 
 
 def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block:
-    """A block with what a text says without the student's own numbers, and with marks for them."""
+    """A block whose text has the default of each of the student's own numbers, and marks it."""
     if not isinstance(block, Text):
         return block
     html = marked(block.html, lesson.steps, index)
@@ -104,9 +111,9 @@ def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
-    """The settings that the step's tasks look at, as the step begins."""
+    """The settings that the step's tasks check, as they are when the step begins."""
     parameters, choice = figure.choice.parameters, figure.choice
-    own: dict[str, Any] = {
+    scene: dict[str, Any] = {
         "path": next(iter(choice.paths)),
         "robot": choice.robot,
         "left": choice.laws[0],
@@ -117,14 +124,14 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
     names = [c.name for task in step.tasks() for c in task.check if isinstance(c, Setting)]
     values = values_of(parameters)
     known = {name: values[name] for name in (*names, *choice.sliders) if name in values}
-    return {**known, **own}
+    return {**known, **scene}
 
 
 def _block(
-    own: SiteBlock, lesson: Lesson, index: int, place: int, figure: StepFigure, words: Words
+    part: SiteBlock, lesson: Lesson, index: int, place: int, figure: StepFigure, words: Words
 ) -> dict[str, Any]:
-    block, laws = own.block, lesson.laws_shown(index)
-    data: dict[str, Any] = {"kind": own.kind}
+    block, laws = part.block, lesson.laws_shown(index)
+    data: dict[str, Any] = {"kind": part.kind}
     if isinstance(block, Text):
         data["links"] = [figure.link(link.actions) for link in block.links]
         if block.when:
@@ -138,6 +145,6 @@ def _block(
         data["right"] = [option.right for option in block.options].index(True)
     elif isinstance(block, NumberQuestion):
         data |= {"number": block.number, "tolerance": block.tolerance}
-    elif isinstance(block, Task) and own.here:
+    elif isinstance(block, Task) and part.here:
         data |= task_data(block, figure.choice.parameters, lesson.scene_at(index).laws.named, words)
     return data

@@ -1,4 +1,4 @@
-"""The figure of a lesson's step: its set-up, what readers may change, and what only the lab has."""
+"""The figure of a step: its set-up, what readers may change, and what only the lab has."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from onpath.models.paths.path_design import presets
 
 ALWAYS = ("pull", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
-MOST = 8  # figures that are kept; those of one lesson follow each other
+MOST = 8  # figures in the cache; those of one lesson follow each other
 _SHARED: dict[Any, dict[str, Any]] = {}
 RECORDED = ("theta_rate", "speed", "xi", "xi_rate", "u")
 """Fields of a log row that the checks need, besides those of every figure."""
@@ -38,7 +38,7 @@ class StepFigure:
     Attributes:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
-        plots: of the lab's plots, those that the step shows there.
+        plots: plots that the step shows in the lab.
         faithful: whether the figure begins where the lab does; only then is it shown.
         changing: names of the parameters that sliders, links or the script change.
     """
@@ -59,7 +59,7 @@ class StepFigure:
             return None
 
     def link(self, actions: Iterable[Action]) -> list[Act] | None:
-        """What a link does; None if only the lab can do it."""
+        """The actions of a link as data; None if only the lab can do them."""
         if not self.faithful:
             return None
         try:
@@ -68,7 +68,7 @@ class StepFigure:
             return None
 
     def can_pass(self, task: Task, reference: Reference, links: Iterable[Action]) -> bool:
-        """Whether a reader has all that the task's reference solution uses."""
+        """Whether a reader has everything that the task's reference solution uses."""
         if any(isinstance(check, Better | Once) for check in task.check):
             return False
         within_reach = {*self.choice.sliders}
@@ -85,22 +85,22 @@ class StepFigure:
 
     @property
     def quantities(self) -> list[str]:
-        """Quantities that its page records."""
-        robot, own = self.choice.machine, list(QUANTITIES)
+        """Quantities that the page records."""
+        robot, names = self.choice.machine, list(QUANTITIES)
         if "deflection" not in robot.extras:
-            own = [name for name in own if name not in ("deflection", "energy")]
+            names = [name for name in names if name not in ("deflection", "energy")]
         if robot.system.p > 2 and "deflection" not in robot.extras:
-            own.remove("lag")  # the picture does not show distances in space
+            names.remove("lag")  # the picture does not show distances in space
         if self.choice.parameters.across == "level_set":
-            own = [name for name in own if not name.startswith("across")]
-        return own
+            names = [name for name in names if not name.startswith("across")]
+        return names
 
 
 def step_figure(lesson: Lesson, index: int) -> StepFigure:
     """The figure of a step.
 
     Raises:
-        ValueError: its set-up is none that a figure can show.
+        ValueError: a figure cannot show its set-up.
     """
     scene, step = lesson.scene_at(index), lesson.steps[index]
     robot = scene.robot or lesson.front.robot
@@ -122,7 +122,13 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     figure = replace(bare, sliders=sliders)
     set_by = (name for action in _actions(step) for name in action.set or {})
     changing = frozenset((*sliders, *set_by))
-    return StepFigure(figure, tuple(lacking), scene.plots, not scene.start.numbers, changing)
+    return StepFigure(
+        choice=figure,
+        lacking=tuple(lacking),
+        plots=scene.plots,
+        faithful=not scene.start.numbers,
+        changing=changing,
+    )
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
@@ -138,7 +144,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     return {
         **data,
         "log": data["log"] | places,
-        "laws": [{**law, "stops": own} for law, own in zip(data["laws"], stops, strict=True)],
+        "laws": [{**law, "stops": texts} for law, texts in zip(data["laws"], stops, strict=True)],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
         "names": choice.sliders,
@@ -157,7 +163,7 @@ def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
 
 
 def lacking_words(figure: StepFigure, words: Words) -> str:
-    """What a step has in the lab and not here, in words; empty if it has all."""
+    """What a step has only in the lab, in words; empty if nothing."""
     known = specs(type(figure.choice.parameters))
     named = [
         setting_label(name, figure.choice.parameters, words)
@@ -170,21 +176,21 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
 
 
 def _paths(lesson: Lesson, index: int, scene: StepSetup) -> list[str]:
-    """The step's path, and those that its links and its script choose."""
+    """The step's path, and those that its links and script choose."""
     actions = _actions(lesson.steps[index])
     paths = [scene.path or "circle", *(action.path for action in actions if action.path)]
     return list(dict.fromkeys(paths))
 
 
 def _actions(step: Step) -> list[Action]:
-    """What a step's links and its script do."""
+    """The actions of a step's links and script."""
     links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
     actions = [action for link in links for action in link.actions]
     return actions + list(step.script.do if step.script else ())
 
 
 def _possible(figure: FigureChoice, names: Iterable[str]) -> dict[str, Curve]:
-    """The presets of these names that the robot can follow."""
+    """The presets with these names that the robot can follow."""
     margin, parameters = figure.machine.margin, figure.parameters
     curves = {name: presets()[name].curve for name in names}
     return {n: c for n, c in curves.items() if not curve_faults(margin, raised(c, parameters))}

@@ -28,7 +28,7 @@ from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 
-SAID = {
+MESSAGES = {
     "check.bound": ("robot", "stat", "during", "value", "unit", "wanted"),
     "check.compare": ("larger", "stat", "during", "ratio", "wanted"),
     "check.seconds": ("have", "need"),
@@ -39,13 +39,16 @@ SAID = {
     "check.only": ("others",),
     "check.stopped": ("robot",),
 }
-"""Messages, and the values that the page fills in."""
+"""Messages of the checks, with the names of the values that the page fills in."""
 
 
 def check_words(words: Words) -> dict[str, str]:
     """The messages of the checks, with places for their values."""
-    said = {key: words(key, **{n: f"{{{n}}}" for n in names}) for key, names in SAID.items()}
-    return said | {"point": words("report.point")}
+    messages = {
+        key: words(key, **{name: f"{{{name}}}" for name in names})
+        for key, names in MESSAGES.items()
+    }
+    return messages | {"point": words("report.point")}
 
 
 def task_data(
@@ -54,20 +57,20 @@ def task_data(
     """A task for a page.
 
     Args:
-        parameters, laws: of the step's set-up.
+        parameters, laws: parameters and laws of the step's set-up.
     """
-    said = robot_names(laws, words)
-    checks = [check_data(check, parameters, said, words) for check in task.check]
+    robots = robot_names(laws, words)
+    checks = [check_data(check, parameters, robots, words) for check in task.check]
     return {"id": task.id, "best": task.best, "checks": checks}
 
 
 def check_data(
     check: Check, parameters: Parameters, robots: dict[Any, str], words: Words
 ) -> dict[str, Any]:
-    """A check with all its fields, and `said`: the words of it that do not change.
+    """A check with all its fields, and `said`: those of its words that do not change.
 
     Args:
-        robots: displayed names.
+        robots: displayed names of the robots.
     """
     return {**msgspec.to_builtins(check), **_more(check, parameters, robots, words)}
 
@@ -131,7 +134,7 @@ def _(check: Setting, parameters: Parameters, robots: dict[Any, str], words: Wor
 
 
 def _named(setting: str) -> Iterable[str]:
-    """The values of a setting that is no parameter, as far as they have names."""
+    """The values of a setting that is not a parameter, if they have names."""
     if setting in DEFAULT_LAWS:
         return (*LAWS, OWN)
     return {"path": (*presets(), OWN), "robot": ROBOTS}.get(setting, ())

@@ -1,4 +1,4 @@
-"""Writes the course as a folder of pages, which need no server."""
+"""Writes the course as a folder of pages that need no server."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from onpath.lessons.words import DEFAULT, Words
 from onpath.models.paths.path_design import presets
 
 SHARED = "site"
-"""Folder of what the pages share: script, style, kernels, pictures."""
+"""Folder of the files that pages share: script, style, kernels, pictures."""
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
 
@@ -41,7 +41,7 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
 
     Args:
         home: contains the lessons' own folders.
-        languages: codes; the pages of the first one have plain names.
+        languages: language codes; the pages of the first one have plain names.
 
     Raises:
         ValueError: the folder holds something else, or a lesson cannot be shown.
@@ -49,7 +49,13 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
     with _whole_folder(folder) as scratch:
         _write_shared(scratch)
         truths = _truths(course, course.lessons)
-        writer = _Writer(scratch, course, home, list(languages), truths)
+        writer = _Writer(
+            folder=scratch,
+            course=course,
+            home=home,
+            languages=list(languages),
+            truths=truths,
+        )
         writer.write()
 
 
@@ -59,15 +65,22 @@ def write_lesson(
     """Write one lesson into an empty folder, and return the address of its page in it.
 
     Args:
-        scorm: version of the package to which it belongs.
+        scorm: version of the SCORM package to which it belongs.
     """
     _write_shared(folder)
-    writer = _Writer(folder, course, home, [language], _truths(course, [name]), scorm)
+    writer = _Writer(
+        folder=folder,
+        course=course,
+        home=home,
+        languages=[language],
+        truths=_truths(course, [name]),
+        scorm=scorm,
+    )
     return writer.lesson(name, Words(language))
 
 
 def _write_shared(folder: Path) -> None:
-    """Script and style of all pages, and folders for the rest that they share."""
+    """Write the script and style of all pages, and make folders for the other shared files."""
     shared = folder / SHARED
     (shared / "kernels").mkdir(parents=True)
     (shared / "pictures").mkdir()
@@ -88,7 +101,7 @@ class _Writer:
         truths: Mapping[tuple[str, int], Truth],
         scorm: str | None = None,
     ) -> None:
-        """With the version of a package, pages know of no others."""
+        """Pages of a SCORM package, with its version in `scorm`, have no links to others."""
         self._folder, self._course, self._home = folder, course, home
         self._languages, self._truths, self._scorm = languages, truths, scorm
 
@@ -133,20 +146,20 @@ class _Writer:
         steps = [self._completed(name, step) for step in steps]
         pictures = dict(self._pictures(name, steps, words))
         page = lesson_page(
-            lesson,
-            self._course.numbers()[name],
-            steps,
-            pictures,
-            self._following(name, words),
-            words,
-            self._around(name, words),
-            self._scorm,
+            lesson=lesson,
+            number=self._course.numbers()[name],
+            steps=steps,
+            pictures=pictures,
+            following=self._following(name, words),
+            words=words,
+            around=self._around(name, words),
+            scorm=self._scorm,
         )
         self._write(name, words, page)
         return self._address(name, words.language)
 
     def _completed(self, name: str, step: SiteStep) -> SiteStep:
-        """A step with shared kernels, and with what happens if only the lab can play it."""
+        """A step with shared kernels, and with the true curves if only the lab can play it."""
         truth = self._truths.get((name, step.number - 1)) if step.lab_only else None
         curves = ("times", "tracker", "follower")
         more = {"truth": {each: getattr(truth, each) for each in curves}} if truth else {}
@@ -175,7 +188,7 @@ class _Writer:
             yield step.number, Picture(address, picture.text)
 
     def _shared_kernels(self, figure: dict[str, Any]) -> dict[str, Any]:
-        """The figure with the name of a script in place of its module, which other pages share."""
+        """The figure, with its module moved to a script that pages share, and named by it."""
         if not figure:
             return figure
         module = figure["module"]
@@ -190,9 +203,9 @@ class _Writer:
 
 
 def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
-    """What happens in all steps of lessons with a script, by lesson and index."""
+    """The results of all steps with a script, by lesson and index of the step."""
     store = LoopCache()
-    store.close()  # nothing is compiled for one run
+    store.close()  # compiling is not worth it for one run
     found = dict[tuple[str, int], Truth]()
     for name in names:
         lesson = course.lesson(name, DEFAULT)
@@ -205,10 +218,10 @@ def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth
 
 @contextmanager
 def _whole_folder(folder: Path) -> Iterator[Path]:
-    """A folder beside it that becomes it once all is written.
+    """A temporary folder, which replaces `folder` once everything is written.
 
     Raises:
-        ValueError: it cannot be written, or has something in it that is no site.
+        ValueError: `folder` cannot be written, or contains something other than a site.
     """
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder}: that is a file")

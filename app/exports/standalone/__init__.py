@@ -1,1 +1,1 @@
-"""Pages that need no server: a figure with one or two sides in one file."""
+"""Pages without a server: a figure with one or two sides in one file."""

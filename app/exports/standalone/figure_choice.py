@@ -1,4 +1,4 @@
-"""What a figure shows: robot, laws, paths, parameters, and which of them its readers may change."""
+"""What a figure shows: robot, laws, paths and parameters, and what readers may change."""
 
 from __future__ import annotations
 
@@ -35,8 +35,8 @@ from onpath.models.systems.parameters import Parameters, rise_of
 from onpath.models.systems.robots import Robot
 
 CONTROLS = ("hold", "pull", "drag", "run", "step", "reset", "path", "plot", "poles")
-"""What a reader may do or see: hold robots back, pull them, drag points of the path, pause, choose
-a path, the plot, the poles of the laws."""
+"""What a reader may do or see: hold robots back, pull them, drag points of the path, run or pause,
+step, reset, choose a path, see the plot and the poles of the laws."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,12 @@ class FigureChoice:
 
     Attributes:
         robot: name in the catalogue.
-        laws: of the sides, from left to right: one or two.
-        paths: name -> curve; it begins with the first one.
-        parameters: of the robot, the laws and the task.
-        sliders: names of parameters that readers may change; each is a number of the settings.
+        laws: laws of the sides, from left to right: one or two.
+        paths: name -> curve; the figure begins with the first one.
+        parameters: parameters of the robot, the laws and the task.
+        sliders: names of parameters that readers may change; each sets one number of the settings.
         controls: some of `CONTROLS`.
-        choices: further laws, which readers may choose for each side.
+        choices: further laws that readers may choose for each side.
     """
 
     robot: str
@@ -63,7 +63,7 @@ class FigureChoice:
 
     @property
     def every_law(self) -> tuple[str, ...]:
-        """The laws of the sides, then those to choose besides, each once."""
+        """The laws of the sides and then the further ones, each once."""
         return tuple(dict.fromkeys((*self.laws, *self.choices)))
 
     @property
@@ -96,10 +96,11 @@ class FigureChoice:
         return robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
 
     def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
-        """The settings of a side, with nothing in its way."""
-        own = parameters or self.parameters
+        """The settings of a side that nothing obstructs."""
+        parameters = parameters or self.parameters
         kernel = self.kernel(law, curve)
-        return settings_vector(self.machine, kernel, own, raised(curve, own), FREE)
+        followed = raised(curve, parameters)
+        return settings_vector(self.machine, kernel, parameters, followed, FREE)
 
 
 def chosen(
@@ -111,17 +112,17 @@ def chosen(
     controls: Sequence[str] | None = None,
     choices: Sequence[str] = (),
 ) -> FigureChoice:
-    """Check a choice.
+    """The figure with these choices, checked.
 
     Args:
         robot, laws, paths, choices: see `FigureChoice`.
         values: parameters by name, where they differ from the robot's defaults.
-        sliders: None: the speed or the target, and the gains of the laws.
+        sliders: see `FigureChoice`; None: the speed or the target, and the gains of the laws.
         controls: see `FigureChoice`; None: all that are possible.
 
     Raises:
-        ValueError: an unknown name, a value out of range, a path that the robot cannot follow, or
-            a parameter that a slider of a page cannot set.
+        ValueError: a name is unknown, a value is out of range, the robot cannot follow a path, or
+            a slider cannot set a parameter.
     """
     if robot not in ROBOTS:
         raise unknown_name(robot, list(ROBOTS), "robot")
@@ -133,20 +134,28 @@ def chosen(
         raise ValueError("speed_profile: a figure has a constant speed")
     names, others = (tuple(map(law_name, each)) for each in (laws, choices))
     shown = _usual_sliders((*names, *others), parameters) if sliders is None else tuple(sliders)
-    figure = FigureChoice(robot, names, dict(paths or {}), parameters, shown, (), others)
+    figure = FigureChoice(
+        robot=robot,
+        laws=names,
+        paths=dict(paths or {}),
+        parameters=parameters,
+        sliders=shown,
+        controls=(),
+        choices=others,
+    )
     _check(figure)
     if controls is None:
         controls = [name for name in CONTROLS if refusal(figure, name) is None]
     for control in controls:
         if control not in CONTROLS:
             raise unknown_name(control, list(CONTROLS), "control")
-        if why := refusal(figure, control):
-            raise ValueError(f"control {control}: {why}")
+        if reason := refusal(figure, control):
+            raise ValueError(f"control {control}: {reason}")
     return dataclasses.replace(figure, controls=tuple(controls))
 
 
 def refusal(figure: FigureChoice, control: str) -> str | None:
-    """Why a figure cannot have a control; None if it can."""
+    """The reason why a figure cannot have a control; None if it can."""
     parameters = figure.parameters
     if control == "poles" and not any(law_named(law).linear for law in figure.every_law):
         return "none of the laws has poles that a figure computes"
@@ -160,7 +169,7 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
 
 
 def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
-    """The wanted motion, and the gains that act in one of the laws."""
+    """The parameter of the wanted motion, and the gains that act in one of the laws."""
     task, unused = ("speed", "K4") if parameters.task == "speed" else ("target", "")
     gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gain_names)
     return task, *(gain for gain in gains if gain != unused)
@@ -186,10 +195,10 @@ def _check(figure: FigureChoice) -> None:
 
 
 def check_slider(figure: FigureChoice, name: str) -> None:
-    """A slider puts its value into the settings, and changes nothing else.
+    """Check that a slider can set a parameter: its value is one number of the settings.
 
     Raises:
-        ValueError: it would have to change more.
+        ValueError: the parameter changes more than this number.
     """
     known = specs(type(figure.parameters))
     if name not in known:

@@ -1,4 +1,4 @@
-"""A figure as plain data: what its page shows, and which widget sets which number."""
+"""A figure as plain data: what its page shows, and the number that each widget sets."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ _EDIT = {
     "blend": BLEND,
     "nudge": NUDGE,
 }
-"""Sizes of vectors of models/web_export; and as in the lab: how often
-a refused way is halved, seconds of a blend, and the step of a key, [m]."""
+"""Sizes of vectors in models/web_export; and as in the lab, the halvings of a refused move, the
+duration of a blend, [s], and the step of a key, [m]."""
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
     *("hand_active", "hand_target"),
@@ -105,7 +105,7 @@ _SET = (
 
 
 def _colours(tones: Tones) -> dict[str, str]:
-    """Colours of the picture and of the plot, on a light page or on a dark one."""
+    """Colours of the picture and the plot, on a light or a dark page."""
     shown = {
         "path": tones.path,
         "force": tones.force,
@@ -121,7 +121,7 @@ def _colours(tones: Tones) -> dict[str, str]:
 
 
 def _places(layout: Any, names: tuple[str, ...]) -> dict[str, list[int]]:
-    """Name -> (place of the first number, how many) in a flat vector."""
+    """Name -> [index of the first number in a flat vector, how many there are]."""
     return {name: [(s := layout.slices[name]).start, s.stop - s.start] for name in names}
 
 
@@ -150,7 +150,7 @@ def _sides(figure: FigureChoice) -> list[dict[str, Any]]:
 
 
 def _choices(figure: FigureChoice) -> tuple[str, ...]:
-    """Laws from which a reader may choose."""
+    """The laws from which a reader may choose."""
     return figure.every_law if figure.choices else ()
 
 
@@ -172,10 +172,10 @@ def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
 def stop_texts(
     figure: FigureChoice, law: str, curve: Curve, any_output: bool, words: Words
 ) -> list[str]:
-    """Why a robot under a law may stop, in the order of the page's `fault`.
+    """The reasons why a robot under a law may stop, in the order of the page's `fault`.
 
     Args:
-        any_output: whether the output may change; the texts then hold for every output.
+        any_output: whether the output may change; the reasons then hold for every output.
     """
     kernel, start = figure.kernel(law, curve), figure.start(law, curve)
     q = None if any_output else kernel.state.unpack(start)["q"]
@@ -203,17 +203,17 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
 
 
 def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
-    """A slider: its words, its range, and the place of its number in the settings."""
+    """A slider: its words, its range, and the index of its number in the settings."""
     spec = specs(type(figure.parameters))[name]
     kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
     unit = words.get(f"parameter.{name}.unit", spec.unit)
     place = kernel.settings.slices.get(name)
-    zero_is_a_step = spec.step * math.ceil(spec.low / spec.step)
+    low_on_grid = spec.step * math.ceil(spec.low / spec.step)  # so that 0 is one of the steps
     return {
         "label": words.get(f"parameter.{name}.label", spec.label),
         "unit": unit,
         "help": words.get(f"parameter.{name}.help", spec.help),
-        "low": zero_is_a_step if spec.low < 0 else spec.low,
+        "low": low_on_grid if spec.low < 0 else spec.low,
         "high": spec.high,
         "step": spec.step,
         "value": value_of(figure.parameters, name),
@@ -222,7 +222,7 @@ def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]
 
 
 def _box(figure: FigureChoice) -> list[float]:
-    """What the picture shows: left, right, bottom, top, [m]; robots may be off a path."""
+    """Bounds of the picture: left, right, bottom, top, [m], with a margin around the robots."""
     robot, corners = figure.machine, list[Array]()
     functions = page_functions(
         robot, figure.kind(figure.laws[0], next(iter(figure.paths.values())))
@@ -237,5 +237,5 @@ def _box(figure: FigureChoice) -> list[float]:
 
 
 def _rounded(points: Array) -> list[float]:
-    """Flat, to a hundredth of a millimetre."""
+    """The points as a flat list, rounded to a hundredth of a millimetre."""
     return (np.round(points.ravel(), 5) + 0.0).tolist()

@@ -1,4 +1,4 @@
-"""The WebAssembly module of a figure: its loops, and whatever else its page computes."""
+"""The WebAssembly module of a figure: its loops, and everything else that its page computes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
 
 
 def design_of(name: str, curve: Curve) -> PathDesign:
-    """A path of a figure with the control points that a lab would give it."""
+    """A path of a figure, with the control points that it would have in a lab."""
     known = presets()
     if name in known and known[name].curve is curve:
         return known[name]
@@ -37,34 +37,34 @@ def design_of(name: str, curve: Curve) -> PathDesign:
 
 
 def kind_name(figure: FigureChoice, curve: Curve) -> str:
-    """By which the page calls what belongs to paths of this kind, such as "distance.0"."""
-    own = tuple(figure.kind(law, curve) for law in figure.every_law)
-    return str(list(_kinds(figure)).index(own))
+    """The name of a path's kind, a suffix of the functions for such paths, as in "distance.0"."""
+    kinds = tuple(figure.kind(law, curve) for law in figure.every_law)
+    return str(list(_kinds(figure)).index(kinds))
 
 
 def fit_name(design: PathDesign) -> str:
-    """By which it calls what fits a curve to as many points."""
+    """The name of the function that fits a curve to as many points, after "spline."."""
     return f"{'closed' if design.curve.closed else 'open'}{len(design.points)}"
 
 
 def figure_module(figure: FigureChoice) -> bytes:
-    """Loops, functions and scans, named as the page calls them: "loop0.0" is of the first law."""
+    """Loops, functions and scans, named as the page calls them: "loop0.0" is the first law's."""
     functions, scans, loops = dict[str, ca.Function](), dict[str, Scan](), dict[str, Kernel]()
     for curve in _kinds(figure).values():
         name, kind = kind_name(figure, curve), figure.kind(figure.laws[0], curve)
         kernels = [figure.kernel(law, curve) for law in figure.every_law]
-        seen = page_functions(figure.machine, kind) | _changes(figure, kernels)
-        seen |= measurements(figure.machine, figure.parameters)
+        shown = page_functions(figure.machine, kind) | _changes(figure, kernels)
+        shown |= measurements(figure.machine, figure.parameters)
         edited, steps = _editing(figure, kind, kernels)
         loops |= {f"loop{number}.{name}": kernel for number, kernel in enumerate(kernels)}
-        functions |= {f"{each}.{name}": function for each, function in (seen | edited).items()}
+        functions |= {f"{each}.{name}": function for each, function in (shown | edited).items()}
         scans |= {f"{each}.{name}": scan for each, scan in steps.items()}
     shared, steps = _shared(figure)
     return wasm_of(functions | shared, loops, scans | steps)
 
 
 def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Function]:
-    """From each law to each other one, if readers may choose."""
+    """Functions that change each law to each other one, if readers may choose laws."""
     return {
         f"change{i}to{j}": change_function(before, after, figure.every_law[j])
         for (i, before), (j, after) in permutations(enumerate(kernels), 2)
@@ -73,7 +73,7 @@ def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Fu
 
 
 def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Parts:
-    """For paths of a kind, if readers may drag their points."""
+    """Functions and scans that edit paths of a kind, if readers may drag their points."""
     robot = figure.machine
     if "drag" not in figure.controls:
         return {}, {}
@@ -84,7 +84,7 @@ def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Par
 
 
 def _shared(figure: FigureChoice) -> Parts:
-    """Whatever is the same for all kinds of paths."""
+    """Functions and scans that serve all kinds of paths."""
     functions, scans, paths = dict[str, ca.Function](), dict[str, Scan](), figure.paths
     if "drag" in figure.controls:
         scans["arc"] = arc_scan()
@@ -99,7 +99,7 @@ def _shared(figure: FigureChoice) -> Parts:
 
 
 def _kinds(figure: FigureChoice) -> dict[tuple[Kind, ...], Curve]:
-    """The kinds of the laws' loops, with a path that needs them."""
+    """The kinds of the laws' loops on a path -> such a path."""
     return {
         tuple(figure.kind(law, curve) for law in figure.every_law): curve
         for curve in figure.paths.values()

@@ -1,4 +1,4 @@
-"""A figure as one HTML file: it needs no server, no network and no other file."""
+"""A figure as one HTML file, which needs no server, network or other file."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ POLICY = (
     "default-src 'none'; script-src '{script}' 'wasm-unsafe-eval'; style-src '{style}'; "
     "base-uri 'none'; form-action 'none'"
 )
-"""The page's Content-Security-Policy, with the hashes of its script and style: no request, no eval
-but WebAssembly, no other script."""
+"""The page's Content-Security-Policy, with the hashes of its script and style: no requests, no
+other scripts, and no eval except WebAssembly."""
 
 
 def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     """The page of a figure; the same choice gives the same page.
 
     Args:
-        title: above the figure; may be empty.
+        title: heading above the figure; may be empty.
     """
     dark = inlined("page/dark_colours.css")
     script, style = inlined("standalone/figure.js"), styled("standalone/figure.css", dark=dark)
@@ -43,5 +43,5 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
 
 
 def _hash(text: str) -> str:
-    """As a Content-Security-Policy names an inline script or style."""
+    """The name of an inline script or style in a Content-Security-Policy."""
     return "sha256-" + b64encode(sha256(text.encode()).digest()).decode()

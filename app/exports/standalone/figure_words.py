@@ -1,4 +1,4 @@
-"""The words that a figure's page says; {names} in them are filled in there."""
+"""The messages of a figure's page, which fills in the {names} in them."""
 
 from __future__ import annotations
 
@@ -41,13 +41,15 @@ _FILLED = {
 
 
 def figure_words(words: Words) -> dict[str, str]:
-    """Key -> text, for all that a figure may say."""
-    said = {key: words(key) for key in PLAIN}
-    said |= {
+    """Key -> text of every message that a figure may show."""
+    messages = {key: words(key) for key in PLAIN}
+    messages |= {
         key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
     }
     widths = {"radius": f"{TUBE * 1e3:.0f}", "least": f"{2 * TUBE * 1e3:.0f}"}
-    said |= {key: words(key, **widths) for key in _FAULTS}
+    messages |= {key: words(key, **widths) for key in _FAULTS}
     shortest = f"{1e3 * SHORTEST:.0f}"
-    said["error.path_too_short"] = words("error.path_too_short", length="{length}", least=shortest)
-    return said | {"point": words("report.point")}
+    messages["error.path_too_short"] = words(
+        "error.path_too_short", length="{length}", least=shortest
+    )
+    return messages | {"point": words("report.point")}

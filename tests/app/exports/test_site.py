@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 
 from onpath.app.cli.main import run_command
-from onpath.app.exports.site.pages import POLICY, SAID
+from onpath.app.exports.site.pages import MESSAGES, POLICY
 from onpath.app.exports.site.step_figures import figure_of, step_figure
-from onpath.app.exports.site.task_data import SAID as CHECKS
+from onpath.app.exports.site.task_data import MESSAGES as CHECKS
 from onpath.assets import asset_path
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.schema import Text
@@ -138,7 +138,7 @@ def test_all_that_the_scripts_say_is_in_the_pages() -> None:
     text = "".join(file.read_text("utf-8") for file in asset_path("site").glob("*.ts"))
     says = re.compile(r"(said|tell)\(")
     asked = {key for line in text.splitlines() if says.search(line) for key in _keys(line)}
-    given = {*SAID, *CHECKS, "lesson.step", "lesson.at", "site.done", "site.sketch", "point"}
+    given = {*MESSAGES, *CHECKS, "lesson.step", "lesson.at", "site.done", "site.sketch", "point"}
     given |= {"site.refused", "site.cut"}
     assert len(asked) > 15 and asked <= given
 
