@@ -1,4 +1,4 @@
-"""The two small buttons of every page: its language and display, and the help."""
+"""The two small buttons of every page: language and display, and help."""
 
 from __future__ import annotations
 

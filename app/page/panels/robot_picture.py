@@ -31,9 +31,9 @@ def _data(kind: str, content: bytes) -> str:
 def robot_sketch(robot: Robot) -> str:
     """An SVG front view of the robot with its end-point in the centre of the path region."""
     q = ca.SX.sym("q", robot.system.n)
-    drawn = ca.Function("drawn", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
+    skeleton = ca.Function("skeleton", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
     home = robot.rest(robot.frame.lift(np.zeros(2)))
-    bars, joints = (points.full()[[0, 2]].T for points in drawn.call([ca.DM(home)]))
+    bars, joints = (points.full()[[0, 2]].T for points in skeleton.call([ca.DM(home)]))
     low, high = bars.min(axis=0), bars.max(axis=0)
     scale = (np.array(SIZE) - 2 * MARGIN).min() / max(float((high - low).max()), 1e-6)
 
