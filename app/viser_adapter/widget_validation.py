@@ -12,7 +12,7 @@ Bound = Number | None
 
 
 class Refused(ValueError):
-    """A value that the widget cannot have; the message says what was expected."""
+    """The widget cannot have this value; the message says what was expected."""
 
 
 def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:

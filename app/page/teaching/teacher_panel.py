@@ -284,9 +284,9 @@ class TeacherPanel:
             session: replace(member, progress=of_today(course, member.progress))
             for session, member in self._class.members().items()
         }
-        ways = [(session, member.progress) for session, member in members.items()]
+        students = [(session, member.progress) for session, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
-        tests = sheets_without_names(test, ways, self._class.code) if test else []
+        tests = sheets_without_names(test, students, self._class.code) if test else []
         made = datetime.now(UTC)
         data = class_record(members.values(), course, language, made, tests)
         name = f"onpath-class-{made:%Y-%m-%d}.xlsx"
