@@ -62,7 +62,7 @@ def remark(sentence: str, italic: bool = False) -> str:
 
 
 def next_act(words: Words) -> str:
-    """What comes after a prediction; the button that follows is brought into view."""
+    """The remark after a prediction; the page brings the button that follows it into view."""
     return render("lesson/next_act.html", said=words("lesson.committed"))
 
 

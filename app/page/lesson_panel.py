@@ -64,7 +64,7 @@ class LessonPanel:
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
         self._sketching: SketchAnswer | None = None
-        self._typed: dict[str, Any] = {}  # question -> what is typed; see `AnswerBox`
+        self._typed: dict[str, Any] = {}  # typed answers by question; see `AnswerBox`
         self._busy, self._version, self._reading = False, -1, -1
         self._panel = None
         if tab is None:
@@ -232,7 +232,7 @@ class LessonPanel:
             self._add_reasons(block, run)
 
     def _add_let_happen(self, run: LessonView) -> None:
-        """After a prediction: what to do next, which assets/page/steps.js brings into view."""
+        """After a prediction: the next action, which assets/page/steps.js brings into view."""
         if not run.shows_next:
             return
         self._html(page.next_act(run.words))

@@ -32,7 +32,7 @@ class Narration:
     It stands outside all tabs, because viser does not update the contents of a hidden tab.
 
     Args:
-        wanted: the browser's `Preferences`.
+        preferences: the browser's `Preferences`.
         captions: of the scene, which is updated with each snapshot first.
     """
 
@@ -40,10 +40,10 @@ class Narration:
         self,
         gui: viser.GuiApi,
         words: Words,
-        wanted: Mapping[str, bool],
+        preferences: Mapping[str, bool],
         captions: Captions,
     ) -> None:
-        self._words, self._wanted = words, wanted
+        self._words, self._preferences = words, preferences
         self._captions = captions
         self._handle = gui.add_html("")
         self._shown: tuple[object, ...] = ()
@@ -67,8 +67,8 @@ class Narration:
         plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
         frame = self._frame(level, running, snapshot.held, stopped, plays)
         remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
-        voice = self._voice(snapshot, captions) if self._wanted["speaks"] else ""
-        tones = _tones(snapshot) if self._wanted["sounds"] else ""
+        voice = self._voice(snapshot, captions) if self._preferences["speaks"] else ""
+        tones = _tones(snapshot) if self._preferences["sounds"] else ""
         shown = frame, snapshot.message, voice, tones, remedy
         if (*shown, self._summaries) == self._shown:
             return

@@ -282,13 +282,14 @@ class Page:
         gui = self._client.gui
         self._build_menus(first, words, post)
         if self._context.course.lessons:
-            self._parts.append(LessonMenu(gui, words, post, self._context.course, first))
+            menu = LessonMenu(gui, words, post, course=self._context.course, first=first)
+            self._parts.append(menu)
         if self._context.seat is not None:
             self._parts.append(ClassPanel(gui, words, self._context, first))
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""
-        PageMenus(self._client.gui, words, post, first=first, wanted=self._preferences)
+        PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
 
     def _build_numbers(self, words: Words) -> None:
         self._parts.append(Readout(self._client.gui, words))

@@ -22,7 +22,7 @@ RETURNS, FULL = 0.5, 0.99
 
 
 class Captions:
-    """A caption for each robot, empty for one that does what its law's title says.
+    """A caption for each robot; empty while the robot does what its law's title says.
 
     While a robot is held back, its caption has the largest distance since then, because the
     distance of one that is torn off swings to and fro.

@@ -29,7 +29,13 @@ class ErrorNodes:
         self._origins, self._toward = stage.origins, -0.012 * stage.away
         self._drawn = self._points(motion)
         self._arrows = [
-            Arrows(scene, f"/show/errors/{name}", self._drawn[:, i], colour, SHAPE)
+            Arrows(
+                scene,
+                f"/show/errors/{name}",
+                points=self._drawn[:, i],
+                colour=colour,
+                shape=SHAPE,
+            )
             for i, (name, colour) in enumerate(ARROWS.items())
         ]
 

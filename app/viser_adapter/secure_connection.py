@@ -137,7 +137,7 @@ class SecureConnection(CountedConnection):
         self._request_size, self.is_head, self._refused = 0, False, False
         self._is_next = False  # whether no earlier message still waits
         self._decoded: Any = None  # the waiting message, if it is decoded already
-        self._end: ConnectionClosed | None = None  # raised to whoever waited for a message
+        self._end: ConnectionClosed | None = None  # raised in the task that waited for a message
 
     @override
     def data_received(self, data: bytes) -> None:

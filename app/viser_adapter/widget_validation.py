@@ -65,7 +65,8 @@ def _numbers(
 ) -> tuple[Number, ...]:
     if not isinstance(value, list) or len(value) != len(like):
         raise Refused(f"expected {len(like)} numbers")
-    return tuple(_number(*each) for each in zip(value, like, low, high, strict=True))
+    numbers = zip(value, like, low, high, strict=True)
+    return tuple(_number(number, old, least, most) for number, old, least, most in numbers)
 
 
 def _number(value: object, like: Number, low: Bound, high: Bound) -> Number:

@@ -27,7 +27,7 @@ class CriticalAlpha:
 
     Args:
         link: the robot's flexible link.
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
 
     Attributes:
         value: the latest result; infinity if there is none up to 1, NaN while unknown.

@@ -26,6 +26,7 @@ class Key:
         hotkey: viser's name for it.
         written: names of its keys, for display.
         command: sent to the lab; None for an action of this tab alone.
+        modifier: viser's name for a key to be held down with it, or None.
     """
 
     name: str
@@ -55,8 +56,8 @@ KEYS = (
     Key("none", "escape", "Esc", c.SelectPoint(None)),
     Key("add", "insert", "Ins", c.AddPoint()),
     Key("remove", "delete", "Del", c.RemovePoint()),
-    Key("undo", "Z", "Ctrl Z", c.Undo(), "cmd/ctrl"),
-    Key("redo", "Y", "Ctrl Y", c.Redo(), "cmd/ctrl"),
+    Key("undo", "Z", "Ctrl Z", c.Undo(), modifier="cmd/ctrl"),
+    Key("redo", "Y", "Ctrl Y", c.Redo(), modifier="cmd/ctrl"),
     Key("pull_left", "A", "A", c.MoveHand(-TUG, 0.0)),
     Key("pull_right", "D", "D", c.MoveHand(TUG, 0.0)),
     Key("pull_up", "W", "W", c.MoveHand(0.0, TUG)),
