@@ -1,4 +1,4 @@
-"""Widgets with which a student answers: how sure and why, a number, a text in own words."""
+"""Widgets for a student's answers: how sure and why, a number, a text in their own words."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from onpath.lessons.schema import Choice, NumberQuestion, Prediction, Quiz, Sket
 from onpath.lessons.words import Words
 
 DIGITS = 9
-"""Decimals of a number that a student types."""
+"""Decimals of a typed number."""
 
 
 class SureAndWhy:
-    """How sure the student is of a prediction, and why; both may be left unsaid.
+    """How sure the student is of a prediction, and why; both may be left open.
 
     Attributes:
         handles: all widgets, each with `remove`.
@@ -43,13 +43,15 @@ class SureAndWhy:
             self._why = gui.add_dropdown(because, list(self._reasons), initial_value=unsaid)
         elif block.why:
             self._why = gui.add_text(because, "", multiline=True)
-        self.handles: list[Any] = [each for each in (menu, self._why) if each is not None]
+        self.handles: list[Any] = [menu]
+        if self._why is not None:
+            self.handles.append(self._why)
 
-    def beside(self, answer: c.Predict) -> c.Predict:
-        """The answer with what is said beside it."""
-        said: Any = "" if self._why is None else self._why.value
-        reason = self._reasons.get(said)
-        why = "" if len(self._reasons) > 1 else said
+    def added_to(self, answer: c.Predict) -> c.Predict:
+        """The answer with the sureness and the reason."""
+        text: Any = "" if self._why is None else self._why.value
+        reason = self._reasons.get(text)
+        why = "" if len(self._reasons) > 1 else text
         return replace(answer, sure=self._sure[self._menu.value], reason=reason, why=why)
 
 
@@ -58,7 +60,7 @@ class PredictionForm:
 
     Attributes:
         handles: all widgets, each with `remove`.
-        sketching: with which a sketch is drawn, or None.
+        sketching: the widgets for a sketch, or None.
     """
 
     def __init__(
@@ -76,15 +78,17 @@ class PredictionForm:
         if isinstance(block, Choice):
             self.handles.append(add_letters(gui, run.order(block), self._chosen))
         else:
-            self._said = gui.add_html(page.remark(words("lesson.draw_first")))
-            self.handles.append(self._said)
-            self.sketching = SketchAnswer(client, scene, block, run, self._drawn)
-        beside = SureAndWhy(gui, block, words)
+            self._remark = gui.add_html(page.remark(words("lesson.draw_first")))
+            self.handles.append(self._remark)
+            self.sketching = SketchAnswer(
+                client=client, scene=scene, block=block, run=run, drawn=self._drawn
+            )
+        sure_and_why = SureAndWhy(gui, block, words)
         commit = gui.add_button(words("lesson.commit"), icon=viser.Icon.LOCK)
         commit.disabled = True
-        on_press(commit, lambda: post(beside.beside(self._draft)))
+        on_press(commit, lambda: post(sure_and_why.added_to(self._draft)))
         self._commit = commit
-        self.handles += [*beside.handles, commit]
+        self.handles += [*sure_and_why.handles, commit]
 
     def _chosen(self, option: int, letter: str) -> None:
         self._draft = c.Predict(option=option)
@@ -94,11 +98,11 @@ class PredictionForm:
     def _drawn(self, times: np.ndarray, values: np.ndarray) -> None:
         self._draft = c.Predict(None, tuple(times.tolist()), tuple(values.tolist()))
         self._commit.disabled = False
-        self._said.content = page.remark(self._words("lesson.drawn"))
+        self._remark.content = page.remark(self._words("lesson.drawn"))
 
 
 def discuss(block: Prediction, first: Answer, run: LessonView) -> str:
-    """That a prediction is asked again, with the letter that the student chose first."""
+    """The remark that a prediction is asked again, with the letter that was chosen first."""
     if isinstance(block, Sketch) or first.option not in range(len(block.options)):
         return run.words("lesson.discuss")
     letter = LETTERS[run.order(block).index(first.option)]
@@ -110,43 +114,53 @@ def add_letters(
 ) -> viser.GuiButtonGroupHandle:
     """A button for each option, in the order in which they are shown.
 
-    On a page they are pressed by the options themselves, if these come right before them; see
+    On the page, the options themselves press them if they come right before them; see
     assets/page/answers.js.
 
     Args:
-        act: is given the option's index and its letter.
+        act: called with the option's index and its letter.
     """
     options = {LETTERS[place]: option for place, option in enumerate(order)}
-    chosen = {letter: (option, letter) for letter, option in options.items()}
-    return add_buttons(gui, "", chosen, lambda pair: act(*pair))
+    return add_buttons(
+        gui, "", {letter: letter for letter in options}, lambda letter: act(options[letter], letter)
+    )
 
 
 def add_quiz(
     gui: viser.GuiApi, block: Quiz, place: int, run: LessonView, post: Post
 ) -> list[viser.GuiHtmlHandle | viser.GuiButtonGroupHandle]:
-    """A question of a step, and what answers it.
+    """Add a question of a step and its buttons.
 
     Args:
         place: of the question in its step.
     """
     key = f"{run.index}.{place}"
     chosen, order = run.notes.quiz.get(key), run.order(block, key)
-    told = chosen is not None and not run.is_test
-    shown = chosen, told, run.words, run.is_unknown(key)
-    asked = gui.add_html(page.question(block, order, *shown, pressable=True))
-    return [asked, add_letters(gui, order, lambda at, _: post(c.AnswerQuiz(place, at)))]
+    question = gui.add_html(
+        page.question(
+            block,
+            order,
+            chosen,
+            revealed=chosen is not None and not run.is_test,
+            words=run.words,
+            unknown=run.is_unknown(key),
+            pressable=True,
+        )
+    )
+    letters = add_letters(gui, order, lambda option, _: post(c.AnswerQuiz(place, option)))
+    return [question, letters]
 
 
 @dataclass(frozen=True, slots=True)
 class AnswerBox:
     """A field for an answer and the button that sends it.
 
-    What is typed survives a rebuild of the page: both methods take `typed`, a dict from a question
-    to what is in its field.
+    Both methods take `typed`, a dict from the names of questions to the contents of their fields,
+    so that a typed answer survives a rebuild of the page.
 
     Attributes:
         place: of the question in its step.
-        name: of the question among all of them.
+        name: of the question, unique among all lessons.
     """
 
     gui: viser.GuiApi
@@ -158,11 +172,11 @@ class AnswerBox:
     def add_number(
         self, block: NumberQuestion, given: float, typed: dict[str, Any]
     ) -> list[viser.GuiInputHandle[Any] | viser.GuiButtonHandle]:
-        """A field for a number and a button that checks it; returns both."""
+        """Add a field for a number and a button that checks it; returns both."""
         unit = {"unit": block.unit} if block.unit else {}
         label = self.words("answer.type_unit" if unit else "answer.type_number", **unit)
         field = self.gui.add_number(label, float(typed.get(self.name, given)))
-        field.precision = DIGITS  # viser's is that of the first value, 0, and drops the decimals
+        field.precision = DIGITS  # viser takes that of the first value, 0, and drops the decimals
         on_user_update(field, lambda value: typed.update({self.name: value}))
         button = self.gui.add_button(
             self.words("answer.check"), color="gray", icon=viser.Icon.CHECK
@@ -173,7 +187,7 @@ class AnswerBox:
     def add_text(
         self, text: str, typed: dict[str, Any]
     ) -> list[viser.GuiInputHandle[Any] | viser.GuiButtonHandle]:
-        """A field for a text and a button that keeps it; returns both."""
+        """Add a field for a text and a button that keeps it; returns both."""
         label, shown = self.words("answer.type_words"), str(typed.get(self.name, text))
         field = self.gui.add_text(label, shown, multiline=True)
         on_user_update(field, lambda value: typed.update({self.name: value}))

@@ -15,18 +15,18 @@ from onpath.app.common.on_time import wait_until_on_time
 from onpath.app.page.notice import show_notice
 from onpath.lessons.words import Words
 
-REST = 2.0  # rests of a build, relative to its duration; sending it takes time as well
-LONG = 0.5  # [s]; a longer build has the same rests
-CALM = 1.0  # [s] without a build, after which the next one need not rest before it is finished
-PATIENCE = 0.1  # [s] for which a part of a build waits at most while frames are late
-FEW = 2  # from so many clients ahead on, a waiting client is shown a notice
+REST = 2.0  # rest of a build, relative to its duration; sending the page takes time as well
+LONG = 0.5  # [s]; longer builds rest no longer than one of this duration
+CALM = 1.0  # [s] without a build, after which the next one need not rest between its parts
+PATIENCE = 0.1  # [s] that a part of a build waits at most while frames are late
+FEW = 2  # clients ahead from which on a waiting client is shown a notice
 
 
 class BuildLock:
     """A lock for builds, which rest so that the simulation can go on. Use it with `with`.
 
     A build that soon follows another one rests after each part, for as long as the part took. The
-    next build waits for the rest that remains. Each part also waits while frames are late.
+    next build waits for the remaining rest. Each part also waits while frames are late.
     """
 
     def __init__(self) -> None:
@@ -48,7 +48,7 @@ class BuildLock:
         self._lock.release()
 
     def rest(self) -> None:
-        """Rest after a part of a build. Without effect in a thread that does not hold the lock."""
+        """Rest after a part of a build. No effect in a thread that does not hold the lock."""
         if self._owner != threading.get_ident():
             return
         part = time.monotonic() - self._since

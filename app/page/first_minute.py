@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 KEPT_AS = "first_minute"
 """Where a browser keeps how many of the invitations it has shown."""
 PAUSE = 2.5
-"""Simulated time from one invitation to the next, in which its consequence is seen [s]."""
+"""Simulated time between invitations, to see the consequence of the last one [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +24,8 @@ class Invitation:
 
     Attributes:
         name: in the message catalogue.
-        is_followed: whether it has been followed when a snapshot is taken.
-        key: of the lab that its button presses; empty: it is followed in the scene itself.
+        is_followed: whether it has been followed, according to a snapshot.
+        key: the lab's key that its button presses; empty if it is followed in the scene itself.
     """
 
     name: str
@@ -47,7 +47,7 @@ class FirstMinute:
     def __init__(self, client: viser.ClientHandle, words: Words) -> None:
         self._client, self._words = client, words
         self._handle = client.gui.add_html("")
-        self._next = len(INVITATIONS)  # until the browser tells what it has shown
+        self._next = len(INVITATIONS)  # until the browser reports which it has shown
         self._since: float | None = None
         ask_item(client, KEPT_AS, self._begin)
 
@@ -65,7 +65,7 @@ class FirstMinute:
             self._handle.content = self._content()
 
     def _begin(self, kept: str) -> None:
-        """Continue with the invitation that this browser has reached; its value is not trusted."""
+        """Continue after the invitations that this browser has shown. Its value is not trusted."""
         known = [str(count) for count in range(len(INVITATIONS) + 1)]
         self._next = known.index(kept) if kept in known else 0
 

@@ -19,8 +19,8 @@ class PredictionChart:
     """One uPlot chart, with a legend of the curves that are drawn.
 
     Args:
-        laws: control laws under which the prediction is put to the test.
-        truth: what has happened, as far as it has; None: nothing is drawn of it.
+        laws: control laws under which the prediction is tested.
+        truth: the measured curves so far, or None.
     """
 
     def __init__(
@@ -57,7 +57,7 @@ class PredictionChart:
         )
 
     def show(self, truth: Truth | None) -> None:
-        """Plot the data up to now; what was not drawn from the beginning stays away."""
+        """Plot the data up to now. A chart that was made without a truth never shows one."""
         if truth is not None and self._shown is not None and truth != self._shown:
             self._shown = truth
             self._handle.data = self._data(truth)
@@ -67,7 +67,7 @@ class PredictionChart:
         self._handle.remove()
 
     def _data(self, truth: Truth | None) -> tuple[np.ndarray, ...]:
-        """Times and the curves that are drawn, NaN where one has no data yet."""
+        """Times and the drawn curves, NaN where a curve has no data yet."""
         curves = list[Curve]()
         if truth is not None:
             curves += [(truth.times, getattr(truth, role)) for role in ROLES.values()]

@@ -1,4 +1,4 @@
-"""The end of a lesson or of a route: what was predicted and what happened, and how to go on."""
+"""The end of a lesson or of a route: predictions and results, and where to go next."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class EndedPart:
-    """What the end shows of one lesson: the student's work on it, and indices of the steps."""
+    """One lesson at the end: the student's work on it, and the indices of the steps shown."""
 
     chapter: Chapter
     steps: range
 
     def has(self, key: str) -> bool:
-        """Whether a key of the notes, a step or a step and a block, is of these steps."""
+        """Whether a key of the notes, a step or a step and a block, belongs to these steps."""
         return int(key.partition(".")[0]) in self.steps
 
     def predictions(self) -> dict[str, Prediction]:
@@ -48,7 +48,7 @@ class EndedPart:
         return {k: block for k, block in predictions(self.chapter.lesson).items() if self.has(k)}
 
     def chosen(self) -> list[bool]:
-        """Whether each choice was right whose result has been seen."""
+        """For each choice whose result has been seen, whether it was right."""
         asked, answers = self.predictions(), self.chapter.notes.answers
         return [
             block.options[answers[key].option or 0].right
@@ -58,13 +58,13 @@ class EndedPart:
         ]
 
     def drawn(self) -> list[bool]:
-        """Whether the student has drawn each curve that was asked for."""
+        """For each curve that was asked for, whether the student has drawn it."""
         nothing, answers = Answer(), self.chapter.notes.answers
         asked = [key for key, block in self.predictions().items() if isinstance(block, Sketch)]
         return [bool(answers.get(key, nothing).times) for key in asked]
 
     def passed(self) -> list[bool]:
-        """Whether each task of these steps is passed, without the optional ones."""
+        """For each required task of these steps, whether it is passed."""
         steps = [self.chapter.lesson.steps[index] for index in self.steps]
         steps = [step for step in steps if not step.optional]
         return [task.id in self.chapter.notes.tasks for step in steps for task in step.tasks()]
@@ -95,7 +95,7 @@ def next_lesson(run: LessonView) -> tuple[str, str] | None:
 
 
 class LessonEnd:
-    """The widgets of the end, added to the container that is open.
+    """The widgets of the end, added to the open container.
 
     Args:
         report: requests the record of all lessons.
@@ -113,21 +113,28 @@ class LessonEnd:
         fronts = {part.chapter.lesson.name: part.chapter.lesson.front for part in parts}
         learnt = [front for front in fronts.values() if front.takeaway]
         self._html("lesson/end.html", run=run, counts=self._counts(parts))
-        self._add_ways_on(report)
+        self._add_navigation(report)
         self._html("lesson/takeaway.html", learnt=learnt)
         for part in parts:
             self._add_predictions(part)
-        asked = {"quizzes": quizzes, "numbers": numbers, "open_questions": open_questions}
-        self._html("lesson/end_rest.html", parts=parts, run=run, **asked)
+        self._html(
+            "lesson/end_rest.html",
+            parts=parts,
+            run=run,
+            quizzes=quizzes,
+            numbers=numbers,
+            open_questions=open_questions,
+        )
 
-    def _add_ways_on(self, report: Callable[[], None]) -> None:
+    def _add_navigation(self, report: Callable[[], None]) -> None:
         """Buttons: the next lesson, the record, back, and the free lab."""
         words, after = self._words, next_lesson(self._run)
         if after is not None:
             name, title = after
-            on = self._gui.add_button(words("end.next", lesson=title), icon=viser.Icon.ARROW_RIGHT)
-            on_press(on, lambda: self._post(c.OpenLesson(name)))
-            self.handles.append(on)
+            label = words("end.next", lesson=title)
+            forward = self._gui.add_button(label, icon=viser.Icon.ARROW_RIGHT)
+            on_press(forward, lambda: self._post(c.OpenLesson(name)))
+            self.handles.append(forward)
         run = self._run
         if test := last_test(run.route, run.course, run.progress):
             title = titles_of_tests(run.course, words)[test]
@@ -135,40 +142,55 @@ class LessonEnd:
             last = self._gui.add_button(label, icon=viser.Icon.ARROW_RIGHT)
             on_press(last, lambda: self._post(c.OpenLesson(test)))
             self.handles.append(last)
-        ways: dict[str, Callable[[], None]] = {
+        actions: dict[str, Callable[[], None]] = {
             words("lesson.back"): lambda: self._post(c.GoToStep(-1)),
             words("end.record"): report,
             words("lesson.close"): lambda: self._post(c.CloseLesson()),
         }
-        self.handles.append(add_buttons(self._gui, "", ways, lambda act: act()))
+        self.handles.append(add_buttons(self._gui, "", actions, lambda act: act()))
 
     def _add_predictions(self, part: EndedPart) -> None:
-        """Each prediction with what happened: the curves, or what was chosen and what is right."""
+        """Each prediction with its result: the curves, or the chosen and the right option."""
         chapter = part.chapter
         notes, lesson = chapter.notes, chapter.lesson
         for key, block in part.predictions().items():
             answer, truth = notes.answers.get(key), notes.truths.get(key)
-            title, laws, said = lesson.steps[int(key)].title, lesson.laws_shown(int(key)), ""
+            laws, description = lesson.laws_shown(int(key)), ""
             if isinstance(block, Sketch):
                 names = robot_names(laws, self._words)
-                said = curve_words(block, answer, truth, self._words, names)
-            shown = {"block": block, "answer": answer, "truth": truth, "said": said}
-            shown |= {"second": notes.second.get(key), "unknown": key in notes.unknown}
-            self._html("lesson/end_prediction.html", title=title, colour=BORDER.hex, **shown)
-            if isinstance(block, Sketch) and said:
-                chart = PredictionChart(self._gui, block, answer, laws, self._words, truth)
+                description = curve_words(block, answer, truth, self._words, names)
+            self._html(
+                "lesson/end_prediction.html",
+                title=lesson.steps[int(key)].title,
+                colour=BORDER.hex,
+                block=block,
+                answer=answer,
+                truth=truth,
+                said=description,
+                second=notes.second.get(key),
+                unknown=key in notes.unknown,
+            )
+            if isinstance(block, Sketch) and description:
+                chart = PredictionChart(
+                    gui=self._gui,
+                    sketch=block,
+                    answer=answer,
+                    laws=laws,
+                    words=self._words,
+                    truth=truth,
+                )
                 self.handles.append(chart)
 
     def _counts(self, parts: list[EndedPart]) -> list[str]:
-        """What was done, as short phrases: choices right, curves drawn, tasks passed."""
-        words, said = self._words, list[str]()
+        """The student's results as short phrases: choices right, curves drawn, tasks passed."""
+        words, phrases = self._words, list[str]()
         if right := [right for part in parts for right in part.chosen()]:
-            said.append(words("end.right", part=sum(right), all=len(right)))
+            phrases.append(words("end.right", part=sum(right), all=len(right)))
         if drawn := [drawn for part in parts for drawn in part.drawn()]:
-            said.append(words("end.drawn", part=sum(drawn), all=len(drawn)))
+            phrases.append(words("end.drawn", part=sum(drawn), all=len(drawn)))
         if passed := [passed for part in parts for passed in part.passed()]:
-            said.append(words("end.tasks", part=sum(passed), all=len(passed)))
-        return said
+            phrases.append(words("end.tasks", part=sum(passed), all=len(passed)))
+        return phrases
 
     def _html(self, template: str, **values: object) -> None:
         content = render(template, words=self._words, **values)

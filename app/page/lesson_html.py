@@ -44,7 +44,7 @@ def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
 
 
 def aims(lesson: Lesson, words: Words) -> str:
-    """What the student needs and will learn, on the first page, if it is said."""
+    """Prerequisites and goals for the first page; empty if the lesson states none."""
     front = lesson.front
     return (
         render("lesson/aims.html", front=front, words=words) if front.needs or front.goals else ""
@@ -56,13 +56,13 @@ def text(content: str) -> str:
     return render("lesson/text.html", content=content)
 
 
-def remark(said: str, italic: bool = False) -> str:
+def remark(sentence: str, italic: bool = False) -> str:
     """A sentence of the interface."""
-    return render("lesson/remark.html", said=said, italic=italic)
+    return render("lesson/remark.html", said=sentence, italic=italic)
 
 
 def next_act(words: Words) -> str:
-    """What comes after a prediction; the button that follows is brought into view."""
+    """The remark after a prediction; the page brings the button that follows it into view."""
     return render("lesson/next_act.html", said=words("lesson.committed"))
 
 
@@ -84,9 +84,9 @@ def question(
 
     Args:
         order: the options' indices in the order in which they are shown; see `option_order`.
-        chosen: index of the student's answer; None when there is none.
+        chosen: index of the student's answer, or None.
         unknown: whether the answer cannot be known, since the options have changed.
-        pressable: whether the options press the buttons with their letters, which follow.
+        pressable: whether the options press the buttons with their letters, which come next.
     """
     return render(
         "lesson/question.html",
@@ -103,34 +103,47 @@ def question(
 
 def number_question(block: NumberQuestion, given: float | None, words: Words) -> str:
     """A question whose answer is a number and, once it is given, whether it is right, and why."""
-    shown = {"title": block.question, "colour": AZURE.hex, "block": block, "given": given}
-    return render("lesson/number.html", words=words, **shown)
+    return render(
+        "lesson/number.html",
+        title=block.question,
+        colour=AZURE.hex,
+        block=block,
+        given=given,
+        words=words,
+    )
 
 
 def open_question(block: OpenQuestion, text: str, words: Words) -> str:
-    """A question that is answered in own words and, once it is, a model answer."""
-    shown = {"title": block.question, "colour": AZURE.hex, "block": block, "text": text}
-    return render("lesson/open.html", words=words, **shown)
+    """A question to be answered in the student's own words and, once it is, a model answer."""
+    return render(
+        "lesson/open.html",
+        title=block.question,
+        colour=AZURE.hex,
+        block=block,
+        text=text,
+        words=words,
+    )
 
 
 def told(block: Prediction, answer: Answer | None, words: Words, unknown: bool = False) -> str:
-    """How sure the student is of a prediction, and why; empty if neither was said.
+    """How sure the student is of a prediction, and why; empty if neither is given.
 
     Args:
         unknown: whether the answer cannot be known, since the question has changed.
     """
-    shown = {"block": block, "answer": answer, "unknown": unknown}
-    return render("lesson/beside.html", words=words, **shown).strip()
+    html = render("lesson/beside.html", block=block, answer=answer, unknown=unknown, words=words)
+    return html.strip()
 
 
 def task(block: Task, verdicts: list[Verdict], run: LessonState) -> str:
     """A task: instructions, progress, and the hints shown so far."""
     words, best = run.words, run.notes.tasks.get(block.id)
     passed = ""
-    if best is not None:
+    if best is not None and block.best:
         unit = QUANTITIES.get(block.best, "")
-        said = words("lesson.passed_best", best=f"{best:.2f}", unit=unit) if block.best else ""
-        passed = said or words("lesson.passed")
+        passed = words("lesson.passed_best", best=f"{best:.2f}", unit=unit)
+    elif best is not None:
+        passed = words("lesson.passed")
     hints = block.hints[: run.notes.hints.get(block.id, 0)]
     why = block.passed if passed else ""
     return _task(block.text, tuple(verdicts), hints, passed, why)
@@ -158,8 +171,15 @@ def route_entry(route: Route, run: LessonState) -> str:
     for stop in route.stop:
         lesson = run.course.lesson(stop.lesson, words.language).front.title
         first, last = stop.steps
-        told = {"first": first, "last": last, "minutes": f"{stop.minutes:g}"}
-        stops.append(words("route.stop", lesson=f"{numbers[stop.lesson]}. {lesson}", **told))
+        stops.append(
+            words(
+                "route.stop",
+                lesson=f"{numbers[stop.lesson]}. {lesson}",
+                first=first,
+                last=last,
+                minutes=f"{stop.minutes:g}",
+            )
+        )
     if route.test and run.course.tests:
         before, after = titles_of_tests(run.course, words).items()
         tests = [_test_stop(name, title, run) for name, title in (before, after)]
@@ -181,7 +201,7 @@ def _test_stop(name: str, title: str, run: LessonState) -> str:
 
 
 def route_line(run: LessonState) -> str:
-    """Where the student is on the route that is followed; empty if it is not on the open step."""
+    """The student's position on the route; empty if the open step is not on one."""
     lesson, route = run.lesson, run.route
     at = None if lesson is None or route is None else route.stop_of(lesson.name, run.index)
     if at is None or route is None:

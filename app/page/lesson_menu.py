@@ -43,18 +43,18 @@ class LessonMenu:
                 lesson = run.course.lesson(name, run.words.language)
                 begun = name in run.progress.notes
                 gui.add_html(page.entry(lesson, run, number))
-                open_it = gui.add_button(
+                button = gui.add_button(
                     run.words("lesson.continue" if begun else "lesson.open", number=number),
                     color=None if begun else "gray",
                     hint=lesson.front.title,
                 )
-                on_press(open_it, self._then(close, c.OpenLesson(name)))
+                on_press(button, self._close_and_post(close, c.OpenLesson(name)))
             self._add_test(AFTER, close)
             for name, route in run.course.routes.items():
                 gui.add_html(page.route_entry(route, run))
                 title = route.text(route.title, run.words.language)
                 follow = gui.add_button(run.words("route.follow"), color="gray", hint=title)
-                on_press(follow, self._then(close, c.FollowRoute(name)))
+                on_press(follow, self._close_and_post(close, c.FollowRoute(name)))
         return close
 
     def _add_test(self, name: str, close: Callable[[], None]) -> None:
@@ -63,14 +63,14 @@ class LessonMenu:
             return
         run, gui = self._run, self._gui
         gui.add_html(entry_of_test(name, run))
-        opens = gui.add_button(
+        button = gui.add_button(
             run.words("test.open"), color="gray", hint=titles_of_tests(run.course, run.words)[name]
         )
-        on_press(opens, self._then(close, c.OpenLesson(name)))
+        on_press(button, self._close_and_post(close, c.OpenLesson(name)))
 
-    def _chosen(self, close: Callable[[], None], command: c.Command) -> None:
-        close()
-        self._post(command)
+    def _close_and_post(self, close: Callable[[], None], command: c.Command) -> Callable[[], None]:
+        def act() -> None:
+            close()
+            self._post(command)
 
-    def _then(self, close: Callable[[], None], command: c.Command) -> Callable[[], None]:
-        return lambda: self._chosen(close, command)
+        return act

@@ -39,7 +39,7 @@ class LessonPanel:
 
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
-        tab: parent of the widgets; without one, a separate panel on the left.
+        tab: parent of the widgets; if None, they get a separate panel on the left.
         report: requests the record of all lessons.
         student: session code of the lab; decides the order of options, see `option_order`.
     """
@@ -64,7 +64,7 @@ class LessonPanel:
         self._tasks: list[tuple[Task, viser.GuiHtmlHandle]] = []
         self._chart: PredictionChart | None = None
         self._sketching: SketchAnswer | None = None
-        self._typed: dict[str, Any] = {}  # question -> what is typed; see `AnswerBox`
+        self._typed: dict[str, Any] = {}  # typed answers by question; see `AnswerBox`
         self._busy, self._version, self._reading = False, -1, -1
         self._panel = None
         if tab is None:
@@ -73,8 +73,8 @@ class LessonPanel:
             self._panel.dock_above(client.gui.main_panel)
         self._tab = tab
         self._width = 0
-        on = self._gui.add_command(words("lesson.next"), hotkey="pagedown")
-        on.on_trigger(_turns(post, 1))
+        forward = self._gui.add_command(words("lesson.next"), hotkey="pagedown")
+        forward.on_trigger(_turns(post, 1))
         back = self._gui.add_command(words("lesson.back"), hotkey="pageup")
         back.on_trigger(_turns(post, -1))
         self._build(self._view(first))
@@ -127,8 +127,11 @@ class LessonPanel:
             self._panel.set_width(width)
         with self._tab:
             if run.ended:
-                end = self._gui, run, self._post, self._report
-                self._handles += add_test_end(*end) if run.is_test else LessonEnd(*end).handles
+                if run.is_test:
+                    self._handles += add_test_end(self._gui, run, self._post, self._report)
+                else:
+                    end = LessonEnd(self._gui, run, self._post, self._report)
+                    self._handles += end.handles
                 return
             self._html(page.heading(lesson, step, run))
             if run.index == 0 and (aims := page.aims(lesson, run.words)):
@@ -170,9 +173,15 @@ class LessonPanel:
     def _add_question(
         self, place: int, block: NumberQuestion | OpenQuestion, run: LessonView
     ) -> None:
-        """A question that is answered with a number, or in own words."""
+        """A question that is answered with a number or in the student's own words."""
         key, words = f"{run.index}.{place}", run.words
-        box = AnswerBox(self._gui, words, self._post, place, f"{run.progress.lesson} {key}")
+        box = AnswerBox(
+            gui=self._gui,
+            words=words,
+            post=self._post,
+            place=place,
+            name=f"{run.progress.lesson} {key}",
+        )
         if isinstance(block, NumberQuestion):
             given = run.notes.numbers.get(key)
             self._html(page.number_question(block, given, words))
@@ -200,21 +209,30 @@ class LessonPanel:
                 self._add_form(block, run)
             else:
                 self._add_let_happen(run)
-                self._add_told(block, run)
+                self._add_reasons(block, run)
                 self._add_chart(block, run)
             return
         chosen, order = answer.option if answer else None, run.order(block)
         if answer is not None:
             self._add_let_happen(run)
-        shown = chosen, False, run.words, run.is_unknown()
-        self._html(page.question(block, order, *shown, pressable=answer is None))
+        self._html(
+            page.question(
+                block,
+                order,
+                chosen,
+                revealed=False,
+                words=run.words,
+                unknown=run.is_unknown(),
+                pressable=answer is None,
+            )
+        )
         if answer is None:
             self._add_form(block, run)
         else:
-            self._add_told(block, run)
+            self._add_reasons(block, run)
 
     def _add_let_happen(self, run: LessonView) -> None:
-        """After a prediction: what to do next, which assets/page/steps.js brings into view."""
+        """After a prediction: the next action, which assets/page/steps.js brings into view."""
         if not run.shows_next:
             return
         self._html(page.next_act(run.words))
@@ -229,15 +247,17 @@ class LessonPanel:
         self._handles.append(button)
 
     def _add_form(self, block: Prediction, run: LessonView) -> None:
-        form = PredictionForm(self._client, self._scene, block, run, self._post)
+        form = PredictionForm(
+            client=self._client, scene=self._scene, block=block, run=run, post=self._post
+        )
         self._handles += form.handles
         self._sketching = form.sketching
 
-    def _add_told(self, block: Prediction, run: LessonView) -> None:
-        """How sure the student was, and why, if it was said."""
+    def _add_reasons(self, block: Prediction, run: LessonView) -> None:
+        """How sure the student was, and why, if the student has said so."""
         unknown = isinstance(block, Sketch) and run.is_unknown()
-        if said := page.told(block, run.answer(), run.words, unknown):
-            self._html(said)
+        if reasons := page.told(block, run.answer(), run.words, unknown):
+            self._html(reasons)
 
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""
@@ -246,7 +266,7 @@ class LessonPanel:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:
             label = run.words("lesson.replay" if truth else "lesson.play")
-            colour = "gray" if truth else None  # to go on is then the primary action
+            colour = "gray" if truth else None  # the primary action is then the next step
             button = self._button(label, c.PlayStep(), colour, viser.Icon.PLAYER_PLAY)
             button.disabled = run.waits
         if found is None:
@@ -260,16 +280,30 @@ class LessonPanel:
             self._add_chart(block, run)
         elif truth is not None and not run.playing:
             chosen = answer.option if answer else None
-            order, unknown = run.order(block), run.is_unknown()
-            self._html(page.question(block, order, chosen, True, run.words, unknown))
-        self._add_told(block, run)
+            self._html(
+                page.question(
+                    block,
+                    run.order(block),
+                    chosen,
+                    revealed=True,
+                    words=run.words,
+                    unknown=run.is_unknown(),
+                )
+            )
+        self._add_reasons(block, run)
 
     def _add_chart(self, block: Sketch, run: LessonView) -> None:
         answer = run.answer()
         if run.truth is None and (answer is None or answer.skipped):
             return
-        what = block, answer, run.laws_shown, run.words
-        self._chart = PredictionChart(self._gui, *what, run.truth)
+        self._chart = PredictionChart(
+            gui=self._gui,
+            sketch=block,
+            answer=answer,
+            laws=run.laws_shown,
+            words=run.words,
+            truth=run.truth,
+        )
         self._handles.append(self._chart)
 
     def _html(self, content: str) -> viser.GuiHtmlHandle:

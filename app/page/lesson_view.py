@@ -1,4 +1,4 @@
-"""View of a student's lessons: the state of a snapshot combined with the course's texts."""
+"""View of a student's lessons: the state in a snapshot combined with the course's texts."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ class LessonView(LessonState):
 
     @property
     def laws_shown(self) -> dict[str, str]:
-        """Control laws under which the open step's prediction is put to the test."""
+        """Control laws under which the open step's prediction is tested."""
         lesson, found = self.lesson, self.prediction()
         return {} if lesson is None or found is None else lesson.laws_shown(int(found[0]))
 
     @property
     def shows_next(self) -> bool:
-        """Whether the open step's prediction is made and the next step lets it happen."""
+        """Whether the open step's prediction is made and the next step runs the experiment."""
         lesson = self.lesson
         if lesson is None or self.answer() is None or self.step_is("run") or self.at_end:
             return False
@@ -59,7 +59,7 @@ class LessonView(LessonState):
         return NO_SETUP if lesson is None else lesson.scene_at(self.index)
 
     def text(self, place: int, block: Text) -> Markup | None:
-        """A text of the open step with the student's numbers; None if it is for other answers.
+        """A text of the open step with the student's numbers; None if it belongs to other answers.
 
         Args:
             place: index among the step's blocks.
@@ -72,10 +72,10 @@ class LessonView(LessonState):
     def order(self, block: Choice | Quiz, key: str = "") -> tuple[int, ...]:
         """The order in which the options of a question are shown; see `option_order`.
 
-        In the presentation, where a whole class reads the same page, it is the author's.
+        In a presentation, where a whole class reads the same page, it is the author's.
 
         Args:
-            key: of a quiz in the notes; without one, the open step's prediction is meant.
+            key: of a quiz in the notes; empty for the open step's prediction.
         """
         if not key:
             found = self.prediction()

@@ -1,4 +1,4 @@
-"""What the lab has to say, for assets/page: messages, the live region, a summary, and sound."""
+"""The lab's messages, spoken text, summary and sound, as attributes for assets/page."""
 
 from __future__ import annotations
 
@@ -21,29 +21,29 @@ from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
 
 MOST = 2
-"""Settings that are named on a button."""
+"""Most settings that a button names."""
 RENEWED = 1.0
-"""How often numbers that are spoken are renewed; assets/page/narration.js reads fewer aloud [s]."""
+"""Time between updates of spoken numbers [s]; assets/page/narration.js reads fewer aloud."""
 
 
 class Narration:
-    """An element that is not seen; its attributes are what the page's scripts show, say and play.
+    """An invisible element whose attributes the page's scripts show, speak and play.
 
-    It stands outside of all tabs, because viser does not update what is in a tab that is not shown.
+    It stands outside all tabs, because viser does not update the contents of a hidden tab.
 
     Args:
-        wanted: the browser's `Preferences`.
-        captions: of the scene, which follows each snapshot first.
+        preferences: the browser's `Preferences`.
+        captions: of the scene, which is updated with each snapshot first.
     """
 
     def __init__(
         self,
         gui: viser.GuiApi,
         words: Words,
-        wanted: Mapping[str, bool],
+        preferences: Mapping[str, bool],
         captions: Captions,
     ) -> None:
-        self._words, self._wanted = words, wanted
+        self._words, self._preferences = words, preferences
         self._captions = captions
         self._handle = gui.add_html("")
         self._shown: tuple[object, ...] = ()
@@ -52,11 +52,11 @@ class Narration:
         self._frame = lru_cache(maxsize=16)(partial(_frame, words))
 
     def ask_summary(self) -> None:
-        """Announce what is on the screen at the next update. Thread-safe."""
+        """Announce a description of the screen at the next update. Thread-safe."""
         self._asked = True
 
     def follow(self, snapshot: Snapshot) -> None:
-        """Say what a snapshot says; sends nothing if that has been said."""
+        """Update the attributes; sends nothing if they are unchanged."""
         level = snapshot.message_level if snapshot.message else ""
         running = snapshot.running and level != "stop"
         captions = self._captions.shown
@@ -67,8 +67,8 @@ class Narration:
         plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
         frame = self._frame(level, running, snapshot.held, stopped, plays)
         remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
-        voice = self._said_aloud(snapshot, captions) if self._wanted["speaks"] else ""
-        tones = _tones(snapshot) if self._wanted["sounds"] else ""
+        voice = self._voice(snapshot, captions) if self._preferences["speaks"] else ""
+        tones = _tones(snapshot) if self._preferences["sounds"] else ""
         shown = frame, snapshot.message, voice, tones, remedy
         if (*shown, self._summaries) == self._shown:
             return
@@ -83,32 +83,39 @@ class Narration:
         )
         update_gui(self._handle, "content", content)
 
-    def _said_aloud(self, snapshot: Snapshot, captions: dict[str, str]) -> str:
-        """What is to be spoken. If only its numbers change, it is renewed once in `RENEWED`."""
-        said, elapsed = _spoken(snapshot, captions, self._words), snapshot.time - self._spoken_at
-        if said != self._spoken and (
-            abs(elapsed) >= RENEWED or _without_numbers(said) != _without_numbers(self._spoken)
+    def _voice(self, snapshot: Snapshot, captions: dict[str, str]) -> str:
+        """The text to be spoken. If only its numbers change, it is renewed once in `RENEWED`."""
+        text, elapsed = _spoken(snapshot, captions, self._words), snapshot.time - self._spoken_at
+        if text != self._spoken and (
+            abs(elapsed) >= RENEWED or _without_numbers(text) != _without_numbers(self._spoken)
         ):
-            self._spoken, self._spoken_at = said, snapshot.time
+            self._spoken, self._spoken_at = text, snapshot.time
         return self._spoken
 
 
-def _without_numbers(said: str) -> str:
-    return re.sub(r"\d+", "", said)
+def _without_numbers(text: str) -> str:
+    return re.sub(r"\d+", "", text)
 
 
 def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, plays: bool) -> str:
-    """Template of the element, with {name} for what changes often.
+    """Template of the element, with {name} for the values that change often.
 
     Args:
         level: severity of the message; empty without one.
         running: whether the clock runs.
         held: whether Hold is on.
         stopped: whether the message says why a robot has stopped.
-        plays: whether a lesson is showing something, which a replay would interrupt.
+        plays: whether a lesson is running an experiment, which a replay would interrupt.
     """
-    shown = {"level": level, "running": running, "held": held, "stopped": stopped}
-    return render("panel/narration.html", **shown, plays=plays, words=words)
+    return render(
+        "panel/narration.html",
+        level=level,
+        running=running,
+        held=held,
+        stopped=stopped,
+        plays=plays,
+        words=words,
+    )
 
 
 def _tones(snapshot: Snapshot) -> str:
@@ -119,12 +126,12 @@ def _tones(snapshot: Snapshot) -> str:
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     """What a sighted user sees: the state of the lab, and what each robot is doing."""
     state = "held" if snapshot.held else "running"
-    said = spoken(captions, side_titles(snapshot.laws, words), words) or words("spoken.on_path")
-    return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {said}"
+    robots = spoken(captions, side_titles(snapshot.laws, words), words) or words("spoken.on_path")
+    return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {robots}"
 
 
 def _earlier_settings(snapshot: Snapshot, words: Words) -> str:
-    """Label of the button that goes back to the settings that did well; empty if there is none."""
+    """Label of the button that restores the last good settings; empty if there are none."""
     if not snapshot.remedy:
         return ""
     known = specs(ROBOTS[snapshot.key.robot].parameters)
@@ -142,16 +149,19 @@ def _written(value: float | int | str) -> str:
 def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> str:
     """A description of the screen for users who cannot see it: clock, path, and each robot."""
     path = words.get(f"path.{snapshot.edit.name}", snapshot.edit.name)
-    said = [
+    sentences = [
         _spoken(snapshot, captions, words),
         words("summary.clock", time=f"{snapshot.time:.1f}", path=path),
     ]
     for side, title in side_titles(snapshot.laws, words).items():
         view = snapshot.robots[side]
-        numbers = {
-            "now": f"{1e3 * view.distance:.1f}",
-            "most": f"{1e3 * view.max_distance:.1f}",
-            "speed": f"{1e3 * view.speed:.0f}",
-        }
-        said.append(words("summary.robot", robot=title, **numbers))
-    return " ".join(said)
+        sentences.append(
+            words(
+                "summary.robot",
+                robot=title,
+                now=f"{1e3 * view.distance:.1f}",
+                most=f"{1e3 * view.max_distance:.1f}",
+                speed=f"{1e3 * view.speed:.0f}",
+            )
+        )
+    return " ".join(sentences)

@@ -1,4 +1,4 @@
-"""A notice for a browser that has no page yet: the reason and what happens next."""
+"""A notice for a browser that has no page yet, with the reason and what happens next."""
 
 from __future__ import annotations
 

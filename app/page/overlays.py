@@ -1,7 +1,7 @@
-"""What a page draws in its scene on demand: labels, tube, coordinate curves, rank test, and more.
+"""Optional drawings in the scene: labels, tube, coordinate curves, rank test, and more.
 
-Like the shading of the singular zone this concerns the page alone: no command, no state of the lab.
-So it works in the same way on a teacher's page that shows a student's lab.
+Like the shading of the singular zone, they belong to the page alone: they send no command and have
+no state in the lab, so that they also work on a teacher's page that shows a student's lab.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ Node = TypeVar("Node", RobotLabels, TubeNodes, PlaneNodes, ErrorNodes, MassNodes
 
 @dataclass(slots=True)
 class Switches:
-    """What a user wants to see; kept while a page is rebuilt.
+    """Which drawings the user has switched on; kept while a page is rebuilt.
 
     Attributes:
         labels: angles, lengths and axes of the robots.
@@ -56,7 +56,7 @@ class Background(Generic[Result]):
     """The latest result of a computation in another thread.
 
     Args:
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
 
     Attributes:
         key, value: of the latest result; None before the first one.
@@ -69,7 +69,7 @@ class Background(Generic[Result]):
         self.value: Result | None = None
 
     def ask(self, key: Hashable, compute: Callable[[], Result]) -> None:
-        """Compute unless this was the last thing asked for, or something is being computed."""
+        """Compute, unless this key was the last one asked for or a computation is under way."""
         if self._busy or key == self._asked:
             return
         self._asked, self._busy = key, True
@@ -84,10 +84,10 @@ class Background(Generic[Result]):
 
 
 class Drawn(Generic[Node]):
-    """Nodes of one kind, which are drawn anew when what they show changes.
+    """Nodes of one kind, drawn anew when their key changes.
 
     Attributes:
-        nodes: those that are drawn, or None.
+        nodes: the drawn ones, or None.
     """
 
     def __init__(self) -> None:
@@ -95,13 +95,13 @@ class Drawn(Generic[Node]):
         self._key: Hashable = None
 
     def show(self, key: Hashable, draw: Callable[[], Node]) -> None:
-        """Draw what has this key, unless it is drawn."""
+        """Draw the nodes, unless they are drawn with this key already."""
         if self.nodes is None or key != self._key:
             self.remove()
             self._key, self.nodes = key, draw()
 
     def remove(self) -> None:
-        """Remove what is drawn."""
+        """Remove the nodes, if they are drawn."""
         if self.nodes is not None:
             self.nodes.remove()
             self.nodes = None
@@ -113,14 +113,14 @@ class Overlays:
     Args:
         scene: the client's scene, without earlier overlays.
         stage: where the robots stand.
-        robot: what kind of robot they are.
-        switches: what is to be seen; others change it.
-        submit: runs something in another thread.
-        is_narrow: whether letters must be larger to be read.
+        robot: their model.
+        switches: which drawings to show; set by other objects.
+        submit: runs a function in another thread.
+        is_narrow: whether the page is so narrow that letters must be larger.
 
     Attributes:
         stage, switches: see above.
-        marks: what a lesson's step puts into the scene.
+        marks: the marks of a lesson's step.
     """
 
     def __init__(
@@ -157,14 +157,14 @@ class Overlays:
         return None if picture is None else picture.grid
 
     def update(self, motion: Motion) -> None:
-        """Move what moves with the robots."""
+        """Move the drawings that move with the robots."""
         if self._labels.nodes is not None:
             self._labels.nodes.update(motion)
         if self._errors.nodes is not None:
             self._errors.nodes.follow(motion)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Draw what is wanted, and remove what is not; nothing if that has not changed."""
+        """Draw and remove nodes according to the switches and the snapshot."""
         self._follow_labels(snapshot)
         self._follow_tube(snapshot)
         self._follow_map(snapshot)
@@ -173,11 +173,19 @@ class Overlays:
         self._follow_marks()
 
     def _follow_labels(self, snapshot: PageSnapshot) -> None:
-        parts = self._scene, self.stage, self._robot
-        if self.switches.labels:
-            self._labels.show(True, lambda: RobotLabels(*parts, snapshot.motion, self._letters))
-        else:
+        if not self.switches.labels:
             self._labels.remove()
+            return
+        self._labels.show(
+            True,
+            lambda: RobotLabels(
+                scene=self._scene,
+                stage=self.stage,
+                robot=self._robot,
+                motion=snapshot.motion,
+                letters=self._letters,
+            ),
+        )
 
     def _follow_tube(self, snapshot: PageSnapshot) -> None:
         fill, grid, path = self.switches.tube, self.switches.grid, snapshot.path
@@ -186,8 +194,10 @@ class Overlays:
         if (shape := self._shape.value) is None or not (fill or grid):
             self._tube.remove()
         else:
-            key = self._shape.key, fill, grid
-            self._tube.show(key, lambda: TubeNodes(self._scene, self.stage, shape, fill, grid))
+            self._tube.show(
+                (self._shape.key, fill, grid),
+                lambda: TubeNodes(self._scene, self.stage, shape, fill=fill, grid=grid),
+            )
 
     def _follow_map(self, snapshot: PageSnapshot) -> None:
         if self.switches.rank:
@@ -202,8 +212,7 @@ class Overlays:
 
     def _follow_errors(self, snapshot: PageSnapshot) -> None:
         if self.switches.errors:
-            parts = self._scene, self.stage
-            self._errors.show(True, lambda: ErrorNodes(*parts, snapshot.motion))
+            self._errors.show(True, lambda: ErrorNodes(self._scene, self.stage, snapshot.motion))
         else:
             self._errors.remove()
 
@@ -212,14 +221,30 @@ class Overlays:
             self._mass.remove()
             return
         motion, parameters = snapshot.motion, parameters_of(snapshot)
-        parts = self._scene, self.stage, self._robot, motion, parameters
-        self._mass.show(True, lambda: MassNodes(*parts))
+        self._mass.show(
+            True,
+            lambda: MassNodes(
+                scene=self._scene,
+                stage=self.stage,
+                robot=self._robot,
+                motion=motion,
+                parameters=parameters,
+            ),
+        )
         if self._mass.nodes is not None:
             self._mass.nodes.follow(motion, parameters)
 
     def _follow_marks(self) -> None:
-        if self.marks:
-            parts = self._scene, self.stage, self._robot, self.marks, self._letters
-            self._marks.show(self.marks, lambda: MarkNodes(*parts))
-        else:
+        if not self.marks:
             self._marks.remove()
+            return
+        self._marks.show(
+            self.marks,
+            lambda: MarkNodes(
+                scene=self._scene,
+                stage=self.stage,
+                robot=self._robot,
+                marks=self.marks,
+                letters=self._letters,
+            ),
+        )

@@ -26,7 +26,7 @@ from onpath.app.page.panels.widgets import Post
 from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
-from onpath.app.page.step_controls import StepControls, StepPlot
+from onpath.app.page.step_controls import Build, StepControls, StepPlot
 from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
@@ -51,7 +51,7 @@ class Page:
         first: the initial snapshot.
 
     Attributes:
-        is_outdated: whether the page needs a complete snapshot to be rebuilt from.
+        is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
     """
 
@@ -61,11 +61,12 @@ class Page:
         self._client = client
         self._context = context
         self._channel = FrameChannel(client)
-        self.exporter, self._rebuilds = Exporter(client), RebuildThread(client)
+        self.exporter = Exporter(client)
+        self._rebuilds = RebuildThread(client)
         self._framed, self._settling = 0.0, SETTLING
         self._switches, self._switched = Switches(), set[str]()
         self._building, self.is_outdated = True, False
-        self._wanted = Preferences(client)
+        self._preferences = Preferences(client)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._is_phone = self._is_narrow()
@@ -109,12 +110,12 @@ class Page:
         self._framed = 0.0
 
     def send(self) -> None:
-        """See `app.simulation.scheduled_lab.Display`."""
+        """Send the frame to the browser."""
         self._channel.send()
 
     @property
     def updates(self) -> int:
-        """See `app.server.tab_visibility.CountingDisplay`."""
+        """Number of updates sent to the browser."""
         return self._channel.frames
 
     def _renew(self, snapshot: PageSnapshot | Motion) -> None:
@@ -145,20 +146,27 @@ class Page:
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
         one_at_a_time.rest()
-        drawn = self._client.scene, self._scene.stage, robot
-        how = self._switches, self._rebuilds.submit, self._is_phone
-        self._overlays = Overlays(*drawn, *how)
+        self._overlays = Overlays(
+            scene=self._client.scene,
+            stage=self._scene.stage,
+            robot=robot,
+            switches=self._switches,
+            submit=self._rebuilds.submit,
+            is_narrow=self._is_phone,
+        )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
         self._client.gui.add_html(render("panel/page.html", words=words))
-        self._narration = Narration(self._client.gui, words, self._wanted, self._scene.captions)
+        self._narration = Narration(
+            self._client.gui, words, self._preferences, self._scene.captions
+        )
         self._parts.append(self._narration)
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
         self._build_panels(first, words, post)
-        own = {"view": self.reset_view, "summary": self._narration.ask_summary}
-        add_keys(self._client.gui, words, post, own)
+        page_actions = {"view": self.reset_view, "summary": self._narration.ask_summary}
+        add_keys(self._client.gui, words, post, page_actions)
         self._building = self.is_outdated = False
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
@@ -167,42 +175,69 @@ class Page:
         if not first.key.in_lesson:
             self._build_free_lab(controls, first, words, post)
             return
-        change = self._rebuilds.change
-        tab = None
+        lesson_tab = None
         if self._is_narrow():  # a single panel with tabs: the lesson first, then the lab
             tabs = gui.add_tab_group()
-            tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
-            own = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
-            with own:
+            lesson_tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
+            step_tab = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
+            with step_tab:
                 self._build_head(first, words, post)
-        else:  # what a step speaks of is seen beneath its text; the plot comes last
+        else:  # the controls stand beneath the text of the step; the plot comes last
             self._build_numbers(words)
             tabs = gui.add_tab_group()
-            own = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        course = self._context.course
-        build = controls.of_step if tab is None else controls.run_of_step
-        self._parts.append(StepControls(gui, own, words, course, build, change, first))
-        if tab is not None:  # with the text that speaks of them
-            listed = gui, tab, words, course, controls.listed_by_step, change, first
-            self._parts.append(StepControls(*listed, pinned=True))
+            step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
+        build = controls.of_step if lesson_tab is None else controls.run_of_step
+        self._parts.append(self._step_controls(step_tab, words, build, first))
+        if lesson_tab is not None:  # beside the text that mentions them
+            build = controls.listed_by_step
+            self._parts.append(self._step_controls(lesson_tab, words, build, first, pinned=True))
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.everything(first)
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
-        if tab is None:
+        if lesson_tab is None:
             self._build_navigation(first, words, post)
             self._build_distance(first, words)
             self._build_step_plot(controls, first, words)
-        own = words, post, course, self._scene, change, first, self.exporter.report
-        lesson = LessonPanel(self._client, *own, tab=tab, student=self._context.code)
+        lesson = LessonPanel(
+            client=self._client,
+            words=words,
+            post=post,
+            course=self._context.course,
+            scene=self._scene,
+            change=self._rebuilds.change,
+            first=first,
+            report=self.exporter.report,
+            tab=lesson_tab,
+            student=self._context.code,
+        )
         self._parts.append(lesson)
+
+    def _step_controls(
+        self,
+        tab: viser.GuiTabHandle,
+        words: Words,
+        build: Build,
+        first: PageSnapshot,
+        pinned: bool = False,
+    ) -> StepControls:
+        return StepControls(
+            gui=self._client.gui,
+            tab=tab,
+            words=words,
+            course=self._context.course,
+            build=build,
+            change=self._rebuilds.change,
+            first=first,
+            pinned=pinned,
+        )
 
     def _build_free_lab(
         self, controls: PanelFactory, first: PageSnapshot, words: Words, post: Post
     ) -> None:
-        """Build all panels: first what there is to do, then the plot of what it does."""
+        """Build all panels: first the run controls, then the plot of their effect."""
         self._build_numbers(words)
         self._build_navigation(first, words, post)
         self._parts += controls.run(first)
@@ -211,23 +246,29 @@ class Page:
         self._parts.append(FirstMinute(self._client, words))
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
-        """Build the window with the plot that a lesson's step speaks of."""
-        gui, course, change = self._client.gui, self._context.course, self._rebuilds.change
-        plot = controls.plot_of_step, change, first, self.reset_view
-        self._step_plot = StepPlot(gui, words, course, *plot)
+        """Build the window with the plot of a lesson's step."""
+        self._step_plot = StepPlot(
+            gui=self._client.gui,
+            words=words,
+            course=self._context.course,
+            build=controls.plot_of_step,
+            change=self._rebuilds.change,
+            first=first,
+            on_change=self.reset_view,
+        )
         self._parts.append(self._step_plot)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
         return PanelFactory(
-            self._client.gui,
-            words,
-            post,
-            self.exporter,
-            self._rebuilds.submit,
-            self._scene,
-            self._overlays,
-            self._context,
-            self.reset_view,
+            gui=self._client.gui,
+            words=words,
+            post=post,
+            exporter=self.exporter,
+            submit=self._rebuilds.submit,
+            scene=self._scene,
+            overlays=self._overlays,
+            context=self._context,
+            reset_view=self.reset_view,
         )
 
     def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
@@ -237,26 +278,34 @@ class Page:
         self._build_distance(first, words)
 
     def _build_navigation(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        """Build the ways to the help, to the lessons and into the class."""
+        """Build the menus, the lesson menu and the class panel."""
         gui = self._client.gui
         self._build_menus(first, words, post)
         if self._context.course.lessons:
-            self._parts.append(LessonMenu(gui, words, post, self._context.course, first))
+            menu = LessonMenu(gui, words, post, course=self._context.course, first=first)
+            self._parts.append(menu)
         if self._context.seat is not None:
             self._parts.append(ClassPanel(gui, words, self._context, first))
 
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""
-        PageMenus(self._client.gui, words, post, first, self._wanted)
+        PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
 
     def _build_numbers(self, words: Words) -> None:
         self._parts.append(Readout(self._client.gui, words))
 
     def _build_distance(self, first: PageSnapshot, words: Words) -> None:
         """Build the plot of the distance from the path."""
-        gui, fields, large = self._client.gui, first.key.fields, first.key.presenting
-        height = 240 if large else 190
-        self._parts.append(LivePlot(gui, words, fields, DISTANCE, height, large=large))
+        large = first.key.presenting
+        plot = LivePlot(
+            gui=self._client.gui,
+            words=words,
+            fields=first.key.fields,
+            plot=DISTANCE,
+            height=240 if large else 190,
+            large=large,
+        )
+        self._parts.append(plot)
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

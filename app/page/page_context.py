@@ -35,8 +35,8 @@ class PageContext:
         code: session code of its lab.
         post: receives the commands for its lab.
         course: all lessons.
-        keep_days: the lab is deleted when it has not been used for this number of days; 0 if it
-            lasts only as long as the server.
+        keep_days: number of days without use after which the lab is deleted; 0 if it lasts only
+            as long as the server.
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
         dark: whether the browser asks for dark pages.

@@ -1,4 +1,4 @@
-"""The two small buttons of every page: its language and display, and the help."""
+"""The two small buttons of every page: language and display, and help."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PageMenus:
     """Both buttons and their windows.
 
     Args:
-        wanted: the browser's preferences.
+        preferences: the browser's preferences.
     """
 
     def __init__(
@@ -34,10 +34,10 @@ class PageMenus:
         words: Words,
         post: Post,
         first: PageSnapshot,
-        wanted: Preferences,
+        preferences: Preferences,
     ) -> None:
         self._gui, self._words, self._post = gui, words, post
-        self._wanted = wanted
+        self._preferences = preferences
         self._presenting = first.key.presenting
         display = gui.add_button(words("display.title"), color=HALF, icon=viser.Icon.LANGUAGE)
         on_menu_press(display, self._open_display)
@@ -57,7 +57,9 @@ class PageMenus:
             )
             large = gui.add_checkbox(words("lesson.presenting"), self._presenting)
             labels = {"speaks": words("display.speaks"), "sounds": words("display.sounds")}
-            boxes = {name: gui.add_checkbox(labels[name], on) for name, on in self._wanted.items()}
+            boxes = {
+                name: gui.add_checkbox(labels[name], on) for name, on in self._preferences.items()
+            }
 
         def chosen(command: c.Command) -> None:
             close()
@@ -65,7 +67,7 @@ class PageMenus:
 
         on_user_update(large, lambda on: chosen(c.SetPresenting(on)))
         for name, box in boxes.items():
-            on_user_update(box, partial(self._wanted.set, name))
+            on_user_update(box, partial(self._preferences.set, name))
         return close
 
     def _open_help(self) -> Callable[[], None]:

@@ -35,13 +35,24 @@ from onpath.models.systems.catalogue import ROBOTS
 
 RUN = ("hold", "direction")
 REST = (
-    *("robot", "laws", "path", "flexible", "gains", "editor", "wall", "start", "show"),
-    *("plots", "compare", "past", "keep", "copy"),
+    "robot",
+    "laws",
+    "path",
+    "flexible",
+    "gains",
+    "editor",
+    "wall",
+    "start",
+    "show",
+    "plots",
+    "compare",
+    "past",
+    "keep",
+    "copy",
 )
 
-
 FEW = 5
-"""Sliders of a lesson's step that leave room for the buttons below them."""
+"""Number of sliders that leaves room for the buttons below them."""
 
 
 class Part(Protocol):
@@ -56,9 +67,9 @@ class PanelFactory:
     """Makes panels for one client.
 
     Args:
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
         scene: target of drawing, pulling and shading.
-        overlays: what is shown in the scene on demand.
+        overlays: the optional drawings in the scene.
         reset_view: resets the camera.
     """
 
@@ -84,7 +95,7 @@ class PanelFactory:
         return self.run(first) + self.the_rest(first)
 
     def run(self, first: PageSnapshot) -> list[Part]:
-        """Build what runs and holds the robots."""
+        """Build the controls that run and hold the robots."""
         return [part for name in RUN for part in self._add(name, first)]
 
     def the_rest(self, first: PageSnapshot) -> list[Part]:
@@ -92,10 +103,10 @@ class PanelFactory:
         return [part for name in REST for part in self._add(name, first)]
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel and the controls of a lesson's step, and plots without a window."""
+        """Build the run panel, the controls of a lesson's step, and its plots without a window."""
         if len(_sliders(scene, first)) > FEW:
             parts = self._add("hold", first) + self.listed_by_step(scene, first)
-        else:  # the button to hold is seen below them
+        else:  # the Hold button stays in view below them
             parts = self._add_sliders(scene, first) + self._add("hold", first)
             parts += self._add_others(scene, first)
         return parts if has_window(scene) else parts + self.plot_of_step(scene, first)
@@ -112,7 +123,7 @@ class PanelFactory:
         names = _sliders(scene, first)
         if not names:
             return []
-        return [ParameterWidgets(self._gui, self._words, self._post, names, first)]
+        return [ParameterWidgets(self._gui, self._words, self._post, names=names, first=first)]
 
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
@@ -120,18 +131,28 @@ class PanelFactory:
         return [part for name in names if name != "hold" for part in self._add(name, first, True)]
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot, height: int = 200) -> list[Part]:
-        """Build the plots of a lesson's step, if it has any, those over time of a height [px]."""
+        """Build the plots of a lesson's step, if it has any.
+
+        Args:
+            height: of the plots over time, [px].
+        """
         fields, large = first.key.fields, first.key.presenting
         plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        parts = self._gui, self._words, fields
-        return [add_plot(*parts, plot, height, large=large) for plot in plots]
+        return [
+            add_plot(self._gui, self._words, fields, plot, height=height, large=large)
+            for plot in plots
+        ]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""
         return ShowPanel(self._gui, self._words, self._overlays, expanded=True)
 
     def _add(self, name: str, first: PageSnapshot, expanded: bool = False) -> list[Part]:
-        """Build a panel, expanded if a step of a lesson speaks of what is in its folder."""
+        """Build a panel.
+
+        Args:
+            expanded: whether its folder is open at first, as when a lesson's step names the panel.
+        """
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
             "hold": lambda: RunPanel(gui, words, post, self._reset_view),
@@ -142,14 +163,14 @@ class PanelFactory:
             "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "past": lambda: PastPanel(gui, words, post, exporter),
-            "keep": lambda: KeepPanel(gui, words, post, exporter, self._context),
+            "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
             "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
             "wall": lambda: WallPanel(gui, words, post, first),
-            "start": lambda: StartPanel(gui, words, post, first, self._scene.show_start),
+            "start": lambda: StartPanel(gui, words, post, first=first, show=self._scene.show_start),
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
         part = make[name]()
@@ -171,7 +192,9 @@ class PanelFactory:
             self._scene.show_singular_zone(visible)
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=expanded):
-            return PathPanel(self._gui, self._words, self._post, first, draw, shade)
+            return PathPanel(
+                self._gui, self._words, self._post, first=first, draw=draw, show_zone=shade
+            )
 
     def _flexible(self, first: PageSnapshot) -> Part | None:
         link = ROBOTS[first.key.robot].flexible_link
@@ -181,9 +204,15 @@ class PanelFactory:
         def choose(name: str) -> None:
             self._scene.mouse.pull = name
 
-        pulls = list(self._scene.stage.pulls)
         return FlexiblePanel(
-            self._gui, self._words, self._post, first, link, pulls, choose, self._submit
+            gui=self._gui,
+            words=self._words,
+            post=self._post,
+            first=first,
+            link=link,
+            pulls=list(self._scene.stage.pulls),
+            choose_pull=choose,
+            submit=self._submit,
         )
 
     def _copy(self, first: PageSnapshot) -> None:
@@ -196,7 +225,7 @@ class PanelFactory:
 
 
 def has_window(scene: StepSetup) -> bool:
-    """Whether the plot of a lesson's step stands over the scene: a single one, over time."""
+    """Whether a lesson's step has a plot window over the scene: for a single plot over time."""
     return len(scene.plots) == 1 and MORE[scene.plots[0]] is not PHASE
 
 

@@ -25,19 +25,18 @@ from onpath.models.systems.law_parameters import LEVEL_SET
 
 PLOT_WINDOW = 10.0  # [s], of the axis of an empty plot
 PADDING = (10, 12, 0, 0)
-"""Above, to the right, below and to the left of a plot, for the halves of its outermost numbers."""
-XI = ("xi", "xi_rate")  # fields in another unit with a level set
+"""Above, right, below and left of a plot [px]: room for the halves of its outermost numbers."""
+XI = ("xi", "xi_rate")  # fields whose unit is another one with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
-MARKS = ("―", "╌", "┈")  # for these patterns in the legend, which shows colours only
+MARKS = ("―", "╌", "┈")  # stand for these patterns in the legend, which shows colours only
 ROW = 22  # height of a row of the legend, [px]
 PER_ROW = 2  # lines in a row of the legend
 _PLAIN: uplot.Axis = {"ticks": {"show": False}}
 _LARGE: uplot.Axis = {**_PLAIN, "font": '17px "Inter", Arial, sans-serif'}
 AXES: tuple[uplot.Axis, ...] = (_PLAIN, {**_PLAIN, "space": 20})
-"""Of time and values; low charts, too, have several numbers at the side."""
+"""The axes of time and of values; the small spacing gives low charts several numbers, too."""
 LARGE: tuple[uplot.Axis, ...] = (_LARGE, {**_LARGE, "size": 60})
 """The same for a projector."""
-
 
 Fields = tuple[tuple[str, int], ...]
 """Data available for plotting; see `PageKey.fields`."""
@@ -52,8 +51,8 @@ class Plot:
         field: name of the field in a snapshot's samples.
         scale: factor from SI to displayed units.
         lines: names of the field's components; one name for a single line.
-        least: minimum range of the axis, so that a ripple of a micrometre is not magnified to full
-            height, and a robot at rest has numbers on it. None to fit the data.
+        least: minimum range of the axis, so that a ripple of a micrometre does not fill the chart,
+            and the axis has numbers when the robot is at rest. None to fit the data.
     """
 
     name: str
@@ -72,7 +71,7 @@ def _numbered(symbol: str, field: str) -> Callable[[Fields], list[str]]:
 
 
 def _of_xi(field: str, *symbols: str) -> Callable[[Fields], list[str]]:
-    """A single line is named after its robot; across a space curve there are two, with symbols."""
+    """A single line is named after its robot; the two lines of a space curve have symbols."""
 
     def names(fields: Fields) -> list[str]:
         return list(symbols) if dict(fields)[field] > 1 else [""]
@@ -87,7 +86,7 @@ def _alone(_: Fields) -> list[str]:
 
 DISTANCE = Plot("distance", "distance", 1e3, _alone, least=(0.0, 1.0))
 PHASE = Plot(PHASE_NAME, "xi_rate", 1e3, _alone)
-"""Is not over time; see `PhasePlot`."""
+"""Not a plot over time; see `PhasePlot`."""
 MORE = {
     plot.name: plot
     for plot in (
@@ -119,6 +118,7 @@ class LivePlot:
 
     Args:
         height: of the chart, [px]; less if its legend needs a second row.
+        level_set: whether ξ₁ is an area, [m²], instead of a distance.
         large: whether it is shown with a projector.
     """
 
@@ -135,7 +135,7 @@ class LivePlot:
         self._gui, self._words, self._has_xi = gui, words, plot.field in XI
         in_level_set = level_set and self._has_xi
         self._shown = -1.0
-        # what else ξ contains is in mm
+        # with a level set only the first line is drawn: the others have another unit
         self._names, self._laws = [""] if in_level_set else plot.lines(fields), DEFAULT_LAWS
         least = plot.least
         if in_level_set and least is not None:  # s is 100 mm² at 1 mm beside a circle of 50 mm
@@ -185,7 +185,7 @@ class LivePlot:
         for side, title in side_titles(self._laws, self._words).items():
             for name, dash, mark in zip(self._names, LINES, MARKS, strict=False):
                 label = f"{title} {name} {mark}" if name else title
-                width = 4 if side == LEFT else 2  # so that one is seen under the other
+                width = 4 if side == LEFT else 2  # so that one line stays visible under the other
                 line = uplot.Series(label=label, stroke=OF_SIDE[side].hex, width=width)
                 if dash is not None:
                     line["dash"] = dash
@@ -203,11 +203,11 @@ class LivePlot:
         self._shown, times = snapshot.time, snapshot.plots.times
         since = np.searchsorted(times, snapshot.plots.across_since) if self._has_xi else 0
         times = times[since:]
-        if len(times) < 2:  # what was plotted before a reset is not of this run
+        if len(times) < 2:  # the lines of the run before a reset disappear
             update_gui(self._handle, "data", self._empty)
             return
         values = snapshot.plots.values[since:, :, self._lines].astype(float) * self._scale
-        lines = np.array([times, *values.reshape(len(times), -1).T])  # each line in succession
+        lines = np.array([times, *values.reshape(len(times), -1).T])  # one line after the other
         finite = lines if np.isfinite(lines).all() else np.nan_to_num(lines)
         update_gui(self._handle, "data", tuple(finite))
 
@@ -231,17 +231,25 @@ def add_plot(
     level_set: bool = False,
     large: bool = False,
 ) -> LivePlot | PhasePlot:
-    """Add a plot of those that can be chosen; see `LivePlot`."""
+    """Add one of the selectable plots; see `LivePlot`."""
     if plot is PHASE:
         return PhasePlot(gui, words)
-    return LivePlot(gui, words, fields, plot, height, level_set, large)
+    return LivePlot(
+        gui=gui,
+        words=words,
+        fields=fields,
+        plot=plot,
+        height=height,
+        level_set=level_set,
+        large=large,
+    )
 
 
 class MorePlots:
     """A selectable plot.
 
     Args:
-        post: is told whether the phase plane is drawn.
+        post: receives a command that says whether the phase plane is shown.
     """
 
     def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post) -> None:
@@ -267,7 +275,8 @@ class MorePlots:
                 self._plot = None
             if chosen is not None:
                 with self._folder:
-                    parts = self._gui, self._words, self._fields, chosen
-                    self._plot = add_plot(*parts, level_set=level_set)
+                    self._plot = add_plot(
+                        self._gui, self._words, self._fields, chosen, level_set=level_set
+                    )
         if self._plot is not None:
             self._plot.follow(snapshot)

@@ -10,7 +10,7 @@ import viser
 from onpath.app.viser_adapter.local_storage import ask_item
 
 DEFAULTS = {"speaks": True, "sounds": False}
-"""Whether what happens is spoken by a screen reader, and whether the distances are played."""
+"""Whether a screen reader speaks about the robots, and whether the distances are heard as tones."""
 
 
 class Preferences(Mapping[str, bool]):
@@ -31,10 +31,10 @@ class Preferences(Mapping[str, bool]):
         return len(self._values)
 
     def set(self, name: str, on: bool) -> None:
-        """Change a switch, and have the browser keep it."""
+        """Change a switch and store it in the browser."""
         self._values[name] = on
         self._client.local_storage.set_item(name, "yes" if on else "no")
 
     def _heard(self, name: str, kept: str) -> None:
-        """The browser's value is not trusted: anything invalid leaves the default."""
+        """Take a browser's value, which is not trusted: an invalid one leaves the default."""
         self._values[name] = {"yes": True, "no": False}.get(kept, DEFAULTS[name])

@@ -31,16 +31,16 @@ class RebuildThread:
             self._pool.submit(guarded)
 
     def change(self, work: Callable[[], None]) -> None:
-        """Queue a change of widgets, which the browser gets as a whole.
+        """Queue a change of widgets, which the browser receives as a whole.
 
-        A widget that is pressed before its callbacks are set would do nothing.
+        Otherwise a user could press a widget before its callbacks are set, in vain.
         """
 
-        def whole() -> None:
+        def atomically() -> None:
             with self._client.atomic():
                 work()
 
-        self.submit(whole)
+        self.submit(atomically)
 
     def close(self) -> None:
         """Start no further work."""

@@ -1,4 +1,4 @@
-"""How a prediction is drawn: the board in the scene, and sliders instead of the mouse."""
+"""Widgets to draw a prediction: a board in the scene, and sliders instead of the mouse."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Drawn = Callable[[np.ndarray, np.ndarray], None]
 
 
 class SketchAnswer:
-    """The board and the sliders, added to the container that is open."""
+    """The board and the sliders, added to the open container."""
 
     def __init__(
         self, client: viser.ClientHandle, scene: Scene, block: Sketch, run: LessonView, drawn: Drawn
@@ -35,7 +35,7 @@ class SketchAnswer:
         robot = robot_names(run.laws_shown, words)[block.robot]
         title = f"{robot}: {words(f'quantity.{block.quantity}')}"
         scene.show_robots(False)
-        self._board = SketchBoard(client.scene, scene.stage, block, title, drawn)
+        self._board = SketchBoard(client.scene, scene.stage, block, title=title, on_drawn=drawn)
         self._folder = client.gui.add_folder(words("lesson.numbers"), expand_by_default=False)
         with self._folder:
             self._add_numbers(client.gui, block, run, drawn)

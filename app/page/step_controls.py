@@ -16,7 +16,7 @@ from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
 LAST = 1e9
-"""Order of a folder that comes after all that is added later."""
+"""Order of a folder that stays last, whatever is added later."""
 
 Build = Callable[[StepSetup, PageSnapshot], list[Part]]
 """Adds the widgets of a set-up."""
@@ -31,7 +31,7 @@ class WindowSize:
     Attributes:
         width, height: [px].
         plot: height of the plot, [px].
-        share: of the scene's height, which is left to the window.
+        share: of the scene's height that the window covers.
     """
 
     width: int
@@ -41,7 +41,7 @@ class WindowSize:
 
 
 WINDOW, LARGE_WINDOW = WindowSize(440, 240, 160, 0.31), WindowSize(680, 380, 285, 0.37)
-"""Large: with a projector."""
+"""The large window is for a projector."""
 
 
 class StepControls:
@@ -49,8 +49,8 @@ class StepControls:
 
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
-        pinned: whether the folder stays at the lower edge of a page that is scrolled, and is left
-            out when it would be empty; see assets/page/style.css.
+        pinned: whether the folder stays at the lower edge of a scrolled page; it is then omitted if
+            it would be empty. See assets/page/style.css.
     """
 
     def __init__(
@@ -103,12 +103,12 @@ class StepControls:
 
 
 class StepPlot:
-    """A window over the scene with the open step's plot, which is seen together with its text.
+    """A window over the scene with the open step's plot, in view together with the step's text.
 
     Args:
-        build: adds the plot of a set-up, if it has one, of a height [px].
+        build: adds the plot of a set-up, if it has one; the last argument is its height, [px].
         change: changes widgets in another thread; see `RebuildThread.change`.
-        on_change: is told when the window comes or goes.
+        on_change: called when the window appears or disappears.
     """
 
     def __init__(
@@ -131,7 +131,7 @@ class StepPlot:
 
     @property
     def share(self) -> float:
-        """Of the scene's height, from below, that the window takes."""
+        """Share of the scene's height that the window covers, from below."""
         return 0.0 if self._panel is None else self._size.share
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -144,7 +144,7 @@ class StepPlot:
             part.follow(snapshot)
 
     def _open(self, first: PageSnapshot) -> None:
-        """Close the window, and open another one if the step has a plot."""
+        """Close the window, and open a new one if the step has a plot."""
         was_open, self._parts = self._panel is not None, []
         if self._panel is not None:
             self._panel.remove()

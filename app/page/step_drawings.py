@@ -1,4 +1,4 @@
-"""What a lesson's step draws in the scene: it switches it on when the step is opened."""
+"""The drawings in the scene that a lesson's step switches on when it is opened."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ Place = tuple[str, int]
 
 
 class StepDrawings:
-    """Switches drawings on and off with the steps; in between the student may switch them.
+    """Switches drawings on and off with the steps; in between, the student may switch them.
 
     Args:
-        overlays: what is switched.
-        switched: names of what the last step has switched on; kept while a page is rebuilt.
+        overlays: the drawings.
+        switched: names of the drawings that the last step switched on; kept while a page is
+            rebuilt.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The ways out of a step, below its text: next, back, set up again, free lab."""
+"""The navigation buttons below a step's text: next, back, set up again, free lab."""
 
 from __future__ import annotations
 
@@ -36,28 +36,31 @@ def _add_next(gui: viser.GuiApi, run: LessonView, post: Post) -> list[Any]:
     if run.waits or unseen:
         colour = "gray"
         label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
-    on = _button(gui, post, label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
+    forward = _button(gui, post, label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
     past, command = run.past_optional(), c.FinishLesson()
     if past is None or not run.may_go(past):
-        return [on]
+        return [forward]
     label = run.words("lesson.finish")
     if past:  # past the optional steps that come next; else to the end
         label = run.words("lesson.past_optional", step=run.index + 1 + past)
         command = c.GoToStep(past)
-    return [on, _button(gui, post, label, command, "gray", viser.Icon.PLAYER_TRACK_NEXT)]
+    skip = _button(gui, post, label, command, "gray", viser.Icon.PLAYER_TRACK_NEXT)
+    return [forward, skip]
 
 
 def _others(run: LessonView) -> dict[str, c.Command]:
     """The smaller buttons: back, set up again, free lab."""
     lesson = run.lesson
     first = lesson is None or run.beside(-1) == (lesson.name, run.index)
-    ways = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
+    commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
     missing = {
         "back": first or not run.may_go(-1),
         "again": run.is_test,
         "close": run.pace is not None,
     }
-    return {run.words(f"lesson.{key}"): way for key, way in ways.items() if not missing[key]}
+    return {
+        run.words(f"lesson.{key}"): command for key, command in commands.items() if not missing[key]
+    }
 
 
 def _button(

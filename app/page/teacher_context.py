@@ -16,12 +16,12 @@ class TeacherChoices:
 
     Attributes:
         lesson, step: where the displayed prediction is asked.
-        shown: whether the answers are shown, and not only how many there are.
+        shown: whether the answers themselves are shown, and not only their number.
         revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
-        told: what came of deleting a student.
-        picked: numbers of the sketches that are shown; empty for all.
-        numbered: sketches in the order in which they came, by where they were asked, for `picked`.
+        message: the outcome of deleting a student.
+        picked: numbers of the sketches to show; empty for all.
+        numbered: sketches in order of arrival, by lesson, step and round; `picked` counts them.
     """
 
     lesson: str = ""
@@ -29,7 +29,7 @@ class TeacherChoices:
     shown: bool = True
     revealed: bool = False
     followed: str = ""
-    told: str = ""
+    message: str = ""
     picked: tuple[int, ...] = ()
     numbered: dict[tuple[str, int, bool], list[Answer]] = field(default_factory=dict)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import viser
+from typing_extensions import override
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -33,28 +34,37 @@ class TeacherView(Page):
         self._own_words, self._teaching = Words(first.key.language), teaching
         super().__init__(client, first, context)
 
+    @override
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
         return key.student, key.robot, key.fields, key.plane
 
+    @override
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         return _ignore if snapshot.key.student else self._context.post
 
+    @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        gui, own, teaching = self._client.gui, self._own_words, self._teaching
+        gui, own_words, teaching = self._client.gui, self._own_words, self._teaching
         if first.key.student:
-            self._parts.append(FollowedStudent(gui, own, teaching))
+            self._parts.append(FollowedStudent(gui, own_words, teaching))
             self._build_numbers(words)
             self._build_distance(first, words)
-            self._parts.append(self._controls(own, post).show())
+            self._parts.append(self._controls(own_words, post).show())
         else:
-            self._parts.append(TeacherControls(gui, own, teaching))
+            self._parts.append(TeacherControls(gui, own_words, teaching))
             self._build_numbers(words)
-            self._build_menus(first, own, post)
+            self._build_menus(first, own_words, post)
             self._build_distance(first, words)
-            self._parts += self._controls(own, post).everything(first)
-        submit, course = self._rebuilds.submit, self._context.course
-        panel = TeacherPanel(self._client, own, self._context.post, course, teaching, submit)
+            self._parts += self._controls(own_words, post).everything(first)
+        panel = TeacherPanel(
+            client=self._client,
+            words=own_words,
+            post=self._context.post,
+            course=self._context.course,
+            teaching=teaching,
+            submit=self._rebuilds.submit,
+        )
         self._parts.append(panel)
 
 

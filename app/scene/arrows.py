@@ -1,4 +1,4 @@
-"""Arrows that are as long on the screen as what they stand for."""
+"""Arrows drawn to length, even where they are shorter than their heads."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ SHORTEST = 2e-3
 
 @dataclass(frozen=True, slots=True)
 class ArrowShape:
-    """Sizes of an arrow that is longer than its head, [m]."""
+    """Dimensions of an arrow that is longer than its head, [m]."""
 
     shaft_radius: float
     head_radius: float
     head_length: float
 
     def sizes(self, length: float) -> dict[str, float]:
-        """viser's sizes for an arrow of some length, [m]; a shorter one is a smaller head alone."""
+        """viser's sizes for an arrow of this length, [m]; a short one is a smaller head alone."""
         share = min(1.0, length / self.head_length)
         return {
             "shaft_radius": share * self.shaft_radius,
@@ -38,8 +38,8 @@ class ArrowShape:
 class Arrows:
     """Some arrows of one colour.
 
-    viser draws all heads of a node equally long, also where the arrow is shorter than its head.
-    So each arrow is a node of its own.
+    viser draws all heads of a node equally long, even where the arrow is shorter than its head, so
+    each arrow is a node of its own.
 
     Args:
         points: beginning and end of each arrow, shape (n, 2, 3), [m].

@@ -1,4 +1,4 @@
-"""What each robot is doing just now, in a few words with the distance from the path."""
+"""Captions: in a few words, what each robot is doing, with its distance from the path."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
 OFF = 0.005
-"""Distance from which on a robot counts as off the path [m]."""
+"""Distance at which a robot counts as off the path [m]."""
 STILL, NEAR = 2e-3, 3e-3
-"""Speed below which a robot rests [m/s], and distance from an end at which it is there [m]."""
+"""Speed below which a robot is at rest [m/s], and distance within which it is at an end [m]."""
 PULLED = 0.05
-"""Force from which on a robot counts as pulled [N]."""
+"""Force above which a robot counts as pulled [N]."""
 RETURNS, FULL = 0.5, 0.99
-"""Shares from which on a law counts as returning from far away, and its integral as bounded."""
+"""Shares above which a law counts as returning from far away, and its integral as bounded."""
 
 
 class Captions:
-    """A caption for each robot, empty for one that does what its law's title says.
+    """A caption for each robot; empty while the robot does what its law's title says.
 
-    While a robot is held back, its caption has the largest distance since then: that of one that is
-    torn off swings to and fro.
+    While a robot is held back, its caption has the largest distance since then, because the
+    distance of one that is torn off swings to and fro.
 
     Attributes:
         shown: the captions for the latest snapshot, by side.
@@ -38,7 +38,7 @@ class Captions:
         self.shown = dict[str, str]()
 
     def follow(self, snapshot: Snapshot) -> dict[str, str]:
-        """The captions for a snapshot, by side; call it with one snapshot after the other."""
+        """The captions for a snapshot, by side. Call it with snapshots in order of time."""
         views = snapshot.robots.items()
         self.shown = {side: self._of(side, view, snapshot) for side, view in views}
         return self.shown
@@ -74,7 +74,7 @@ def is_at_end(view: RobotView, path: np.ndarray) -> bool:
 
 
 def _kind(view: RobotView, is_held: bool, distance: float) -> str:
-    """Which caption: by what the robot does, and whether its law runs by the clock."""
+    """Name of the caption for what a robot does, given whether its law runs by the clock."""
     by_clock, is_off = law_named(view.law).by_clock, distance >= OFF
     if is_held:
         return ("torn_off" if is_off else "held") if by_clock else "off" if is_off else "waits"
@@ -89,10 +89,10 @@ def _kind(view: RobotView, is_held: bool, distance: float) -> str:
 
 
 def spoken(captions: Mapping[str, str], titles: Mapping[str, str], words: Words) -> str:
-    """One line with the captions of all robots that have one."""
-    said = [
+    """One line with the captions of all robots that have one, to be spoken."""
+    sentences = [
         words("caption.spoken", robot=titles[side], caption=caption)
         for side, caption in captions.items()
         if caption
     ]
-    return " ".join(said)
+    return " ".join(sentences)

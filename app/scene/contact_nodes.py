@@ -1,4 +1,4 @@
-"""What holds or pulls an end-point: the brake's guide, and the size of the force at the contact."""
+"""The brake's guide at an end-point, and a label with the size of the force on it."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
 FORCE_SHOWN = 0.05
 """Forces below this are not drawn [N]."""
 CLEAR = 0.034
-"""From the path to the label of a force, above or below it [m]."""
+"""Distance of a force's label from the path, above or below it [m]."""
 WIDE = 0.13
 """Width of such a label [m]."""
 STAYS = 0.03
-"""How far an end-point goes until the label of its force follows it [m]."""
+"""How far an end-point moves before the label of its force follows it [m]."""
 
 
 class ContactNodes:
@@ -42,7 +42,7 @@ class ContactNodes:
         self._labels = {side: ForceLabel(scene, stage, side, words) for side in stage.bases}
 
     def update(self, snapshot: Snapshot) -> None:
-        """Show a snapshot; sends nothing if the same is shown already."""
+        """Show a snapshot; sends nothing if nothing has changed."""
         path = snapshot.path.points
         for side, view in snapshot.robots.items():
             force = hypot(*view.force.tolist())
@@ -80,7 +80,7 @@ class ForceLabel:
         self._words = words
         self._at: np.ndarray | None = None
         self._base = stage.bases[side]
-        self._within = stage.low[0] + WIDE / 2, stage.high[0] - WIDE / 2
+        self._leftmost, self._rightmost = stage.low[0] + WIDE / 2, stage.high[0] - WIDE / 2
         self._text = ChangingText(scene, f"/force_labels/{side}", np.zeros(3))
 
     def show(self, force: float, tip: np.ndarray, path: np.ndarray) -> None:
@@ -94,12 +94,12 @@ class ForceLabel:
             low, high = path[:, 2].min(), path[:, 2].max()
             above = tip[2] > (low + high) / 2
             height = max(high, tip[2]) + CLEAR if above else min(low, tip[2]) - CLEAR
-            x = np.clip(tip[0], *self._within)
+            x = np.clip(tip[0], self._leftmost, self._rightmost)
             move_node(self._text.label, self._base + [x, tip[1], height])
         self._text.show(self._words("scene.force", force=f"{force:.{int(force < 1.0)}f}"))
 
 
 def _same(some: dict[str, np.ndarray], others: dict[str, np.ndarray]) -> bool:
     return some.keys() == others.keys() and all(
-        each is others[side] or np.array_equal(each, others[side]) for side, each in some.items()
+        brake is others[side] or np.array_equal(brake, others[side]) for side, brake in some.items()
     )

@@ -1,4 +1,4 @@
-"""Both errors as arrows at each end-point, on demand: e to the timetable's point, d to the path."""
+"""Both errors as optional arrows at each end-point: e to the timetable's point, d to the path."""
 
 from __future__ import annotations
 
@@ -16,20 +16,26 @@ if TYPE_CHECKING:
     import viser
 
 ARROWS = {"e": palette.VERMILLION, "d": palette.AZURE}
-"""Name of each error, and its colour: that of the robot whose law makes it zero."""
+"""Name of each error, and the colour of the robot whose law makes it zero."""
 SHAPE = ArrowShape(shaft_radius=0.0018, head_radius=0.0055, head_length=0.012)
 CLOCK = 0
 """Index of the robot whose marker is the timetable's point."""
 
 
 class ErrorNodes:
-    """Both arrows at each robot; made when they are to be shown, and then removed."""
+    """Both arrows at each robot; they exist only while they are shown."""
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, motion: Motion) -> None:
         self._origins, self._toward = stage.origins, -0.012 * stage.away
         self._drawn = self._points(motion)
         self._arrows = [
-            Arrows(scene, f"/show/errors/{name}", self._drawn[:, i], colour, SHAPE)
+            Arrows(
+                scene,
+                f"/show/errors/{name}",
+                points=self._drawn[:, i],
+                colour=colour,
+                shape=SHAPE,
+            )
             for i, (name, colour) in enumerate(ARROWS.items())
         ]
 

@@ -1,4 +1,4 @@
-"""The hand that holds an end-point while its user pulls at it."""
+"""The hand that holds an end-point while a user pulls it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,11 @@ if TYPE_CHECKING:
 
 
 class HandNodes:
-    """A hand for each robot, seen while it is pulled; without a pull nothing is done."""
+    """A hand for each robot, visible while the robot is pulled.
+
+    Attributes:
+        pulled: sides whose robot is pulled.
+    """
 
     def __init__(self, scene: viser.SceneApi, stage: Stage) -> None:
         self._bases = stage.bases

@@ -1,7 +1,7 @@
-"""Where the labels of a robot stand: arcs of its joint angles, its lengths, and the axes of y.
+"""Positions of a robot's labels: arcs of its joint angles, its lengths, and the axes of y.
 
-Everything follows from what is drawn, in the robot's own frame: x right, y away, z up, [m]. Labels
-move with the robots, so that this is a CasADi function, made once for each robot.
+Everything follows from the drawing, in the robot's own frame: x right, y away, z up, [m]. Labels
+move with the robots, so this is a CasADi function, made once for each robot.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from onpath.models.systems.robots import Robot
 
 UP = ca.SX(ca.DM([0, 0, 1]))
 ARC, STEP = 0.058, 0.02
-"""Radius of the first arc, and how much larger each further one is [m]."""
+"""Radius of the first arc, and the increase to each further one [m]."""
 BEYOND = 0.016
-"""How far outside its arc the name of an angle stands, and a reference line ends [m]."""
+"""How far outside an arc its name stands, and its reference line ends [m]."""
 BESIDE = 0.026
-"""How far from its line the name of a length stands [m]."""
+"""Distance between a length's line and its name [m]."""
 BEFORE = 0.016
 """How far in front of the links' plane arcs are drawn [m]."""
 WAIST_RADIUS, WAIST_HEIGHT = 0.09, -0.028
@@ -112,8 +112,15 @@ def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
     if drawing.waist is not None:
         across = ca.cross(UP, plane.start)
         turn = ca.atan2(ca.dot(plane.ahead, across), ca.dot(plane.ahead, plane.start))
-        arc = WAIST_HEIGHT * UP, WAIST_RADIUS, (ca.SX(0), turn)
-        yield _arc(drawing.waist.name, *arc, (plane.start, across), 0.5, both=True)
+        yield _arc(
+            drawing.waist.name,
+            centre=WAIST_HEIGHT * UP,
+            radius=WAIST_RADIUS,
+            angles=(ca.SX(0), turn),
+            basis=(plane.start, across),
+            at=0.5,
+            both=True,
+        )
     for length in drawing.lengths:
         yield _length(length, plane, ends)
 
@@ -143,7 +150,14 @@ def _angle(angle: Angle, radius: float, plane: LinksPlane, ends: ca.SX) -> Mark:
     apart = plane.angle(_along(ends, angle.bar)) - begin - angle.near
     turn = angle.near + ca.atan2(ca.sin(apart), ca.cos(apart))  # apart, within ±π
     centre = ends[:, 2 * angle.bar] + BEFORE * plane.near
-    return _arc(angle.name, centre, radius, (begin, turn), (plane.ahead, UP), angle.at)
+    return _arc(
+        angle.name,
+        centre=centre,
+        radius=radius,
+        angles=(begin, turn),
+        basis=(plane.ahead, UP),
+        at=angle.at,
+    )
 
 
 def _arc(
@@ -155,10 +169,10 @@ def _arc(
     at: float,
     both: bool = False,
 ) -> Mark:
-    """An arc with the line from which it is measured, and outside it its name.
+    """An arc with the line from which it is measured, and its name outside.
 
     Args:
-        angles: where it begins, and how far it turns, [rad].
+        angles: its beginning and its turn, [rad].
         basis: unit vectors of its plane.
         at: where along the arc the name stands, from 0 to 1.
         both: whether there is a line at its end, too.

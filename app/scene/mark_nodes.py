@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import viser
 
 BEYOND = 0.014
-"""How far behind an arrow's tail its text stands [m]."""
+"""Distance of an arrow's text behind its tail [m]."""
 SHAPE = ArrowShape(shaft_radius=0.0016, head_radius=0.005, head_length=0.012)
 
 
@@ -46,8 +46,14 @@ class MarkNodes:
                     name = f"/show/marks/{side}/{i}"
                     self._nodes.append(add_text(scene, name, mark.text, place, letters))
         if arrows:
-            drawn = Arrows(scene, "/show/mark_arrows", np.stack(arrows), stage.tones.line, SHAPE)
-            self._nodes.extend(drawn.nodes)
+            drawn_arrows = Arrows(
+                scene,
+                "/show/mark_arrows",
+                points=np.stack(arrows),
+                colour=stage.tones.line,
+                shape=SHAPE,
+            )
+            self._nodes.extend(drawn_arrows.nodes)
 
     def remove(self) -> None:
         """Remove all nodes."""
@@ -56,5 +62,5 @@ class MarkNodes:
 
 
 def _placed(robot: Robot, at: tuple[float, float]) -> np.ndarray:
-    """A place of the path's plane, [mm], in the robot's own frame, shape (3,), [m]."""
+    """A point of the path's plane, [mm], in the robot's own frame, shape (3,), [m]."""
     return robot.place(robot.frame.lift(1e-3 * np.array(at)))

@@ -1,6 +1,6 @@
 """Meshes of the robots' parts, in their frames: x right, y away from the camera, z up.
 
-The parts are made beforehand, by `part_shapes.py`.
+`part_shapes.py` has made the parts beforehand.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from onpath.assets import asset_path
 PARTS = "parts.npz"
 LINK_THICKNESS = 0.012
 GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be grabbed [m]
-FLOOR_DEPTH = 0.17  # usual depth of the floor below the base pivot [m]
+FLOOR_DEPTH = 0.17  # default depth of the floor below the base pivot [m]
 RAIL = (0.0125, 0.0165)  # inner and outer edge of a brake's jaws, from its middle [m]
 WALL = (0.13, 0.04)  # length of the drawn part of a wall, and its depth behind the surface [m]
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """Triangles, whose corners are counter-clockwise as seen from outside.
+    """Triangles with their corners counter-clockwise as seen from outside.
 
     Attributes:
         vertices: shape (n, 3), [m].

@@ -1,4 +1,4 @@
-"""What the mouse does on end-points and control points: a pull, a dragged point, a selection."""
+"""The mouse on end-points and control points: pulling, dragging and selecting."""
 
 from __future__ import annotations
 
@@ -39,9 +39,9 @@ class SceneCallbacks:
         on_point_dragged: a control point has a new position, shape (3,), in the robot's frame [m].
         on_point_drag_end: the control point is released.
         on_point_selected: a control point was clicked or grabbed.
-        on_wall_moved: the wall's middle has a new place, shape (3,), in the robot's frame [m].
-        on_wall_turned: an end of the wall, 1 or -1, must point at a place, shape (3,), [m].
-        on_start_moved: the start of the next run has a new place, shape (3,), [m].
+        on_wall_moved: the wall's middle has a new position, shape (3,), in the robot's frame [m].
+        on_wall_turned: an end of the wall, 1 or -1, must point at a position, shape (3,), [m].
+        on_start_moved: the start of the next run has a new position, shape (3,), [m].
     """
 
     on_grab: Callable[[str, np.ndarray], None] = _ignore
@@ -62,10 +62,10 @@ class Mouse:
     Args:
         stage: where the robots stand.
         pointer: where the mouse is.
-        hooks: what is told.
+        hooks: the callbacks.
 
     Attributes:
-        motion: what is drawn.
+        motion: the displayed motion.
         pull: name of the plane in which an end-point is pulled, one of the stage's.
         path_first: whether a press where an end-point covers a control point takes the latter; the
             selected one is always taken.
@@ -82,7 +82,7 @@ class Mouse:
         self._point = DragByOffset(pointer)
 
     def connect_grips(self, grips: viser.BatchedMeshHandle) -> None:
-        """Listen to a node with an instance for every robot: what its end-point is pulled by."""
+        """Listen to the node by which end-points are pulled, with an instance for every robot."""
         grips.on_drag("left")(self._tip_dragged)
 
     def connect_points(self, points: viser.BatchedMeshHandle) -> None:
@@ -92,7 +92,7 @@ class Mouse:
 
     async def _tip_dragged(self, event: DragEvent) -> None:
         robot = event.instance_index
-        if robot is None or robot >= len(self._sides):  # a browser may send any
+        if robot is None or robot >= len(self._sides):  # a browser may send any number
             return
         side = self._sides[robot]
         if event.phase == "start":
@@ -129,7 +129,8 @@ class Mouse:
 
     async def _point_dragged(self, event: DragEvent) -> None:
         if (found := self._robot_and_point(event.instance_index)) is not None:
-            self._drag_point(event, *found)
+            robot, index = found
+            self._drag_point(event, robot, index)
 
     def _drag_point(self, event: DragEvent, robot: int, index: int) -> None:
         if event.phase == "start":
@@ -147,7 +148,7 @@ class Mouse:
             self._hooks.on_point_selected(found[1])
 
     def _robot_and_point(self, instance: int | None) -> tuple[int, int] | None:
-        """Number of the robot and of a control point that is drawn; None if there is no such.
+        """Numbers of the robot and of the control point of an instance; None if there is none.
 
         The path may have changed since the browser drew it, and a browser may send any number.
         """

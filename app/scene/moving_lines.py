@@ -1,4 +1,4 @@
-"""Line segments that follow the robots: they are sent only when they have moved visibly."""
+"""Line segments that follow the robots; they are sent only when they have moved visibly."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOVED = 1e-4
 
 
 def have_moved(points: np.ndarray, drawn: np.ndarray) -> bool:
-    """Whether points are to be drawn anew; never where a robot has diverged."""
+    """Whether points must be redrawn; never for a robot that has diverged."""
     return bool(np.isfinite(points).all() and np.abs(points - drawn).max(initial=0.0) > MOVED)
 
 

@@ -1,7 +1,7 @@
 """The shapes of the robots' parts, which trimesh makes, joins and smooths.
 
-`python -m onpath.app.scene.part_shapes` writes them to assets/parts.npz, which the lab draws: a lab
-that made them itself would show its first picture half a second later.
+`python -m onpath.app.scene.part_shapes` writes them to assets/parts.npz. A lab that made them
+itself would show its first picture half a second later.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from onpath.assets import asset_path
 SHARP = np.radians(30.0)  # sharper edges are not smoothed
 ROUND = 32  # points of a full circle
 SMALL_ROUND = 24  # points of the circle of a small part, of which there are many
-TOWARDS_VIEWER = rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0])  # from the axis z to -y
+TOWARDS_VIEWER = rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0])  # turns the axis z to -y
 
 Profile = Sequence[tuple[float, float]]
 """Radius and height along the axis of a solid of revolution, in order of the heights [m]."""
@@ -35,7 +35,8 @@ Layers = tuple[float, float]
 def crisp(*solids: Trimesh) -> Trimesh:
     """Closed solids as one mesh whose vertices are not shared across sharp edges.
 
-    The page computes the normal of a vertex from its triangles, and would round these edges.
+    The page computes the normal of a vertex from its triangles, and would round edges whose
+    vertices are shared.
     """
     smooth = [smooth_shade(solid, angle=SHARP, facet_minarea=None) for solid in solids]
     joined: Any = concatenate(smooth)
@@ -70,7 +71,7 @@ def chamfered(inner: np.ndarray, outline: np.ndarray, layers: Layers, depth: flo
     """A plate whose front and back have the inner outline.
 
     Args:
-        depth: distance from the front, and from the back, to where it has the whole outline [m].
+        depth: distance of the whole outline from the front and from the back [m].
     """
     front, back = layers
     rings = [(inner, front), (outline, front + depth), (outline, back - depth), (inner, back)]
@@ -201,7 +202,7 @@ def wall_lines() -> Trimesh:
 
 
 def hand() -> Trimesh:
-    """A hand that comes from below and takes what is at the origin between thumb and finger."""
+    """A hand from below that holds the origin between thumb and finger."""
     palm = finger((0.034, -0.030), (0.050, -0.046), 0.017, 0.016, (-0.046, -0.024))
     wrist = finger((0.050, -0.046), (0.074, -0.070), 0.0125, 0.0135, (-0.043, -0.027))
     thumb = finger((0.024, -0.036), (0.004, -0.006), 0.0085, 0.0055, (-0.042, -0.026))
@@ -215,7 +216,7 @@ def hand() -> Trimesh:
 
 
 SMALLER = 0.85
-"""The scale of the hand, so that the path is seen beside it."""
+"""The scale of the hand, so that the path stays visible beside it."""
 
 
 def finger(

@@ -1,4 +1,4 @@
-"""The path at every robot: its curve, its control points, and the place of a rejected edit."""
+"""The path at every robot: its curve, its control points, and the position of a rejected edit."""
 
 from __future__ import annotations
 

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     import viser
 
 BEHIND_LINKS, BEHIND_PATH = (0.052, 0.7), (0.008, 0.5)
-"""Depth of a map behind the path's plane [m], and its opacity: if the links move in that plane, and
-if they do not."""
+"""Depth of a map behind the path's plane [m], and its opacity: where the links move in that plane,
+and where they do not."""
 GAP = 0.97
-"""Share of the width between neighbours that a picture takes."""
+"""Width of a picture relative to the distance between neighbours."""
 UPRIGHT = 0.5
 """Least vertical part of a unit vector that counts as upright."""
 ZONE_PIXELS, ZONE_WIDTH, ZONE_OPACITY = 160, 0.02, 0.2
@@ -35,7 +35,7 @@ class PlaneNodes:
         scene: the client's scene.
         name: of the nodes' folder.
         stage: where the robots stand.
-        picture: what is shown.
+        picture: the image and its corners.
     """
 
     def __init__(
@@ -64,8 +64,8 @@ class PlaneNodes:
 def map_corners(stage: Stage, robot: Robot) -> tuple[np.ndarray, np.ndarray]:
     """Opposite corners of the mapped rectangle in the path's plane, shape (2,) each, [m].
 
-    It contains what the robot reaches in that plane, as far as its neighbours and the floor leave
-    room and the camera looks.
+    It contains the points that the robot reaches in that plane, within the room that its neighbours
+    and the floor leave and within the camera's view.
     """
     origin, right, up = stage.axes
     base = robot.frame.planar(robot.unplace(np.zeros(3)))
@@ -81,7 +81,7 @@ def map_corners(stage: Stage, robot: Robot) -> tuple[np.ndarray, np.ndarray]:
 
 
 def zone_picture(stage: Stage, robot: Robot) -> PlanePicture:
-    """Shades what the robot reaches near places where no path may be, as it is nearly singular."""
+    """Shading of the points in reach near configurations too close to singular for a path."""
     low, high = map_corners(stage, robot)
     margin = robot.margin(cell_centres(low, high, (ZONE_PIXELS, ZONE_PIXELS)))
     near = margin < LEAST_MARGIN
@@ -96,7 +96,7 @@ def zone_picture(stage: Stage, robot: Robot) -> PlanePicture:
 
 
 def _widened(marked: np.ndarray, by: int, axis: int) -> np.ndarray:
-    """Marks also what has a mark at most so many cells away along an axis."""
+    """The marks, extended by a number of cells along an axis in both directions."""
     padded = np.pad(marked, [(by, by) if i == axis else (0, 0) for i in range(2)], mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * by + 1, axis)
     return np.asarray(windows.any(axis=-1))

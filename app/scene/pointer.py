@@ -1,4 +1,4 @@
-"""The mouse on the plane of the path, in the frame of the robot that it is at."""
+"""Position of the mouse on the path's plane, in a robot's frame."""
 
 from __future__ import annotations
 
@@ -36,35 +36,38 @@ class Pointer:
         """A position of the pointer on a plane, by default that of the path.
 
         Args:
-            event: that tells it.
-            pointer: any point of the world under it, [m].
-            robot: number of the robot at which it is.
+            event: the event of the drag.
+            pointer: any point of the world under the mouse, [m].
+            robot: number of the robot in whose frame the result is.
 
         Returns:
-            The place in the robot's frame, shape (3,), [m], or None if there is none.
+            The position in the robot's frame, shape (3,), [m], or None if there is none.
         """
         camera, plane = event.client.camera.position, plane or self._plane
         return pointer_on_plane(camera, pointer, self._bases[robot], plane, self._reachable)
 
 
 class DragByOffset:
-    """A drag that keeps the offset of the press from the middle of what is dragged, so no jump."""
+    """A drag that keeps the offset between the press and the dragged object's middle.
+
+    So the object does not jump to the mouse.
+    """
 
     def __init__(self, pointer: Pointer) -> None:
         self._pointer = pointer
         self._offset = np.zeros(3)
 
     def press(self, event: DragEvent, robot: int, middle: np.ndarray) -> None:
-        """The drag begins.
+        """Begin a drag.
 
         Args:
-            robot: number of the robot at which it is.
-            middle: of what is dragged, in the robot's frame, shape (3,), [m].
+            robot: number of the robot.
+            middle: of the dragged object, in the robot's frame, shape (3,), [m].
         """
         pressed = self._pointer.place(event, event.start_position, robot)
         self._offset = np.zeros(3) if pressed is None else middle - pressed
 
     def target(self, event: DragEvent, robot: int) -> np.ndarray | None:
-        """Where the middle is dragged to, in the robot's frame, shape (3,), [m], or None."""
+        """The dragged middle's new position in the robot's frame, shape (3,), [m], or None."""
         place = self._pointer.place(event, event.end_position, robot)
         return None if place is None else place + self._offset

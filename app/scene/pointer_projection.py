@@ -14,7 +14,7 @@ from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
 PARALLEL_COSINE = 1e-3
-"""Rays that meet the plane at a flatter angle than this [rad] are taken as parallel to it."""
+"""Rays that meet the plane at a smaller angle than this [rad] count as parallel to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,21 +76,21 @@ def intersect_ray_plane(
 
 
 def _numbers(vector: ArrayLike) -> list[float]:
-    """The numbers of a vector; with three of them, lists are quicker than arrays."""
+    """The numbers of a vector as a list, which for three of them is faster than an array."""
     return np.asarray(vector, dtype=float).tolist()
 
 
 def _meeting(
-    start: list[float], way: list[float], there: list[float], normal: list[float]
+    start: list[float], direction: list[float], there: list[float], normal: list[float]
 ) -> list[float] | None:
-    """See `intersect_ray_plane`."""
-    lengths, closing = hypot(*way) * hypot(*normal), _dot(way, normal)
+    """The point where a ray from `start` meets a plane; see `intersect_ray_plane`."""
+    lengths, closing = hypot(*direction) * hypot(*normal), _dot(direction, normal)
     if not isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
         return None
     along = _dot(map(sub, there, start), normal) / closing
     if not along >= 0.0:
         return None
-    point = [x + along * dx for x, dx in zip(start, way, strict=True)]
+    point = [x + along * dx for x, dx in zip(start, direction, strict=True)]
     return point if all(map(isfinite, point)) else None
 
 
@@ -121,6 +121,6 @@ def pointer_on_plane(
         The point in the robot's frame, shape (3,), [m], or None if there is none.
     """
     origin, there, foot = map(_numbers, (camera, pointer, base))
-    start, way = list(map(sub, origin, foot)), list(map(sub, there, origin))
-    hit = _meeting(start, way, _numbers(plane.point), _numbers(plane.normal))
+    start, direction = list(map(sub, origin, foot)), list(map(sub, there, origin))
+    hit = _meeting(start, direction, _numbers(plane.point), _numbers(plane.normal))
     return None if hit is None else box.clamp(hit)

@@ -13,6 +13,7 @@ from onpath.app.lab.snapshots.snapshot import Counts, Motion
 from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5
+"""Differences up to this are not drawn [m, N]."""
 PLACED = ("bars", "parts", "tips")
 """Fields that are world positions; the others are directions, lengths and forces."""
 OF_BARS = ("bars", "quaternions", "lengths")
@@ -20,7 +21,7 @@ OF_BARS = ("bars", "quaternions", "lengths")
 
 
 class Poses(Struct, frozen=True, eq=False):
-    """Poses of everything that moves, for all robots, in the world.
+    """Poses of all moving parts of all robots, in the world.
 
     Attributes:
         whole: the fields of `PoseShapes`, one after the other, each of all robots; float32, as sent
@@ -49,7 +50,7 @@ class Poses(Struct, frozen=True, eq=False):
         return self.whole[self.fields["lengths"][0].start :]
 
     def is_news(self, drawn: Poses) -> bool:
-        """Whether it is finite and differs visibly from the last pose: by 10 µm or 10 µN."""
+        """Whether the poses are finite and differ visibly from the drawn ones (10 µm, 10 µN)."""
         return UNSEEN < difference(self.whole, drawn.whole) < np.inf  # false for NaN
 
 
@@ -69,7 +70,7 @@ def poses_of(stage: Stage, motion: Motion) -> Poses:
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    """Mapping from what is drawn of each robot, in its own frame, to `Poses`.
+    """Mapping from `Motion.drawn`, in each robot's own frame, to `Poses`.
 
     Attributes:
         order: index in `Motion.drawn` of each entry of `Poses.whole`.

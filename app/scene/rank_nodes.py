@@ -1,4 +1,4 @@
-"""The rank test (11) as a coloured map in the path's plane, on demand."""
+"""The rank test (11) as an optional coloured map in the path's plane."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 FINER = 4
-"""Pixels of the picture for a cell of the map, in either direction, between which it is smooth."""
+"""Pixels of the picture per cell of the map, in either direction; it is interpolated in between."""
 
 
 def map_picture(robot: Robot, grid: RankGrid, opacity: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Labels on the robots, on demand: joint angles with their arcs, lengths, and the axes of y."""
+"""Optional labels on the robots: joint angles with their arcs, lengths, and the axes of y."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     import viser
 
 LETTERS, LARGE = 0.024, 0.036
-"""Height of the letters, and on a narrow screen [m]."""
+"""Height of the letters, normally and on a narrow screen [m]."""
 AXIS = ArrowShape(shaft_radius=0.0014, head_radius=0.005, head_length=0.013)
 LINE = 0.0018
 """Thickness of the arcs [m]."""
@@ -29,13 +29,13 @@ SUBSCRIPTS = "₀₁₂₃₄₅₆₇₈₉"
 
 
 class RobotLabels:
-    """Nodes of the labels of all robots; made when they are to be shown, and then removed.
+    """Nodes of the labels of all robots; they exist only while they are shown.
 
     Args:
         scene: the client's scene.
         stage: where the robots stand.
-        robot: what kind of robot they are.
-        motion: how they stand now.
+        robot: their model.
+        motion: their current motion.
         letters: height of the letters, [m].
     """
 
@@ -62,7 +62,9 @@ class RobotLabels:
             text = name.rpartition("/")[2]
             self._texts.append(add_text(scene, f"/show/labels/{name}", text, at, letters))
         if len(lines):
-            self._arcs = MovingLines(scene, "/show/arcs", lines, stage.tones.arc, LINE)
+            self._arcs = MovingLines(
+                scene, "/show/arcs", lines=lines, colour=stage.tones.arc, thickness=LINE
+            )
         self._add_axes(scene)
 
     def update(self, motion: Motion) -> None:
@@ -85,23 +87,25 @@ class RobotLabels:
 
     def _drawn(self, motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         """Places of all names, (k, 3), and all lines, (n, 2, 3), in the world."""
-        own, count = 6 * motion.counts.bars, len(self._names)
-        each = [
-            self._function(drawn[:own], motion.point(i, END))[0].reshape(-1, 3) + origin
+        bars, count = 6 * motion.counts.bars, len(self._names)
+        points_of_robots = [
+            self._function(drawn[:bars], motion.point(i, END))[0].reshape(-1, 3) + origin
             for i, (drawn, origin) in enumerate(zip(motion.drawn, self._origins, strict=True))
         ]
-        places = np.concatenate([points[:count] for points in each])
-        return places, np.concatenate([points[count:].reshape(-1, 2, 3) for points in each])
+        places = np.concatenate([points[:count] for points in points_of_robots])
+        lines = [points[count:].reshape(-1, 2, 3) for points in points_of_robots]
+        return places, np.concatenate(lines)
 
     def _add_axes(self, scene: viser.SceneApi) -> None:
         axes = axes_of(self._robot)
         everywhere = (self._origins[:, None, None] + axes).reshape(-1, 2, 3)
-        arrows = Arrows(scene, "/show/axes", everywhere, self._tones.line, AXIS)
+        arrows = Arrows(scene, "/show/axes", points=everywhere, colour=self._tones.line, shape=AXIS)
         self._nodes.extend(arrows.nodes)
         for i, (begin, end) in enumerate(everywhere):
-            way = (end - begin) / np.linalg.norm(end - begin)
+            direction = (end - begin) / np.linalg.norm(end - begin)
             number = i % len(axes) + 1
             name = f"/show/axis_names/{i // len(axes)}/{number}"
+            place = end + PAST * direction
             self._nodes.append(
-                add_text(scene, name, f"y{SUBSCRIPTS[number]}", end + PAST * way, self._letters)
+                add_text(scene, name, f"y{SUBSCRIPTS[number]}", place, self._letters)
             )

@@ -65,9 +65,9 @@ def part_looks(
 ) -> tuple[list[tuple[float, ...]], list[np.ndarray]]:
     """Scales and linear colours of a robot's bearings, pen, marker and extra points.
 
-    Joints in `motors` are drawn as motors.
-    A reference point that a law aims at is a ring, and the closest point a dot with a white rim;
-    each consists of two discs, one in front of the other.
+    Joints in `motors` are drawn as motors. The marker of a law that aims at a reference point is a
+    ring; that of the closest point is a dot with a white rim. Each consists of two discs, one in
+    front of the other.
     """
     extras = counts.marks
     dark = palette.OF_SIDE[side].toward(palette.INK, 0.45)
@@ -128,7 +128,7 @@ class Bars:
             update_node(self.node, batched_scales=link_scales(lengths))
 
     def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
-        """What moves, and where it is in `Poses.whole`; see `NodeGroup`."""
+        """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
         return [
             (self.node, "batched_positions", poses.place("bars", self._rows)),
             (self.node, "batched_wxyzs", poses.place("quaternions", self._rows)),
@@ -174,11 +174,13 @@ class RobotNodes:
         self._trace_origins = _trace_origins(stage.origins)
         self._traced = self._trace_origins
         nowhere = np.zeros((len(bases), 2, 3))
-        self._arrows = Arrows(scene, "/force", nowhere, stage.tones.force, FORCE)
+        self._arrows = Arrows(
+            scene, "/force", points=nowhere, colour=stage.tones.force, shape=FORCE
+        )
         self._acting = False
         self._moving = NodeGroup(
             [
-                *(each for bars in self._bars for each in bars.properties(poses)),
+                *(moving for bars in self._bars for moving in bars.properties(poses)),
                 (self._parts, "batched_positions", poses.place("parts")),
                 (self.grips, "batched_positions", poses.place("tips")),
             ]
@@ -190,13 +192,29 @@ class RobotNodes:
         links = slice(len(self._bases) * counts.links)
         strips = slice(links.stop, None)
         is_link = np.arange(counts.bars) < counts.links
-        own = [bar_colours(side, counts) for side in self._bases]
-        of_links = np.concatenate([colours[is_link] for colours in own])
-        found = [Bars(scene, "/links", meshes.part("link"), links, of_links, poses)]
+        colours_of_robots = [bar_colours(side, counts) for side in self._bases]
+        bars = [
+            Bars(
+                scene,
+                "/links",
+                mesh=meshes.part("link"),
+                rows=links,
+                colours=np.concatenate([colours[is_link] for colours in colours_of_robots]),
+                poses=poses,
+            )
+        ]
         if counts.strip:
-            of_strips = np.concatenate([colours[~is_link] for colours in own])
-            found.append(Bars(scene, "/beams", meshes.part("blade"), strips, of_strips, poses))
-        return found
+            bars.append(
+                Bars(
+                    scene,
+                    "/beams",
+                    mesh=meshes.part("blade"),
+                    rows=strips,
+                    colours=np.concatenate([colours[~is_link] for colours in colours_of_robots]),
+                    poses=poses,
+                )
+            )
+        return bars
 
     def _add_parts(self, scene: viser.SceneApi, poses: Poses) -> viser.BatchedMeshHandle:
         scales, colours = self._part_looks()
@@ -208,10 +226,10 @@ class RobotNodes:
         laws = self._laws.items()
         looks = [part_looks(side, law, self._counts, self._motors) for side, law in laws]
         scales = [scale for scales, _ in looks for scale in scales]
-        return np.array(scales), np.stack([colour for _, own in looks for colour in own])
+        return np.array(scales), np.stack([colour for _, colours in looks for colour in colours])
 
     def update_laws(self, laws: dict[str, str]) -> None:
-        """Redraws the markers if laws have changed."""
+        """Redraw the markers if laws have changed."""
         if laws != self._laws:
             self._laws = laws
             scales, colours = self._part_looks()
@@ -219,7 +237,10 @@ class RobotNodes:
             self._parts.batched_colors = colours
 
     def update(self, poses: Poses) -> None:
-        """Sends what moves, and forces, rotations and lengths if they change; not what is still."""
+        """Move the robots, and redraw forces, rotations and lengths that have changed.
+
+        Sends nothing while the robots stand still.
+        """
         if poses.is_news(self._drawn):
             self._drawn = poses
             self._draw(poses)
@@ -246,7 +267,7 @@ class RobotNodes:
         self._acting = acts
 
     def hide(self, hidden: bool) -> None:
-        """Hide all that moves but the forces, or show it again."""
+        """Hide all moving nodes except the forces, or show them again."""
         for node in (
             *(bars.node for bars in self._bars),
             self._parts,
@@ -256,7 +277,7 @@ class RobotNodes:
             node.visible = not hidden
 
     def update_traces(self, robots: list[RobotView]) -> None:
-        """Redraws the traces if they have changed."""
+        """Redraw the traces if they have changed."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
         points = np.concatenate(lines) + self._trace_origins
         if 0.0 < difference(points, self._traced) < np.inf:  # false if there is a NaN

@@ -1,7 +1,7 @@
-"""The 3D scene of one client: display of a lab. What the mouse does in it: mouse.py.
+"""The 3D scene of one client, which displays a lab. For the mouse, see mouse.py.
 
-Cost depends on the number of property assignments, not their size, so robots share their nodes
-(robot_nodes.py, path_nodes.py).
+The cost of an update depends on the number of assigned properties, not on their size, so robots
+share their nodes (robot_nodes.py, path_nodes.py).
 """
 
 from __future__ import annotations
@@ -53,8 +53,8 @@ class Scene:
         words: message catalogue for the labels.
 
     Attributes:
-        mouse: what the mouse does on end-points and control points.
-        captions: what each robot is doing, as shown over it.
+        mouse: the mouse on end-points and control points.
+        captions: what each robot is doing, as shown above it.
     """
 
     def __init__(
@@ -75,12 +75,12 @@ class Scene:
             client.scene, self._origins, self.mouse.connect_points, stage.tones
         )
         self._wall = WallNodes(
-            client.scene,
-            self._origins,
-            pointer,
-            hooks.on_wall_moved,
-            hooks.on_wall_turned,
-            stage.tones,
+            scene=client.scene,
+            origins=self._origins,
+            pointer=pointer,
+            on_move=hooks.on_wall_moved,
+            on_turn=hooks.on_wall_turned,
+            tones=stage.tones,
         )
         self._start = StartNodes(client.scene, self._origins, pointer, hooks.on_start_moved)
         self._freehand: Freehand | None = None
@@ -93,13 +93,16 @@ class Scene:
         return self._stage
 
     def build(self, snapshot: Snapshot) -> None:
-        """Creates all nodes once, with the snapshot's numbers of bars, joints and points."""
+        """Create all nodes once, with the snapshot's numbers of bars, joints and points."""
         motion = snapshot.motion
         self._bases = build_stage(self._client.scene, self._stage)
         self._titles = Titles(self._client.scene, self._stage, self._words)
-        poses = poses_of(self._stage, motion)
         self._machine = RobotNodes(
-            self._client.scene, self._stage, motion.counts, snapshot.laws, poses
+            scene=self._client.scene,
+            stage=self._stage,
+            counts=motion.counts,
+            laws=snapshot.laws,
+            poses=poses_of(self._stage, motion),
         )
         self._contacts = ContactNodes(self._client.scene, self._stage, self._words)
         self._hands = HandNodes(self._client.scene, self._stage)
@@ -112,7 +115,7 @@ class Scene:
         self.update_traces(snapshot)
 
     def update(self, motion: Motion) -> None:
-        """Updates all poses, and the path if its version changed; called at about 30 Hz.
+        """Update all poses, and the path if its version has changed; called at about 30 Hz.
 
         Non-finite poses are not drawn.
         """
@@ -128,7 +131,7 @@ class Scene:
         self._start.draw(motion.start)
 
     def update_traces(self, snapshot: Snapshot) -> None:
-        """Redraws traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
+        """Redraw traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
         self._titles.show(snapshot.laws, self.captions.follow(snapshot))
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[side] for side in self._sides])
@@ -142,7 +145,7 @@ class Scene:
             note.show(self._words("scene.draw") if drawing else snapshot.note)
 
     def show_singular_zone(self, visible: bool = True) -> None:
-        """Shades where the robot is nearly singular, in the plane of the path."""
+        """Shade the nearly singular points in the path's plane, or remove the shading."""
         if self._zone is not None:
             self._zone.remove()
             self._zone = None
@@ -151,11 +154,11 @@ class Scene:
             self._zone = PlaneNodes(self._client.scene, "/zone", self._stage, picture)
 
     def show_start(self, visible: bool) -> None:
-        """Shows the start of the next run, to be dragged, or hides it."""
+        """Show the start of the next run, which can be dragged, or hide it."""
         self._start.show(visible)
 
     def show_robots(self, visible: bool) -> None:
-        """Shows or hides the titles, the robots and the points of the path.
+        """Show or hide the titles, the robots and the points of the path.
 
         A board in front of the robots does not hide all of them: titles are drawn on top of
         everything else, and single pixels of round parts show through at their edges.
@@ -167,14 +170,18 @@ class Scene:
         self._path_nodes.hide_points(not visible)
 
     def frame_camera(self, insets: Insets | None = None) -> None:
-        """Points the client's camera so that both robots fill the canvas left free by panels."""
+        """Point the client's camera so that both robots fill the canvas left free by panels."""
         camera = self._client.camera
         size = (max(camera.image_width, 1), max(camera.image_height, 1))
         pose = view_of(self._stage, size, insets or Insets())
         place_camera(self._client, pose.position, pose.look_at, UP, float(FIELD_OF_VIEW))
 
     def begin_freehand(self, on_stroke: Callable[[np.ndarray], None]) -> None:
-        """Lets the user draw one stroke on a robot's plane; calls back with (n, 3), [m]."""
+        """Let the user draw one stroke on a robot's plane.
+
+        Args:
+            on_stroke: called with its points in the robot's frame, shape (n, 3), [m].
+        """
         self.end_freehand()
         self._freehand = Freehand(self._client.scene, self._stage, on_stroke)
 
@@ -185,7 +192,7 @@ class Scene:
         return freehand is not None and freehand.active
 
     def end_freehand(self) -> None:
-        """Cancels drawing; without effect when no stroke is active."""
+        """Cancel drawing; no effect when no stroke is active."""
         if self._freehand is not None:
             self._freehand.cancel()
             self._freehand = None

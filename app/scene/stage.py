@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.8
-"""Width to height of windows whose panel covers the lower part; also in assets/page/portrait.js."""
+"""Aspect ratio below which the panel covers a window's lower part; see assets/page/portrait.js."""
 GROUND = 1.6
-"""Radius within which the ground is seen; beyond it there is the horizon [m]."""
+"""Radius of the visible ground, up to the horizon [m]."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
-"""Lines over a robot: offset below the title's position, and height, [m]."""
+"""Lines above a robot: offset below the title's position, and height, [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,9 +59,9 @@ class Stage:
             the end-point.
         pulls: planes through the end-point in which it is pulled, by name, the default first;
             their own points do not matter.
-        reach: no end-point is farther from the origin of the robot's frame, [m].
+        reach: largest distance of an end-point from the origin of the robot's frame, [m].
         axes: origin of the path's plane, and its two coordinate directions, shape (3,) each.
-        zone: shading of what is nearly singular in that plane.
+        zone: shading of the nearly singular points in that plane.
         title: position of the title; the second line is lower by a third of its height.
         note: position of the note that the drawing is not to scale.
         force_scale: length of the force's arrow [m/N].
@@ -105,7 +105,7 @@ class Stage:
 
     @property
     def reachable(self) -> Box:
-        """Where the mouse can drag to: as far from the home of the end-point as the robot reaches.
+        """Region of drags: as far from the home of the end-point as the robot reaches.
 
         A hand's target is limited in the same way in the lab.
         """
@@ -167,7 +167,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
 
 
 def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
-    """Sets the camera with which new clients open, before their canvas size is known."""
+    """Set the camera with which new clients open, before their canvas size is known."""
     pose = view_of(stage, (1400, 800), Insets())
     server.initial_camera.fov = FIELD_OF_VIEW
     server.initial_camera.position = pose.position
@@ -175,7 +175,7 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
 
 
 def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHandle]:
-    """Adds floor, lights and machine bases to a client's scene; returns the bases."""
+    """Add floor, lights and the robots' bases to a client's scene; returns the bases."""
     _add_lights(scene)
     scene.add_grid(
         "/stage/floor",
@@ -220,7 +220,7 @@ def add_text(
     size: float = 0.026,
     below: float = 0.0,
 ) -> viser.LabelHandle:
-    """Adds text of height `size`, `below` lower than a position, [m]."""
+    """Add text of height `size`, `below` lower than a position, [m]."""
     return scene.add_label(
         name,
         text,
@@ -256,7 +256,7 @@ class ChangingText:
         self._update()
 
     def hide(self, hidden: bool) -> None:
-        """Hide the text, whatever it is, or show it again."""
+        """Hide any text, or show it again."""
         self._hidden = hidden
         self._update()
 
@@ -267,9 +267,9 @@ class ChangingText:
 
 
 class Titles:
-    """What stands over the robots: their control laws, and what they are doing.
+    """Text above the robots: their control laws, and what they are doing.
 
-    A robot without a caption does what its law says, and has the law's aim there.
+    A robot without a caption does what its law says; the law's aim is then shown instead.
     """
 
     def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words = ENGLISH) -> None:
@@ -277,7 +277,13 @@ class Titles:
         self._titles, self._captions = dict[str, str](), dict[str, str]()
         self._texts = {
             side: [
-                ChangingText(scene, f"/titles/{side}/{part}", base + stage.title, size, below)
+                ChangingText(
+                    scene,
+                    f"/titles/{side}/{part}",
+                    position=base + stage.title,
+                    size=size,
+                    below=below,
+                )
                 for part, (below, size) in (("law", TITLE), ("aim", AIM))
             ]
             for side, base in stage.bases.items()
@@ -312,9 +318,10 @@ def add_copies(
     opacity: float | None = None,
     shadow: bool = True,
 ) -> viser.BatchedMeshHandle:
-    """Adds copies of one mesh at positions, shape (n, 3), [m], as one node, without rotation.
+    """Add copies of one mesh at positions, shape (n, 3), [m], as one node, without rotation.
 
-    `colour` is shared by all copies, or linear colours of shape (n, 3), uint8.
+    Args:
+        colour: of all copies, or linear colours of each, shape (n, 3), uint8.
     """
     return scene.add_batched_meshes_simple(
         name,

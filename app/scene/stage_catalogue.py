@@ -21,7 +21,7 @@ from onpath.models.systems.robots import Robot
 
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
 LARGEST_PATH = 0.1
-"""Usual extent of paths from their centre, for which the view leaves room [m]."""
+"""Usual extent of paths from their centre, for which the view has room [m]."""
 ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
 """Margins beside the bars, above them for the title, and between them and the floor [m]."""
 THIN = 0.03
@@ -85,13 +85,13 @@ def _axes(robot: Robot) -> tuple[Array, Array, Array]:
 
 
 def _box(robot: Robot) -> tuple[Array, Array]:
-    """Corners around the base pivot and the bars, with the end-point at places of paths."""
+    """Corners of a box around the base pivot and the bars while the end-point is on a path."""
     side = np.linspace(-LARGEST_PATH, LARGEST_PATH, 5)
     z = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
     q = robot.rest(robot.frame.lift(z[robot.margin(z) >= LEAST_MARGIN]))
     symbols = ca.SX.sym("q", robot.system.n)
     bars = ca.Function("bars", [symbols], [ca.densify(robot.skeleton(symbols, ca.SX(1))[0])])
-    points = np.vstack([bars(each).full().T for each in q] + [np.zeros((1, 3))])
+    points = np.vstack([bars(joints).full().T for joints in q] + [np.zeros((1, 3))])
     low, high = points.min(axis=0), points.max(axis=0)
     low[2] = min(low[2] - BELOW, -meshes.FLOOR_DEPTH) - 0.02
     return low - [ASIDE, THIN, 0.0], high + [ASIDE, THIN, ABOVE]

@@ -1,4 +1,4 @@
-"""The start of the next run at every robot: a ball to drag, and an arrow for its velocity."""
+"""The start of the next run at every robot: a ball to drag, and an arrow for the velocity."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 RADIUS = 0.01
 """Radius of the ball [m]."""
 SECONDS = 0.15
-"""Length of the arrow: the way in this time [s]."""
+"""The arrow is as long as the distance covered in this time [s]."""
 SHAPE = ArrowShape(shaft_radius=0.0028, head_radius=0.007, head_length=0.014)
 BEFORE = np.array([0.0, -0.012, 0.0])
 """Offset towards the viewer, so that no control point covers the ball [m]."""
@@ -35,7 +35,7 @@ class StartNodes:
         scene: the client's scene.
         origins: of the robots' frames in the world, shape (k, 3), [m].
         pointer: where the mouse is.
-        on_move: called with the new place, shape (3,), in the robot's frame [m].
+        on_move: called with the new position, shape (3,), in the robot's frame [m].
     """
 
     def __init__(
@@ -63,7 +63,13 @@ class StartNodes:
                 shadow=False,
             )
             self._ball.on_drag("left")(self._dragged)
-            self._arrows = Arrows(self._scene, "/start/velocity", self._ways, palette.GREEN, SHAPE)
+            self._arrows = Arrows(
+                self._scene,
+                "/start/velocity",
+                points=self._arrow_points,
+                colour=palette.GREEN,
+                shape=SHAPE,
+            )
         elif not visible and self._ball is not None and self._arrows is not None:
             self._ball.remove()
             self._arrows.remove()
@@ -76,21 +82,21 @@ class StartNodes:
         is_drawn, self._start = np.array_equal(start, self._start), start
         if not is_drawn and self._ball is not None and self._arrows is not None:
             update_node(self._ball, batched_positions=self._places)
-            self._arrows.draw(self._ways)
+            self._arrows.draw(self._arrow_points)
 
     @property
     def _places(self) -> np.ndarray:
         return self._origins + self._start[0] + BEFORE
 
     @property
-    def _ways(self) -> np.ndarray:
-        way = SECONDS * (self._start[1] - self._start[0])
-        return np.stack([self._places, self._places + way], axis=1)
+    def _arrow_points(self) -> np.ndarray:
+        offset = SECONDS * (self._start[1] - self._start[0])
+        return np.stack([self._places, self._places + offset], axis=1)
 
     async def _dragged(self, event: DragEvent) -> None:
         """Mouse callback; a coroutine without await, because viser runs those in order."""
         robot = event.instance_index
-        if robot is None or robot >= len(self._origins):  # a browser may send any
+        if robot is None or robot >= len(self._origins):  # a browser may send any number
             return
         if event.phase == "start":
             self._drag.press(event, robot, self._start[0])

@@ -1,4 +1,4 @@
-"""Colours of the scene that depend on what is behind them: a light wall, or a dark one."""
+"""Colours of the scene that depend on the background: a light wall, or a dark one."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Tones:
         line: strokes, axes and hatches, and text on a board.
         arc: arcs of the angles.
         path, point: the path and its control points.
-        frame: what the robots stand on.
-        metal: motors, and what holds an end-point.
+        frame: the robots' bases.
+        metal: motors and brakes.
         force: arrows of forces.
     """
 

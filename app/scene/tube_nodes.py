@@ -1,4 +1,4 @@
-"""The tube around the path, and the curves of constant θ and of constant ξ in it, on demand."""
+"""The optional tube around the path, and the curves of constant θ and of constant ξ in it."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ WIDEST = 0.06
 LINES = 24
 """Curves of constant θ: one every 15 degrees of a circle."""
 OFFSETS, LEAST_STEP = 4, 0.005
-"""Curves of constant ξ on each side of the path, or fewer, so that they are so far apart [m]."""
+"""Number of curves of constant ξ on each side of the path, and their least distance [m]."""
 ALONG = 120
 """Points along the path."""
 AROUND = 16
 """Points around the tube of a space curve."""
 SPREAD = 0.97
-"""Share of the tube's width that is drawn: at its very rim curves may collapse to a point."""
+"""Share of the tube's width that is drawn: at its rim, curves may collapse to a point."""
 BEHIND = {"fill": 0.006, "grid": 0.004}
 """Depths behind the path's plane [m]."""
 FILL, GRID_LINE = palette.SELECTED, palette.STEEL

@@ -1,4 +1,4 @@
-"""The wall at every robot: its solid side, by which it is moved, and two knobs, which turn it."""
+"""The wall at every robot: a solid side to move it, and two knobs to turn it."""
 
 from __future__ import annotations
 
@@ -35,9 +35,9 @@ class WallNodes:
         scene: the client's scene.
         origins: of the robots' frames in the world, shape (k, 3), [m].
         pointer: where the mouse is.
-        on_move: called with the new place of the wall's middle, shape (3,), in the robot's frame.
-        on_turn: called with one of `ENDS` and the place at which it must point, shape (3,).
-        tones: the colour of its hatches.
+        on_move: called with the new position of the middle, shape (3,), in the robot's frame.
+        on_turn: called with one of `ENDS` and the position at which it must point, shape (3,).
+        tones: colours, of which its hatches have one.
     """
 
     def __init__(
@@ -102,7 +102,7 @@ class WallNodes:
     async def _body_dragged(self, event: DragEvent) -> None:
         robot = event.instance_index
         if robot is None or robot >= len(self._origins) or not len(self._wall):
-            return  # a browser may send any
+            return  # a browser may send any number
         if event.phase == "start":
             self._drag.press(event, robot, self._wall[0])
         target = self._drag.target(event, robot)

@@ -1,7 +1,7 @@
 """The queue of a full lab: waiting clients see a notice, and are admitted when a place is free.
 
-A sixteenth of the places is kept free for other addresses, so that no address can shut out all
-others; a whole class behind one router has the rest. A free place goes to the waiting client whose
+No address gets more than fifteen sixteenths of the places, so that no address can shut out all
+others; a whole class behind one router fits in. A free place goes to the waiting client whose
 address has the fewest, and among those to the one that has waited longest.
 """
 
@@ -81,9 +81,10 @@ class AdmissionQueue:
     def _first(self) -> int | None:
         """Which of the waiting clients may enter now, if any."""
         inside = self._inside
-        may = [number for number, each in self._waiting.items() if inside.has_room(each.address)]
+        waiting = self._waiting
+        may_enter = [number for number in waiting if inside.has_room(waiting[number].address)]
         return min(
-            may, key=lambda number: inside.count(self._waiting[number].address), default=None
+            may_enter, key=lambda number: inside.count(waiting[number].address), default=None
         )
 
     def _show_notice(
@@ -97,8 +98,8 @@ class AdmissionQueue:
             text = words("full.network", places=self._places_each)
         close = show_notice(client, words("full.title"), text)
 
-        def open_up() -> None:
+        def close_and_enter() -> None:
             close()
             enter()
 
-        return open_up
+        return close_and_enter

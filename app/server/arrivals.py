@@ -1,7 +1,7 @@
 """Asks new browsers for their local storage without blocking a thread.
 
-viser's page answers at once; a client that does not answer gets no lab. viser's own call to read
-local storage would block one of its 32 threads until the answer arrives.
+viser's page answers at once; a client that does not answer gets no lab. viser's own function to
+read local storage would block one of its 32 threads until the answer arrives.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Arrival:
     """A client that has answered.
 
     Attributes:
-        kept: values of the keys, by the names that were asked for; "" where there is none.
+        kept: values by key; "" where there is none.
         address: the client's, as the limits on connections count it.
         place: of its page; see `app.viser_adapter.addresses`.
     """
@@ -44,10 +44,10 @@ class Arrivals:
     """Clients that have not answered yet. Runs on viser's event loop, except `enter`.
 
     Args:
-        keys: of local storage, and whether each class has a value of its own.
+        keys: of local storage, and whether the value differs between classes.
         enter: called in one of viser's threads.
-        most, most_each: clients that may be unanswered, in total and per address; beyond that the
-            oldest is disconnected.
+        most, most_each: clients whose answer may be missing, in total and per address; beyond that
+            the oldest is disconnected.
     """
 
     def __init__(

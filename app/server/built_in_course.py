@@ -1,4 +1,4 @@
-"""The built-in course, whose lessons are read as they are needed, not all before the first page."""
+"""The built-in course, whose lessons are read when first needed, not all before the first page."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ from onpath.lessons.schema import Lesson
 from onpath.lessons.words import DEFAULT
 
 _one_reader = RLock()
-"""Held while a lesson is read; a translation asks for the first language."""
+"""Held while a lesson is read; reading a translation also reads the first language."""
 
 
 @dataclass(frozen=True, slots=True)
 class Versions(Mapping[str, Lesson]):
-    """A lesson that is known to be sound; each language is read when first asked for. Thread-safe.
+    """The versions of a valid lesson; each language is read when first asked for. Thread-safe.
 
     Attributes:
         home: the folder of the lesson.
         name: of the lesson.
-        languages: the first is the one whose keys the others take over.
+        languages: the others take over the keys of the first one.
     """
 
     home: Path
@@ -57,7 +57,7 @@ def _read(versions: Versions, language: str) -> Lesson:
 
 @cache
 def built_in_course() -> Course:
-    """The built-in course. Tests have looked for its problems; nobody does so here."""
+    """The built-in course. It is not checked here: tests check it."""
 
     def versions(home: Path, name: str) -> Mapping[str, Lesson]:
         languages = {file.stem for file in home.glob("??.md")} - {DEFAULT}

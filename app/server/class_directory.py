@@ -27,26 +27,25 @@ class ClassDirectory:
         self._door = Admission()
 
     def at(self, place: str) -> ClassService | None:
-        """The class of those who come to a place."""
+        """The service of the class at a place; None if there is none."""
         return self._services.get("") or self._services.get(place)
 
     def stored_as(self, place: str) -> str:
-        """The name in the database of the class of a place; empty if it has none."""
+        """The name in the database of the class at a place; empty if it has none."""
         service = self._services.get(place)
         return "" if service is None else service.stored_as
 
     def all_stored(self) -> list[str]:
         """The names in the database of all classes."""
-        return [name for each in self._services.values() if (name := each.stored_as)]
+        return [name for service in self._services.values() if (name := service.stored_as)]
 
     def in_use(self) -> list[str]:
-        """The names in the database of the classes that have somebody here."""
-        return [
-            name for each in self._services.values() if each.in_use and (name := each.stored_as)
-        ]
+        """The names in the database of the classes with clients in this process."""
+        services = [service for service in self._services.values() if service.in_use]
+        return [name for service in services if (name := service.stored_as)]
 
     def seat_elsewhere(self, place: str, code: str) -> ClassSeat | None:
-        """The seat of a lab that is at the place of no class; None if there are no classes.
+        """The seat of a lab outside the places of classes; None if there are no classes.
 
         Args:
             code: session code of the lab.

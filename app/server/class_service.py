@@ -31,9 +31,8 @@ class ClassService:
     """A class of one server process.
 
     Args:
-        place: of its page; empty if it is that of every page. See `app.viser_adapter.addresses`.
-        records: from which a student's data are deleted when the teacher asks for it. A class with
-            a place is kept in them, too.
+        place: of its page, see `app.viser_adapter.addresses`; empty if the class has every page.
+        records: store students' data, which a teacher may delete, and a class with a place.
         keeper: stores a student's lab on joining.
         lost: called with the clients of the class when another process has taken it over.
     """
@@ -72,17 +71,17 @@ class ClassService:
 
     @property
     def in_use(self) -> bool:
-        """Whether anybody is here, so that the class must not move to another process."""
+        """Whether the class has clients here, so that it must not move to another process."""
         return bool(self._clients)
 
     def greet(self, client: viser.ClientHandle, shown: str | None) -> bool:
-        """Receive a client, and make a browser that was a teacher's a teacher's again.
+        """Receive a client; a teacher's browser becomes a teacher's again.
 
         Args:
-            shown: the value that it keeps under `TEACHER_KEY`.
+            shown: the value that the browser has stored under `TEACHER_KEY`.
 
         Returns:
-            Whether the class is here; if not, another process has it open.
+            Whether this process has the class; if not, another one has it open.
         """
         if self._class_keeper is not None and not self._class_keeper.open():
             return False
@@ -120,7 +119,7 @@ class ClassService:
         def join(typed: str, nickname: str) -> str:
             self._class.join(code, typed, nickname)
             entry, keeper = self._sessions.find(code), self._keeper
-            if entry is not None and keeper is not None:  # the class needs it in the database
+            if entry is not None and keeper is not None:  # the class needs the lab in the database
                 submit = partial(keeper.submit, code)
                 entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
             return ""
@@ -149,7 +148,7 @@ class ClassService:
         """The teacher's page; None for other clients.
 
         Args:
-            lab: the teacher's own; an open lesson is closed.
+            lab: the teacher's own lab, whose open lesson is closed.
             reopen: rebuilds the client's page.
         """
         teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
@@ -160,7 +159,7 @@ class ClassService:
 
         def send_setup() -> None:
             push = self._class.push
-            lab.post(ReportState(lambda own: push(TakeSetup(capture(own.session)))))
+            lab.post(ReportState(lambda state: push(TakeSetup(capture(state.session)))))
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
@@ -189,11 +188,11 @@ class ClassService:
         return None if entry is None else entry.scheduled
 
     def _give_up(self) -> None:
-        """Send everybody of a class that is in another process away, to come back there."""
+        """Send all clients away when another process has the class; they reconnect to that one."""
         self._lost(set(self._clients))
 
     def _delete(self, code: str) -> None:
-        """Delete a student's lab with everything that is stored of it, and their seat.
+        """Delete a student's lab with all stored data, and the student's seat.
 
         Raises:
             NotKept: it could not be deleted; the student is still in the class.

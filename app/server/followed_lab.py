@@ -16,7 +16,7 @@ class FollowedLab:
     """The lab chosen on one teacher's page.
 
     Attributes:
-        lab: finds a lab by session code; None if there is none to show.
+        lab: finds a lab by session code; returns None if there is none.
     """
 
     classroom: Classroom

@@ -1,6 +1,6 @@
 """Feeds a page with snapshots of a lab, whenever the page is due for an update.
 
-This is the only module that knows both labs and pages: pages receive snapshots only.
+This is the only module that knows both labs and pages: pages only receive snapshots.
 """
 
 from __future__ import annotations
@@ -8,22 +8,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from operator import is_
 
+from typing_extensions import override
+
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.server.tab_visibility import CountingDisplay
 from onpath.app.simulation.display_rate import AT_EASE, is_turn
 
 
-class LabFeed:
-    """Shows a lab on a page; see `app.simulation.scheduled_lab.Display`.
+class LabFeed(CountingDisplay):
+    """Shows a lab on a page.
 
     Args:
         offset: spreads the pages over the frames.
-        nickname: the student's in the class; empty for none.
-        followed: on a teacher's page, which student's lab to show instead; else None.
+        nickname: returns the student's nickname in the class; empty if there is none.
+        followed: the student's lab that a teacher's page shows instead, or None.
     """
 
     def __init__(
@@ -41,18 +44,18 @@ class LabFeed:
         self._whole: PageSnapshot | None = None
 
     @property
+    @override
     def is_outdated(self) -> bool:
-        """See `app.simulation.scheduled_lab.Display`."""
         return self.page.is_outdated and self.page.is_ready
 
+    @override
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
-        """See `app.simulation.scheduled_lab.Display`."""
         if stride == AT_EASE and self._source(lab, 1.0)[0].session.forces.grabbed:
             return True  # every frame of delay is felt while dragging
         return is_turn(frame + self._offset, stride)
 
+    @override
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        """See `app.simulation.scheduled_lab.Display`."""
         if not self.is_turn(lab, frame, stride) or not self.page.is_ready:
             return
         lab, _, student = self._source(lab, 1.0)
@@ -60,22 +63,23 @@ class LabFeed:
             self._last = motion = take_motion(lab, self._last, student)
             self.page.show(motion)
 
+    @override
     def refresh(self, lab: Lab, achieved: float) -> None:
-        """See `app.simulation.scheduled_lab.Display`."""
         lab, achieved, student = self._source(lab, achieved)
         if not self.page.is_ready:
             return
-        self._has_news(lab)  # is shown now
+        self._has_news(lab)  # remembers what is shown now
         snapshot = take_page_snapshot(lab, achieved, self._whole, student, self._nickname())
         self._last = self._whole = snapshot
         self.page.show(snapshot)
         self.page.exporter.serve(lab)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
-        """The lab that is shown, its speed, and whose it is; see `PageKey`."""
-        student, other = 0, self._followed.find() if self._followed is not None else None
-        if other is not None:
-            lab, achieved, student = other[0].lab, other[0].achieved, other[1]
+        """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""
+        student, found = 0, self._followed.find() if self._followed is not None else None
+        if found is not None:
+            scheduled, student = found
+            lab, achieved = scheduled.lab, scheduled.achieved
         if lab is not self._lab:
             self._lab, self._last, self._whole = lab, None, None
         return lab, achieved, student
@@ -83,18 +87,20 @@ class LabFeed:
     def _has_news(self, lab: Lab) -> bool:
         """Whether anything in the scene has changed since it was last shown."""
         session, shown = lab.session, self._shown
-        slots = [run.slot for run in session.runs.values()]
         self._shown = now = (
-            *(*slots, session.viewing, session.editor.version),
-            *(session.exaggeration, lab.lessons.progress),
+            *(run.slot for run in session.runs.values()),
+            session.viewing,
+            session.editor.version,
+            session.exaggeration,
+            lab.lessons.progress,
         )
         return len(now) != len(shown) or not all(map(is_, now, shown))
 
+    @override
     def send(self) -> None:
-        """See `app.simulation.scheduled_lab.Display`."""
         self.page.send()
 
     @property
+    @override
     def updates(self) -> int:
-        """See `app.server.tab_visibility.CountingDisplay`."""
         return self.page.updates

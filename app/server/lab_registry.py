@@ -1,6 +1,6 @@
 """Assigns sessions to browsers, so that a reload returns to the same lab.
 
-The browser keeps a short list of session codes. A returning tab takes the session that was left
+The browser stores a short list of session codes. A returning tab gets the session that was left
 most recently. A session without a client is paused, and dropped after a while.
 """
 
@@ -30,11 +30,11 @@ log = logging.getLogger(__name__)
 
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
-KEPT = 15 * 60.0  # [s] that an abandoned session is kept, if it was used
-HISTORY_KEPT = 30.0  # [s] that its history is kept, which is most of its memory
+KEPT = 15 * 60.0  # [s] for which an abandoned session is kept, if it was used
+HISTORY_KEPT = 30.0  # [s] for which its history is kept, which takes most of its memory
 MOST_ABANDONED = 60
 LEASE_WAIT = LEASE + 1.0  # [s] to wait for another process to give up a lab
-ASK_AGAIN = 0.1  # [s] between questions meanwhile
+ASK_AGAIN = 0.1  # [s] between attempts while waiting
 
 
 @dataclass(slots=True)
@@ -44,7 +44,7 @@ class RegisteredLab:
     Attributes:
         client: id of the client, or None.
         left: when the last client left, [s].
-        stands_in: whether its client came for another lab, which could not be opened then.
+        stands_in: whether its client came for another lab, which could not be opened.
     """
 
     code: str
@@ -63,7 +63,7 @@ class LabRegistry:
         load: takes over the state stored under a code and returns it, or None; raises
             `HeldElsewhere` if another process has it open.
         give_up: lets other processes open the lab of a code.
-        is_current: whether no other process has had a lab of this one meanwhile.
+        is_current: whether no other process has had the lab of a code meanwhile.
         keeper: stores changes, or None.
     """
 
@@ -84,14 +84,14 @@ class LabRegistry:
         """The session of a new client.
 
         Args:
-            known: the list of codes that its browser keeps, as returned by `remembered`.
+            known: the list of codes stored in the browser, as returned by `remembered`.
         """
         codes = CODE.findall(known[:200]) if known else []
         refusal: NotKept | None = None
         until = time.monotonic() + LEASE_WAIT
         try:
             for code in self._in_turn(codes):
-                with suppress(HeldElsewhere):  # it is in use, as in another tab of this process
+                with suppress(HeldElsewhere):  # in use, like a lab in another tab of this process
                     if (entry := self._open(client, code, until)) is not None:
                         return entry
         except NotKept as error:
@@ -99,12 +99,13 @@ class LabRegistry:
         entry = self._made(new_code())
         if refusal is not None:
             entry.stands_in = True
-            lab, said = entry.scheduled.lab, Message("say.lab_kept", {"reason": refusal.message})
-            lab.show_message(lab.words.sentence(said), "warning")
+            lab = entry.scheduled.lab
+            message = Message("say.lab_kept", {"reason": refusal.message})
+            lab.show_message(lab.words.sentence(message), "warning")
         return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> RegisteredLab:
-        """Join the session of a code that was typed; the client leaves its own.
+        """Join the session of a typed code; the client leaves its own.
 
         Raises:
             ValueError: no such session, it is open elsewhere, or there were too many attempts.
@@ -123,21 +124,21 @@ class LabRegistry:
             return found
 
     def _in_turn(self, codes: list[str]) -> list[str]:
-        """Codes whose labs wait here, the most recently left first, then those not here.
+        """Codes of the labs that wait here, the most recently left first, then codes of other labs.
 
-        Labs that stand in for others come last: the others may be opened by now.
+        Labs that stand in for others come last, because the others may be open to this client now.
         """
         with self._lock:
             self._drop_old()
             here = {code: self._entries[code] for code in codes if code in self._entries}
         waiting = [entry for entry in here.values() if entry.client is None]
         waiting.sort(key=lambda entry: entry.left, reverse=True)
-        own = [entry.code for entry in waiting if not entry.stands_in]
+        genuine = [entry.code for entry in waiting if not entry.stands_in]
         stand_ins = [entry.code for entry in waiting if entry.stands_in]
-        return [*own, *(code for code in codes if code not in here), *stand_ins]
+        return [*genuine, *(code for code in codes if code not in here), *stand_ins]
 
     def _open(self, client: int, code: str, until: float) -> RegisteredLab | None:
-        """Give a lab to a client; None if there is no lab that it may have.
+        """Give a lab to a client; None if there is no lab that the client may have.
 
         Args:
             until: when to stop waiting for the lease of another process to end, by
@@ -162,10 +163,10 @@ class LabRegistry:
             return self._give(client, entry)
 
     def _load(self, code: str, until: float) -> LabState | None:
-        """The stored state of a lab; what is still pending of it here is stored before.
+        """The stored state of a lab, including changes of it that are still pending here.
 
-        A process that has it open may just have been killed, or be about to notice that its client
-        has left: then its lease ends within `LEASE_WAIT`.
+        A process that has the lab open may just have been killed, or be about to notice that its
+        client has left; then its lease ends within `LEASE_WAIT`.
         """
         if self.keeper is not None and not self.keeper.flush(code):
             raise NotKept("error.database_busy")
@@ -179,9 +180,9 @@ class LabRegistry:
 
     @contextmanager
     def _alone(self, code: str) -> Iterator[None]:
-        """Lock one code, so that nobody else opens or releases its lab.
+        """Lock one code, so that no other thread opens or releases its lab.
 
-        This may block on the database; the lock of all sessions is never held meanwhile.
+        The body may block on the database; the lock of all sessions is not held meanwhile.
         """
         with self._lock:
             self._lock.wait_for(lambda: code not in self._opening)
@@ -205,7 +206,7 @@ class LabRegistry:
                 if state is not None:
                     put_back(lab, state)
             except ValueError as error:
-                log.warning("what was kept cannot be read: %s", error)
+                log.warning("the stored lab cannot be read: %s", error)
                 raise NotKept("error.lab_unreadable") from None
         if (keeper := self.keeper) is not None:
             lab.watch = StateObserver(code, keeper, lab)
@@ -241,7 +242,7 @@ class LabRegistry:
             return [entry.code for entry in self._entries.values() if entry.client is not None]
 
     def look(self) -> None:
-        """Submit what has changed lately. Call it when the simulation thread has stopped."""
+        """Submit the latest changes. Call it when the simulation thread has stopped."""
         for entry in list(self._entries.values()):
             lab = entry.scheduled.lab
             if isinstance(lab.watch, StateObserver):
@@ -256,10 +257,10 @@ class LabRegistry:
             return entry.client if entry is not None else None
 
     def delete(self, code: str, delete: Callable[[str], object]) -> None:
-        """Delete a lab for good: here, what was still to be stored of it, and by `delete`.
+        """Delete a lab for good: here, its pending changes, and its stored state by `delete`.
 
         Raises:
-            NotKept: it is still being stored, and nothing was changed; or `delete` raised it.
+            NotKept: the lab is still being stored, and nothing was changed; or `delete` raised it.
             HeldElsewhere: another process has it open.
         """
         with self._alone(code):
@@ -280,10 +281,10 @@ class LabRegistry:
             return True
 
     def _drop(self, entry: RegisteredLab) -> None:
-        """Remove a lab that is outdated, and what was still to be stored of it.
+        """Remove an outdated lab and its pending changes.
 
         Raises:
-            NotKept: it is still being stored; it is not removed.
+            NotKept: the lab is still being stored; it is not removed.
         """
         self._discard(entry.code)
         with self._lock:
@@ -313,8 +314,8 @@ class LabRegistry:
     def free_memory(self) -> None:
         """Drop labs that were left a while ago and not used; delete the histories of the others.
 
-        A lab that was reopened and not used since is in the database. A history stays where a past
-        instant is shown. Not to be called by the simulation thread, for which this waits.
+        A lab that was reopened and not used since is in the database. A history stays while a past
+        instant is shown. Do not call this on the simulation thread, for which it waits.
         """
         with self._lock:
             left = [e for e in self._waiting() if self.clock() - e.left > HISTORY_KEPT]

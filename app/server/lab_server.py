@@ -53,7 +53,7 @@ from onpath.lessons.problems import LessonError
 from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
-DARK_KEY = "dark"  # whether the browser asks for dark pages; see assets/page/dark.js
+DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
 STORAGE_KEY = "onpath_sessions"
 ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
 MOST_CLIENTS = 64
@@ -67,12 +67,12 @@ class LabServer:
 
     Args:
         host, port: where to listen; port 0 takes a free one.
-        store: where the loops come from.
+        store: compiles and keeps the loops.
         course: the lessons; the built-in ones if None.
         records: where labs are stored; None stores nothing.
         classrooms: the classes that students may join: one, or several with addresses.
-        most_clients: maximum number at once; others wait. A teacher is always admitted.
-        retention: how long labs are kept, and how many; by default that of the command line.
+        most_clients: maximum number of clients; others wait. A teacher is always admitted.
+        retention: how long labs are kept, and how many; defaults to that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
         listening: further arguments of `make_server`.
@@ -101,10 +101,15 @@ class LabServer:
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
         self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
-        health = partial(metrics_json, self.simulation)
-        well = {"health": health, "trouble": lambda: self._watchdog.trouble}
-        well["elsewhere"] = self._is_elsewhere
-        self.server = make_server(host, port, label="OnPath", **well, **listening)
+        self.server = make_server(
+            host,
+            port,
+            label="OnPath",
+            health=partial(metrics_json, self.simulation),
+            trouble=lambda: self._watchdog.trouble,
+            elsewhere=self._is_elsewhere,
+            **listening,
+        )
         self._records, self._retention = records, retention or Retention()
         self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
@@ -113,8 +118,10 @@ class LabServer:
             self._store_labs(records)
         self._classes = ClassDirectory(classrooms, self._class_service)
         self._places = dict[int, str]()
-        self._views, self._dark = dict[int, LabFeed](), set[int]()  # dark: clients that ask for it
-        self._newcomers, self._onlookers = BuildQueue(self.server), TabVisibilities(self.server)
+        self._views = dict[int, LabFeed]()
+        self._dark = set[int]()  # clients that prefer dark pages
+        self._newcomers = BuildQueue(self.server)
+        self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.parameters())))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
@@ -172,17 +179,23 @@ class LabServer:
             self._records.close()
 
     def _class_service(self, classroom: Classroom, place: str) -> ClassService:
-        away = self._send_away
-        return ClassService(classroom, self.sessions, place, self._records, self._keeper, away)
+        return ClassService(
+            classroom,
+            sessions=self.sessions,
+            place=place,
+            records=self._records,
+            keeper=self._keeper,
+            lost=self._send_away,
+        )
 
     def _is_elsewhere(self, place: str) -> bool:
-        """Whether another process has the class of a place open."""
+        """Whether another process has the class at a place open."""
         if self._leases is None:
             return False
         return self._leases.is_elsewhere(self._classes.stored_as(place))
 
     def _open_here(self) -> list[str]:
-        """The names in the database of everything that is open in this process."""
+        """The names in the database of all labs and classes that are open in this process."""
         return [*self.sessions.held(), *self._classes.in_use()]
 
     def _class_of(self, client: int) -> ClassService | None:
@@ -226,7 +239,7 @@ class LabServer:
             self.sessions.leave(client.client_id)
             return
         self._views[client.client_id] = view
-        self._onlookers.watch(client, entry.scheduled, view)
+        self._tabs.watch(client, entry.scheduled, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
@@ -234,7 +247,7 @@ class LabServer:
         """Build the page of a lab, or of a teacher, and return its feed."""
         number, code = client.client_id, entry.code
         service, lab = self._class_of(number), entry.scheduled.lab
-        reopen, enter = partial(self._reopen, client, entry), partial(self._enter, client)
+        reopen = partial(self._reopen, client, entry)
         place = self._places.get(number, "")
         seat = (
             service.seat(client, code, reopen)
@@ -243,9 +256,15 @@ class LabServer:
         )
         teaching = service.teaching(client, lab, reopen) if service else None
         keeps = self._records is not None and not self._records.warning
-        days, dark = self._retention.days if keeps else 0, number in self._dark
         context = PageContext(
-            code, lab.post, self._course, days, enter, seat, dark, self._privacy_url
+            code=code,
+            post=lab.post,
+            course=self._course,
+            keep_days=self._retention.days if keeps else 0,
+            enter=partial(self._enter, client),
+            seat=seat,
+            dark=number in self._dark,
+            privacy_url=self._privacy_url,
         )
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
@@ -256,10 +275,10 @@ class LabServer:
         return LabFeed(TeacherView(client, first, context, teaching), number, nickname, followed)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
-        """Move a client to the session of a code that was typed.
+        """Move a client to the session of a typed code.
 
         Raises:
-            ValueError: invalid code, no such session, or it is in use.
+            ValueError: invalid code, no such session, or the session is in use.
         """
         self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
 
@@ -273,26 +292,26 @@ class LabServer:
             disconnect(self.server, {number})
 
     def _send_away(self, clients: set[int]) -> None:
-        """Store all labs, and close the connections of clients; their pages come back at once."""
+        """Store all labs, and close the connections of clients; their pages reconnect at once."""
         if self._keeper is not None:
             for code in self.sessions.held():
                 if not self._keeper.flush(code):
-                    break  # each of the others would wait as long, in vain
+                    break  # each of the others would wait just as long, in vain
         disconnect(self.server, clients)
 
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """Rebuild a client's page for a session that it already has."""
-        self._onlookers.leave(client.client_id)
-        self.simulation.call(lambda: None)  # the frame that still showed the page has ended
+        self._tabs.leave(client.client_id)
+        self.simulation.call(lambda: None)  # until the frame that still showed the page has ended
         view = self._views.pop(client.client_id, None)
         if view is not None:
             view.page.close()
-        with one_at_a_time:  # a part of the page may just be built
+        with one_at_a_time:  # part of the page may be under construction
             clear_page(client)
         self._show(client, entry, None)
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
-        self._onlookers.forget(client.client_id)
+        self._tabs.forget(client.client_id)
         self._dark.discard(client.client_id)
         self.sessions.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
@@ -318,8 +337,8 @@ def serve(
 
     Args:
         lessons: folder of the user's own lessons.
-        database: URL of the database of labs; by default a file of the user's. One that is named,
-            or is behind a proxy, must be usable; any other one may be replaced by memory.
+        database: URL of the database of labs; defaults to a file of the user's. If it is given, or
+            if the server is behind a proxy, it must be usable; otherwise memory may replace it.
         classrooms: see `LabServer`.
         listening: further arguments of `LabServer`.
 
@@ -335,15 +354,23 @@ def serve(
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
-    lab = LabServer(host, port, store, course, records, classrooms, **listening)
+    lab = LabServer(
+        host,
+        port,
+        store=store,
+        course=course,
+        records=records,
+        classrooms=classrooms,
+        **listening,
+    )
     try:
-        for each in ENDING:
-            signal.signal(each, _end)
+        for number in ENDING:
+            signal.signal(number, _end)
         warm_up(store, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
         if open_browser:
             webbrowser.open(lab.address)
-        while True:  # the system may give a signal to another thread, which does not wake this one
+        while True:  # a signal may go to another thread and then does not wake this one
             time.sleep(LOOK)
     except KeyboardInterrupt:
         log.info("stopping")
@@ -352,7 +379,7 @@ def serve(
 
 
 def _end(*_: object) -> None:
-    """End the server. Later signals are ignored: what was changed last is being stored."""
-    for each in ENDING:
-        signal.signal(each, signal.SIG_IGN)
+    """End the server. Later signals are ignored while the last changes are stored."""
+    for number in ENDING:
+        signal.signal(number, signal.SIG_IGN)
     raise KeyboardInterrupt

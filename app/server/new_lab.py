@@ -12,7 +12,7 @@ from onpath.models.systems.catalogue import ROBOTS
 
 
 def new_lab(store: LoopCache, course: Course) -> Lab:
-    """A lab whose robots all start slowly; lessons and files have the usual speed."""
+    """A lab whose robots all start slowly; lessons and files keep the usual speed."""
     lab = Lab(store, course=course)
     session = lab.session
     for name, entry in ROBOTS.items():

@@ -1,9 +1,9 @@
 """Detects whether a browser is drawing: tabs in the background and closed laptops are not.
 
-A hidden page of viser still receives and acknowledges messages, but it reports its camera only when
-it draws. So from time to time it is sent its own "up" direction, and it replies with its camera.
-While the reply is overdue, its lab is not shown: nothing is computed or sent, simulated time stands
-still, and both resume with the reply.
+A hidden page of viser still receives and acknowledges messages, but reports its camera only when it
+draws. So from time to time the server sends each page its own "up" direction, and a page that draws
+replies with its camera. While the reply is overdue, the lab is not shown: nothing is computed or
+sent, and simulated time stands still, until the reply arrives.
 """
 
 from __future__ import annotations
@@ -106,15 +106,15 @@ class TabVisibilities:
 
     def leave(self, client: int) -> None:
         """Show no lab in a browser for now."""
-        if (onlooker := self._all.get(client)) is not None:
-            onlooker.leave()
+        if (tab := self._all.get(client)) is not None:
+            tab.leave()
 
     def forget(self, client: int) -> None:
         """Remove a browser that has disconnected."""
-        if (onlooker := self._all.pop(client, None)) is not None:
-            onlooker.leave()
+        if (tab := self._all.pop(client, None)) is not None:
+            tab.leave()
 
     def _look(self) -> None:
         self._loop.call_later(TICK, self._look)
-        for onlooker in list(self._all.values()):
-            onlooker.look()
+        for tab in list(self._all.values()):
+            tab.look()

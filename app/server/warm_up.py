@@ -1,6 +1,6 @@
-"""What is read, compiled and imported in the background, after the first picture.
+"""Reads, compiles and imports in the background, after the first picture.
 
-What is needed earlier is imported, or read, where it is needed.
+Anything that is needed earlier is read or imported where it is needed.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ TRIES = 5
 
 
 def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
-    """After `rest` [s], in a thread: read the lessons, compile loops, import these modules.
+    """After `rest` [s], in a thread: read the lessons, compile loops, import the modules `LATER`.
 
-    What fails, such as for want of open files, is tried again after another rest.
+    A part that fails, for instance because too many files are open, is tried again after a rest.
     """
 
     def read_lessons() -> None:
@@ -71,12 +71,12 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
 def _succeeds(part: Callable[[], None]) -> bool:
     try:
         part()
-    except Exception as error:  # whoever needs it first will wait for it
+    except Exception as error:  # the first user of this part will wait for it
         log_warning("not prepared yet: %r", error)
         return False
     return True
 
 
 def _import_picture_formats() -> None:
-    """Encode a picture as viser does for a board to sketch on, which imports all formats."""
+    """Encode a picture as viser does for a sketch board, which imports all formats."""
     import_module("imageio.v3").imwrite(BytesIO(), np.zeros((1, 1, 3), np.uint8), extension=".png")

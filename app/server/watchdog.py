@@ -1,6 +1,6 @@
 """Notices when the simulation thread or the event loop hangs, and ends the process.
 
-What supervises the process starts it again: systemd, Kubernetes, a container's restart policy.
+The process's supervisor starts it again: systemd, Kubernetes, a container's restart policy.
 """
 
 from __future__ import annotations
@@ -22,25 +22,25 @@ from onpath.app.simulation.simulation_thread import SimulationThread
 log = logging.getLogger(__name__)
 
 EXIT_CODE = 70  # EX_SOFTWARE
-LOOKS = 20  # in the time after which something hangs
+LOOKS = 20  # without a sign of life, after which something hangs
 BEAT = 0.1  # [s] between an event loop's signs of life
 
 Sign = Callable[[], object]
 
 
 class Watchdog:
-    """Watches signs of life, values that keep changing while something works.
+    """Watches signs of life, which are values that keep changing while something works.
 
-    Time is counted in looks of the watchdog's own thread. A process that was suspended is
-    suspended with its watchdog, and has missed one look at most.
+    Time is counted in looks of the watchdog's own thread. A suspended process is suspended together
+    with its watchdog, so it has missed at most one look.
 
     Args:
-        seconds: after which what shows no sign of life hangs, [s]. After twice this time the
-            process ends. 0 for no watch.
+        seconds: time without a sign of life after which something counts as hanging, [s]; after
+            twice this time the process ends. 0 for no watch.
         end: ends the process.
 
     Attributes:
-        trouble: what hangs, in words; empty if nothing does.
+        trouble: a sentence about what hangs; empty if nothing does.
     """
 
     def __init__(self, seconds: float, end: Callable[[], object] | None = None) -> None:
@@ -52,7 +52,7 @@ class Watchdog:
         self.trouble = ""
 
     def start(self, signs: Mapping[str, Sign]) -> None:
-        """Watch these signs of life, each under the name of what shows it."""
+        """Watch these signs of life, each by the name of its source."""
         if not self._seconds:
             return
         self._signs = signs
@@ -78,7 +78,9 @@ class Watchdog:
         if self.trouble and not before:
             log.critical(
                 "%s: no sign of life for %g s; without one in the next %g s this process ends",
-                *(self.trouble, self._seconds, self._seconds),
+                self.trouble,
+                self._seconds,
+                self._seconds,
             )
         elif before and not self.trouble:
             log.warning("%s no longer", before)
@@ -87,7 +89,7 @@ class Watchdog:
 
 
 def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop) -> dict[str, Sign]:
-    """The number of frames of a simulation thread, and one that an event loop counts up."""
+    """The frame count of a simulation thread, and a count that an event loop increments."""
     count = 0
 
     def beat() -> None:
@@ -103,17 +105,17 @@ def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop)
 
 
 def _limit_processor_time(seconds: float) -> None:
-    """End the process by SIGPROF after so much processor time, unless called again; 0 for never.
+    """End the process by SIGPROF after this processor time, unless called again; 0 for never.
 
-    This ends a process of which one thread never lets go of the interpreter, so that the watchdog
-    cannot look. A suspended process takes no processor time.
+    This ends a process in which one thread never releases the interpreter, so that the watchdog
+    cannot look. A suspended process uses no processor time.
     """
     if hasattr(signal, "setitimer"):
         signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
 def _tell_systemd() -> None:
-    """Tell systemd, if it asks (WatchdogSec in the unit), that this process is not suspended."""
+    """Tell systemd that this process is not suspended, if its unit has WatchdogSec."""
     address = os.environ.get("NOTIFY_SOCKET", "")
     if address:  # systemd is there, and so are Unix sockets
         with suppress(OSError), socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as to:
@@ -121,6 +123,6 @@ def _tell_systemd() -> None:
 
 
 def _end_process() -> None:
-    """End the process at once, without waiting for any thread, and say where each of them is."""
+    """End the process at once, without waiting for threads, and print where each of them is."""
     faulthandler.dump_traceback(sys.stderr)
     os._exit(EXIT_CODE)

@@ -1,10 +1,10 @@
-"""The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for who is in none.
+"""The addresses of a lab behind a proxy: /c/CODE/ for a class, and /l/NAME/ for all others.
 
-All of them serve the same page. They exist so that a proxy can send everybody who belongs together
-to one process, by the path alone: viser's page opens its websocket at its own address.
+All of them serve the same page. They let a proxy send everybody who belongs together to one
+process, by the path alone: viser's page opens its websocket at its own address.
 
 An address has one spelling, in lower case and without a query, because a proxy may send another
-spelling of it to another process. A page that is asked for in another one is redirected, and a
+spelling of it to another process. A request for a page in another spelling is redirected, and a
 websocket is refused.
 """
 
@@ -34,27 +34,27 @@ def class_address(code: str) -> str:
 
 
 def place_of(path: str) -> str:
-    """The place in a path, "c/CODE" or "l/NAME"; empty for the others."""
+    """The place in a path, "c/CODE" or "l/NAME"; empty if there is none."""
     found = _PLACE.match(path)
     return f"{found[1]}/{found[2]}".lower() if found else ""
 
 
 def takes_websocket(path: str) -> bool:
-    """Whether a websocket may be opened at a path: at a place as it is spelt, or at no place.
+    """Whether a websocket may be opened at a path: at a place in its one spelling, or at none.
 
-    viser's page opens it without the slash at the end.
+    viser's page omits the final slash.
     """
     return bool(_SOCKET.fullmatch(path)) or not _LIKE_A_PLACE.match(path)
 
 
 def class_code_in(place: str) -> str:
-    """The class code of a place; empty if it is not that of a class."""
+    """The class code of a place; empty if the place is not a class's."""
     kind, _, name = place.partition("/")
     return name if kind == CLASS else ""
 
 
 def storage_key(key: str, place: str) -> str:
-    """The key in a browser's storage for a value that each class has of its own."""
+    """The key in a browser's storage for a value that differs between classes."""
     code = class_code_in(place)
     return f"{key}_{code}" if code else key
 
@@ -66,10 +66,10 @@ def without_place(path: str) -> str:
 
 
 def redirection(connection: ServerConnection, request: Request, spreads: bool) -> Response | None:
-    """Where a page is, if it is asked for at a similar address. The query of a page is dropped.
+    """The redirection of a page that is asked for at a similar address, without its query.
 
     Args:
-        spreads: whether visitors without a class are spread over places of their own.
+        spreads: whether visitors without a class get places of their own.
     """
     if "Upgrade" in request.headers:
         return None
@@ -94,11 +94,11 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
 def not_here(connection: ServerConnection) -> Response:
     """The answer to a websocket at a place that another process serves.
 
-    nginx passes the request on to the next process because of it (`http_502`, which no process
-    answers otherwise); a page asks again every second. A full process answers so to pages, too.
+    It makes nginx pass the request on to the next process (`http_502`, a status that a process uses
+    for nothing else); a page asks again every second. A full process answers pages with it, too.
     """
-    said = "Another process serves this class: ask again.\n"
-    response = connection.respond(HTTPStatus.BAD_GATEWAY, said)
+    text = "Another process serves this class: ask again.\n"
+    response = connection.respond(HTTPStatus.BAD_GATEWAY, text)
     response.headers["Retry-After"] = "1"
     return response
 

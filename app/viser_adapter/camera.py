@@ -1,4 +1,4 @@
-"""Places a browser's camera, whatever pose the browser last reported, and asks for it."""
+"""Places a browser's camera, whatever pose the browser last reported, and asks for its pose."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ def place_camera(
 ) -> None:
     """Place the camera of a browser.
 
-    viser's own setters leave out what equals the pose that the browser reported last, and move the
-    target along with the position. If a report arrives between two assignments, the target that
-    follows may be taken for what the browser has already, and the camera stays elsewhere. Here all
-    of the pose is sent.
+    viser's own setters omit values that the browser reported last, and move the target along with
+    the position. If a report arrives between two assignments, viser may omit the target, and the
+    camera ends up elsewhere. This function sends the whole pose.
 
     Args:
         position: of the camera, shape (3,), [m].
         look_at: point at which it looks, shape (3,), [m].
-        up: direction that is upwards in the picture, shape (3,).
+        up: upward direction of the picture, shape (3,).
         fov: vertical field of view, [rad].
     """
     for message in (
@@ -34,7 +33,7 @@ def place_camera(
 
 
 def ask_for_camera(client: viser.ClientHandle) -> None:
-    """Send a browser the "up" direction that it has; once it draws, it answers with its camera."""
+    """Send a browser its own "up" direction; when it next draws, it answers with its camera."""
     up = _vector(client.camera.up_direction)
     client._websock_connection.queue_message(_messages.SetCameraUpDirectionMessage(up))
 

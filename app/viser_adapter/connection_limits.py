@@ -13,6 +13,7 @@ from http import HTTPStatus
 from ipaddress import IPv4Address, IPv6Address, ip_address, ip_network
 from typing import Any, Generic, TypeVar
 
+from typing_extensions import override
 from websockets.asyncio.server import ServerConnection
 from websockets.http11 import Request
 
@@ -94,17 +95,17 @@ class Proxies:
             forwarded: values of X-Forwarded-For, the nearest hop last.
         """
         client = peer
-        for hop in reversed([each.strip() for each in ",".join(forwarded).split(",")]):
-            if not self._believes(client) or not _is_address(hop):
+        for hop in reversed([hop.strip() for hop in ",".join(forwarded).split(",")]):
+            if not self._trusts(client) or not _is_address(hop):
                 break
             client = hop
         return _limited_part(client)
 
-    def _believes(self, address: str) -> bool:
+    def _trusts(self, address: str) -> bool:
         if not address:
             return True
-        there = _parsed(address)
-        return there.is_loopback or any(there in network for network in self._networks)
+        peer = _parsed(address)
+        return peer.is_loopback or any(peer in network for network in self._networks)
 
 
 def _is_address(text: str) -> bool:
@@ -119,15 +120,15 @@ def _limited_part(address: str) -> str:
     """The part of an address to which limits apply: for IPv6 the /64 network of one user."""
     if not address:
         return address
-    there = _parsed(address)
-    return str(ip_network((int(there), 64), strict=False) if there.version == 6 else there)
+    parsed = _parsed(address)
+    return str(ip_network((int(parsed), 64), strict=False) if parsed.version == 6 else parsed)
 
 
 def _parsed(address: str) -> IPv4Address | IPv6Address:
     """The parsed address; an IPv4-mapped one (::ffff:192.0.2.1) becomes IPv4."""
-    there = ip_address(address)
-    mapped = there.ipv4_mapped if isinstance(there, IPv6Address) else None
-    return mapped or there
+    parsed = ip_address(address)
+    mapped = parsed.ipv4_mapped if isinstance(parsed, IPv6Address) else None
+    return mapped or parsed
 
 
 class ConnectionLimits:
@@ -142,14 +143,14 @@ class ConnectionLimits:
         )
 
     def opened(self, connection: CountedConnection) -> None:
-        """Count a new connection; the oldest one without a request is cut off if it is too many."""
+        """Count a new connection; if there are too many, close the oldest without a request."""
         surplus = self._waiting.add(connection, self._proxies.client_address(connection.peer, []))
         if surplus is not None:
             self._waiting.discard(surplus)
             surplus.transport.abort()
 
     def admits(self, connection: CountedConnection, request: Request) -> bool:
-        """Whether there is room for a connection that has sent its request and is still open."""
+        """Admit a connection with its request, if there is room. Returns whether it is admitted."""
         forwarded = request.headers.get_all("X-Forwarded-For")
         connection.address = self._proxies.client_address(connection.peer, forwarded)
         if connection in self._waiting and self._inside.has_room(connection.address):
@@ -160,7 +161,7 @@ class ConnectionLimits:
     def refusal(
         self, connection: CountedConnection, request: Request
     ) -> tuple[HTTPStatus, str] | None:
-        """Why a request is refused, or None: too many connections, or too many new tabs lately."""
+        """Why a request is refused, or None: too many connections, or too many new tabs."""
         if not self.admits(connection, request):
             return HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n"
         if "Upgrade" in request.headers and not self._allowance_of(connection.address).take():
@@ -168,14 +169,14 @@ class ConnectionLimits:
         return None
 
     def _allowance_of(self, address: str) -> Allowance:
-        """How many tabs an address may open. The addresses seen longest ago are forgotten."""
-        own = self._tabs.pop(address, None)
-        if own is None:
-            own = Allowance(self._limits.tab_burst_each, self._limits.tabs_per_second_each)
-        self._tabs[address] = own  # now the last in order
+        """The allowance of new tabs of an address. The addresses seen longest ago are forgotten."""
+        allowance = self._tabs.pop(address, None)
+        if allowance is None:
+            allowance = Allowance(self._limits.tab_burst_each, self._limits.tabs_per_second_each)
+        self._tabs[address] = allowance  # now the last in order
         if len(self._tabs) > MOST_ADDRESSES:
             del self._tabs[next(iter(self._tabs))]
-        return own
+        return allowance
 
     def closed(self, connection: CountedConnection) -> None:
         """Stop counting a connection."""
@@ -187,13 +188,13 @@ class CountedConnection(ServerConnection):
     """A connection that counts towards the limits.
 
     When it ends, its reference cycles are broken, so that its memory is freed at once. Otherwise
-    that would wait for the next full garbage collection, and an attacker can open and close tens of
-    thousands of connections before it.
+    its memory would wait for the next full garbage collection, and an attacker can open and close
+    tens of thousands of connections before that.
 
     Attributes:
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
-        place: see places.py.
+        place: see addresses.py.
     """
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
@@ -202,15 +203,15 @@ class CountedConnection(ServerConnection):
         self._connections = connections
         self.peer = self.address = self.place = ""
 
+    @override
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """See `asyncio.Protocol`."""
         super().connection_made(transport)
         name = transport.get_extra_info("peername")
         self.peer = self.address = name[0] if isinstance(name, tuple) else ""
         self._connections.opened(self)
 
+    @override
     def connection_lost(self, exc: Exception | None) -> None:
-        """See `asyncio.Protocol`."""
         self._connections.closed(self)
         super().connection_lost(exc)
         self._break_cycles()
@@ -224,8 +225,8 @@ class CountedConnection(ServerConnection):
         vars(self.protocol).pop("select_subprotocol", None)  # a function that holds the connection
         getattr(self.transport, "__dict__", {}).pop("_read_ready_cb", None)  # its own bound method
 
+    @override
     async def handshake(self, *args: Any, **kwargs: Any) -> None:
-        """See `ServerConnection`."""
         try:
             await super().handshake(*args, **kwargs)
         except BaseException:

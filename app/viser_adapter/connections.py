@@ -1,4 +1,4 @@
-"""The connections of a server's clients, and the end of a connection."""
+"""Finds and closes the connections of a server's clients."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ def run_in_thread(server: viser.ViserServer, act: Callable[[], None]) -> None:
 
 
 def disconnect(server: viser.ViserServer, clients: Iterable[int]) -> None:
-    """Close connections since their lab is elsewhere; their pages connect again within a second."""
+    """Close connections whose lab is elsewhere; their pages connect again within a second."""
     for client in clients:
         _close(server, client, CloseCode.SERVICE_RESTART, "this lab has moved to another process")
 
 
-def turn_away(server: viser.ViserServer, client: int, what: str) -> None:
-    """Close a connection, and log what it is. Its page may connect again."""
-    warn_once(connection_of(server, client), what)
+def turn_away(server: viser.ViserServer, client: int, description: str) -> None:
+    """Close a connection, and log its description. Its page may connect again."""
+    warn_once(connection_of(server, client), description)
     _close(server, client, CloseCode.TRY_AGAIN_LATER, "")
 
 

@@ -1,4 +1,4 @@
-"""Where new widgets are put."""
+"""Chooses the container of new widgets."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import viser
 
 @contextmanager
 def beside(gui: viser.GuiApi, handle: Any) -> Iterator[None]:
-    """Add widgets to the folder, tab or panel that contains this one."""
+    """Add widgets to the folder, tab or panel that contains a widget."""
     before = gui._snapshot_container_context()
     gui._set_container_uuid(handle._impl.parent_container_id)
     try:

@@ -1,4 +1,4 @@
-"""The scene of a server without the server, to be written to a file."""
+"""A server's scene without the server, to be written to a file."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 
 class FilmServer(viser.ViserServer):
-    """The scene of a server without the server: no socket, no thread, no clients.
+    """A server's scene without the server: no socket, no thread, no clients.
 
-    Scene messages accumulate in a queue, from which they can be serialized.
+    Scene messages accumulate in a queue, from which they can be serialised.
     """
 
     def __init__(self) -> None:

@@ -3,9 +3,9 @@
 viser takes 60 µs for every assignment to a property, wakes its event loop for every message, and
 then waits for more of them; for twenty browsers that is more than one core. Here all messages of a
 frame are one write, issued for all browsers together (`FrameChannel`). Several properties of a node
-are one message (`update_node`). What moves in every frame (`NodeGroup`) makes no messages at all:
-its numbers follow messages that are kept (frame_packing.py). This uses private parts of viser,
-which tests pin.
+are one message (`update_node`). Nodes that move in every frame (`NodeGroup`) need no new messages:
+their numbers follow stored messages (frame_packing.py). This uses private parts of viser, which
+tests pin.
 """
 
 from __future__ import annotations
@@ -69,7 +69,7 @@ class NodeGroup:
         self._api = properties[0][0]._impl.api
         channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
         self._channel = channel if isinstance(channel, FrameChannel) else None
-        named = [(handle._impl.name, name, own) for handle, name, own in properties]
+        named = [(handle._impl.name, name, place) for handle, name, place in properties]
         self._form = GroupForm(named, self._api._owner_id)
 
     def update(self, numbers: np.ndarray) -> None:
@@ -94,8 +94,8 @@ def update_gui(handle: Any, name: str, value: str | tuple[np.ndarray, ...]) -> N
 class FrameChannel:
     """Collects the simulation thread's messages to one browser, and sends those of a frame as one.
 
-    The message bypasses viser's queue if it is short and the queue is empty, and goes through it
-    otherwise, which keeps the order.
+    A short frame bypasses viser's queue if that is empty; any other goes through it, which keeps
+    the order.
 
     Attributes:
         frames: number of frames that were not empty.
@@ -133,7 +133,7 @@ class FrameChannel:
     def send(self) -> None:
         """Send the frames of all channels of this server, with one call of its event loop."""
         if not self._messages:
-            return  # nothing to send, or sent together with another one's
+            return  # nothing to send, or sent together with another channel's frame
         if channels := _ready.pop(self._loop, None):
             frames = [(channel, *channel._packed()) for channel in channels]
             with suppress(RuntimeError):  # the server has stopped
@@ -141,7 +141,7 @@ class FrameChannel:
 
     def _take(self, message: Message | GroupUpdate) -> None:
         if message.excluded_self_client == self._client_id:
-            return  # meant for other browsers that show the same page; there are none
+            return  # for other browsers with the same page; there are none
         if self._collector == get_ident():
             self._messages.append(message)
         elif not self.closed:  # for example while a page is being built
@@ -156,7 +156,7 @@ class FrameChannel:
         return messages, packed(messages)
 
     def write(self, messages: list[Message | GroupUpdate], data: bytes | None) -> None:
-        """Send a frame, packed unless it is long. Runs on the event loop."""
+        """Send a frame, packed unless it is long. Call it on the event loop."""
         socket = self._sockets.get(self._client_id)
         if self.closed or socket is None or socket.protocol.state is not State.OPEN:
             return

@@ -1,7 +1,8 @@
-"""Frames of messages as viser sends them; what moves in every frame is serialised only once.
+"""Frames of messages in viser's format; the messages that recur in every frame are serialised once.
 
 viser takes 50 µs to serialise and compress the update of a page's robots, 24 times a second. Only
-its numbers change, and they stand behind the messages: so these are kept, and not compressed.
+its numbers change, and they stand behind the messages, so the messages are stored and not
+compressed.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ class GroupForm:
     @cached_property
     def encoded(self) -> list[msgspec.Raw]:
         """The messages of an update whose arrays are the first ones of a frame."""
-        numbers = np.zeros(max(own.stop for _, _, own in self.properties), np.float32)
+        numbers = np.zeros(max(place.stop for _, _, place in self.properties), np.float32)
         messages = _serialised(GroupUpdate(self, numbers).messages(), [])
         return [msgspec.Raw(msgspec.msgpack.encode(message)) for message in messages]
 
@@ -50,26 +51,28 @@ class GroupUpdate:
     excluded_self_client: None = None
 
     def messages(self) -> list[Message]:
-        """The same as viser's messages, one for each node."""
+        """The same update as viser's messages, one for each node."""
         updates = dict[str, dict[str, Any]]()
         for (node, name, _), array in zip(self.group.properties, self.arrays(), strict=True):
             updates.setdefault(node, {})[name] = array
-        owner = self.group.owner
-        return [_messages.SceneNodeUpdateMessage(*each, owner=owner) for each in updates.items()]
+        return [
+            _messages.SceneNodeUpdateMessage(node, values, owner=self.group.owner)
+            for node, values in updates.items()
+        ]
 
     def arrays(self) -> list[np.ndarray]:
         """The numbers of each property."""
-        return [self.numbers[own] for _, _, own in self.group.properties]
+        return [self.numbers[place] for _, _, place in self.group.properties]
 
 
 def expanded(messages: Iterable[Message | GroupUpdate]) -> list[Message]:
     """The messages, each group replaced by viser's messages for its nodes."""
-    ways = (m.messages() if isinstance(m, GroupUpdate) else [m] for m in messages)
-    return [message for some in ways for message in some]
+    parts = (m.messages() if isinstance(m, GroupUpdate) else [m] for m in messages)
+    return [message for part in parts for message in part]
 
 
 def packed(messages: Sequence[Message | GroupUpdate]) -> bytes | None:
-    """Messages as viser sends them: lengths, msgpack in a zstd frame, then the raw arrays.
+    """Messages in viser's format: lengths, msgpack in a zstd frame, then the raw arrays.
 
     Returns:
         The frame; None if the messages are long and should be compressed, as viser does.
@@ -95,9 +98,9 @@ def packed(messages: Sequence[Message | GroupUpdate]) -> bytes | None:
 
 
 def stored(data: bytes) -> bytes:
-    """A zstd frame that holds data as they are (RFC 8878, 3.1.1), which must be below 128 kB.
+    """A zstd frame of uncompressed data (RFC 8878, 3.1.1), which must be below 128 kB.
 
-    That is a header with a content size of 4 bytes, and one last, raw block.
+    It has a header with a content size of 4 bytes, and one last, raw block.
     """
     size = len(data)
     block = (size << 3 | 1).to_bytes(3, "little")
@@ -105,5 +108,5 @@ def stored(data: bytes) -> bytes:
 
 
 def _serialised(messages: Iterable[Message], arrays: list[Any]) -> list[dict[str, Any]]:
-    """The messages as viser puts them; their arrays are appended to `arrays`."""
+    """The messages as viser serialises them; their arrays are appended to `arrays`."""
     return [message.as_serializable_dict(arrays) for message in messages]

@@ -1,4 +1,4 @@
-"""viser's names for keys, which its public functions take but which it does not export."""
+"""viser's types of key names, which its public functions take but which it does not export."""
 
 from viser._messages import HotkeyKey, KeyModifier
 

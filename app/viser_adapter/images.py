@@ -32,8 +32,8 @@ def add_png(
 
     Args:
         size: width and height, [m].
-        position: of its middle, shape (3,), [m].
-        wxyz: its orientation, a unit quaternion, scalar first.
+        position: of the middle, shape (3,), [m].
+        wxyz: orientation, a unit quaternion, scalar first.
     """
     props = _messages.ImageProps(
         _format="png",

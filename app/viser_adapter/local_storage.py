@@ -15,15 +15,15 @@ def ask_item(client: viser.ClientHandle, key: str, answer: Callable[[str], None]
     """Ask a browser for a value; `client.local_storage.get_item` would wait for it in a thread.
 
     Args:
-        answer: called once with the value, "" if there is none, on viser's event loop; never if the
-            browser does not answer.
+        answer: called on viser's event loop, once, with the value or "" if there is none; never
+            called if the browser does not answer.
     """
     question = _Question(client._websock_connection, f"kept:{key}", answer)
     question.ask(key)
 
 
 class _Question:
-    """Waits for one answer. It does not refer to itself, so that it is freed after that."""
+    """Waits for one answer. It has no reference to itself, so it is freed after the answer."""
 
     def __init__(self, connection: Any, name: str, answer: Callable[[str], None]) -> None:
         self._connection, self._name, self._answer = connection, name, answer

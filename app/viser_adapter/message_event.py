@@ -1,22 +1,23 @@
-"""Lets other threads than the network's wake the task that sends viser's messages."""
+"""Lets any thread, and not only the network's, wake the task that sends viser's messages."""
 
 from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
 
+from typing_extensions import override
 from viser.infra import WebsockMessageHandler
 
 
 class MessageEvent(asyncio.Event):
-    """An event that another thread may set, if the event loop sets it afterwards, too.
+    """An event that another thread may set, provided that the event loop then sets it, too.
 
-    viser does both. If the waiting task wakes up at the moment when the other thread wakes it,
-    asyncio raises "deque mutated during iteration" in that thread. The event has been set by then.
+    viser does both. If the waiting task wakes up just when the other thread wakes it, asyncio
+    raises "deque mutated during iteration" in that thread. The event is set by then.
     """
 
+    @override
     def set(self) -> None:
-        """See `asyncio.Event`."""
         with suppress(RuntimeError):
             super().set()
 

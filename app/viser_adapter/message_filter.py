@@ -16,8 +16,8 @@ from websockets.asyncio.server import ServerConnection
 from onpath.app.common.error_log import log_error, log_warning
 from onpath.app.viser_adapter.widget_validation import Refused, accepted_value
 
-OWN_FILES = 48  # that a server has open besides its connections: database, pipes, modules
-FEWEST = 16  # connections of a server that is worth starting
+OWN_FILES = 48  # open files besides the connections: database, pipes, modules
+FEWEST = 16  # connections with which a server is worth starting
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,8 +26,8 @@ class Limits:
 
     Attributes:
         max_message_bytes: of one websocket message, [B]; a larger one closes the connection.
-        max_unfinished_bytes: of all messages together of which only a part has come, [B]; beyond
-            it, the connection that holds most is closed.
+        max_unfinished_bytes: of all incomplete messages together, [B]; beyond it, the connection
+            that holds most is closed.
         message_seconds: time from a message's first byte to its last, [s]; more closes the
             connection.
         max_request_bytes: of an HTTP request, [B]; a larger one closes the connection.
@@ -42,12 +42,12 @@ class Limits:
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
         max_connections: in total, including those that request a file.
         max_connections_each: per address; sixty students behind one address have five each.
-        max_waiting: further connections that have not sent a complete request yet.
+        max_waiting: of further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.
         tabs_per_second_each: sustained rate of new tabs, per address.
         tab_burst_each: new tabs at once, per address; a class that reloads all its pages has fewer.
         silence: time after which a browser is pinged, and time that it has to answer, [s].
-        farewell: time that a browser has to acknowledge that its connection is closed, [s].
+        farewell: time that a browser has to acknowledge the close of its connection, [s].
     """
 
     max_message_bytes: int = 1_000_000
@@ -74,10 +74,10 @@ class Limits:
         """These limits, with fewer connections if there would be too many open files.
 
         Args:
-            files: how many a process may have open.
+            files: number of files that a process may have open.
 
         Raises:
-            ValueError: they are too few for a server.
+            ValueError: the number is too small for a server.
         """
         if files < OWN_FILES + FEWEST:
             least = OWN_FILES + FEWEST
@@ -109,7 +109,7 @@ class MessageFilter:
         scope._handle_incoming_message = self._receive
 
     def receive(self, client_id: ClientId, message: Any) -> None:
-        """Handle at once a message for which no handler waits."""
+        """Handle at once a message whose handlers do not wait."""
         handling = self._receive(client_id, message)
         try:
             handling.send(None)
@@ -151,8 +151,8 @@ class MessageFilter:
             update = dataclasses.replace(message, updates={"value": accepted})
             await self._deliver(client_id, update)
         except Refused as refused:
-            what = f"an update of a {type(widget).__name__} ({refused})"
-            warn_once(self._connections.get(client_id), what)
+            description = f"an update of a {type(widget).__name__} ({refused})"
+            warn_once(self._connections.get(client_id), description)
         finally:
             as_asked = accepted == (tuple(asked) if isinstance(asked, list) else asked)
             if not as_asked and not widget._impl.removed:
@@ -179,9 +179,9 @@ class MessageFilter:
 _warned: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
-def warn_once(connection: ServerConnection | None, what: str) -> None:
+def warn_once(connection: ServerConnection | None, description: str) -> None:
     """Log that a message of a browser was dropped, once per connection."""
     if connection is not None and connection not in _warned:
         _warned.add(connection)
         client = connection.remote_address
-        log_warning("client %s: dropped %s; what else of it is not logged", client, what)
+        log_warning("client %s: dropped %s; further messages are not logged", client, description)

@@ -13,7 +13,7 @@ UNREADABLE = (ValueError, RecursionError, MemoryError)
 
 
 class InvalidMessage(ValueError):
-    """A browser may not send this; the text says why, and never quotes the message."""
+    """A message that a browser may not send; the text says why and never quotes the message."""
 
 
 class MessageSchemas:
@@ -37,7 +37,7 @@ class MessageSchemas:
         """The message in the bytes of a websocket message.
 
         Raises:
-            InvalidMessage: it is not valid.
+            InvalidMessage: the message is not valid.
         """
         if isinstance(raw, str):
             raise InvalidMessage("a text frame")
@@ -46,12 +46,12 @@ class MessageSchemas:
         except msgspec.ValidationError as error:
             name = _name(raw)
             known = name in self._names
-            what = f"{name} with wrong fields" if known else "a message that no browser may send"
-            raise InvalidMessage(what) from error
+            fault = f"{name} with wrong fields" if known else "a message that no browser may send"
+            raise InvalidMessage(fault) from error
         except UNREADABLE as error:
-            raise InvalidMessage("what is no message") from error
+            raise InvalidMessage("bytes that are no message") from error
         if not _is_coherent(found):
-            raise InvalidMessage(f"{type(found).__name__} that makes no sense")
+            raise InvalidMessage(f"{type(found).__name__} with incoherent values")
         return self._forms[type(found)](**msgspec.structs.asdict(found))
 
     def _struct(self, form: type[Any]) -> type[msgspec.Struct]:
@@ -73,8 +73,8 @@ class MessageSchemas:
         origin, kinds = get_origin(hint), get_args(hint)
         if origin is None or origin is Literal:
             return hint
-        own = tuple(kind if kind is ... else self._bounded(kind) for kind in kinds)
-        return Union[own] if origin is Union else origin[own]  # noqa: UP007
+        bounded = tuple(kind if kind is ... else self._bounded(kind) for kind in kinds)
+        return Union[bounded] if origin is Union else origin[bounded]  # noqa: UP007
 
 
 class _Named(msgspec.Struct):

@@ -1,8 +1,8 @@
-"""Frees what a page is made of as soon as its tab has closed, or as soon as it is built anew.
+"""Frees the objects of a page as soon as its tab has closed or the page is rebuilt.
 
-Widgets and nodes refer to their API, which refers to them, and to callbacks, which refer to what
-owns the widgets. Without this, only a collection of garbage would find the five thousand objects of
-a page, and tabs can come and go faster than garbage is collected. This uses private parts of viser,
+Widgets and nodes refer to their API, which refers to them, and to callbacks, which refer to the
+owners of the widgets. Without this module, only the garbage collector would find the five thousand
+objects of a page, and tabs can come and go faster than it runs. This uses private parts of viser,
 which tests pin.
 """
 
@@ -23,7 +23,7 @@ def clear_page(client: viser.ClientHandle) -> None:
 
 
 def release_page(client: viser.ClientHandle) -> None:
-    """Forget the widgets and nodes of a client that has disconnected, and what was not sent."""
+    """Forget the widgets, nodes and unsent messages of a client that has disconnected."""
     gui, scene = client.gui, client.scene
     nodes = list(scene._handle_from_node_name.values())
     _forget_callbacks(_widgets(client), nodes)
@@ -52,7 +52,7 @@ def _widgets(client: viser.ClientHandle) -> list[Any]:
 
 
 def _forget_callbacks(widgets: list[Any], nodes: list[Any]) -> None:
-    """Forget all callbacks but those of drags, which viser calls when a drag ends."""
+    """Forget all callbacks except those of drags, which viser calls when a drag ends."""
     for widget in widgets:
         state = widget._impl
         for name in ("update_cb", "trigger_cb", "hold_cbs_from_freq"):

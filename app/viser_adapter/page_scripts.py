@@ -1,4 +1,4 @@
-"""Gives the page that browsers get our title, and what is in assets/page before viser's scripts."""
+"""Adds our title, and the files of assets/page before viser's scripts, to viser's page."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 @cache
 def our_scripts() -> bytes:
-    """The words they need before the lab sends any, and all files of assets/page, in order of name.
+    """The words that the scripts need before the lab sends any, then all files of assets/page.
 
-    Each is a <script> or <style> element.
+    Each is a <script> or <style> element; the files are in alphabetical order.
     """
     files = sorted(file for file in asset_path("page").iterdir() if file.suffix in ELEMENTS)
     elements = [(ELEMENTS[file.suffix], file.read_bytes()) for file in files]
@@ -47,9 +47,9 @@ def our_scripts() -> bytes:
 
 
 def words() -> bytes:
-    """What connection.js says, in every language, as an element with JSON."""
-    said = {each: catalogue(each).text("connect.silent", {}) for each in languages()}
-    text = msgspec.json.encode(said).replace(b"<", b"\\u003c")
+    """The message of connection.js in every language, as an element with JSON."""
+    messages = {code: catalogue(code).text("connect.silent", {}) for code in languages()}
+    text = msgspec.json.encode(messages).replace(b"<", b"\\u003c")
     return b'<script id="op-words" type="application/json">%b</script>\n' % text
 
 

@@ -1,4 +1,4 @@
-"""Filters HTTP requests: which origins may open a websocket, which paths may be read, by whom."""
+"""Filters HTTP requests: which origins may open a websocket, and who may read which paths."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ _HOST = re.compile(r"[a-z0-9.-]+(:[0-9]+)?")
 
 
 def _policy(hosts: Iterable[str]) -> str:
-    """The Content-Security-Policy of a page that may connect to these hosts alone."""
+    """The Content-Security-Policy of a page that may connect to these hosts only."""
     named = sorted({host for host in map(str.lower, hosts) if _HOST.fullmatch(host)})
     sockets = [f"{scheme}://{host}" for host in named for scheme in ("ws", "wss")]
     return "; ".join((*_POLICY, " ".join(("connect-src 'self' blob: data:", *sockets))))
 
 
 def without_repeats(request: Request, is_head: bool) -> None:
-    """Join repeated headers, at which viser would fail, and let HEAD requests open no websocket."""
+    """Join repeated headers, on which viser would fail, and keep HEAD from opening a websocket."""
     encodings = request.headers.get_all("Accept-Encoding")
     if len(encodings) > 1:
         del request.headers["Accept-Encoding"]
@@ -71,7 +71,7 @@ class RequestFilter:
             be a local name; else any site could point its own name at 127.0.0.1 (DNS rebinding).
         health: the metrics at `HEALTH`, given the query string. Only this machine gets them;
             others only learn that the server is well.
-        trouble: why the server is not well, which everybody may know; empty if it is.
+        trouble: why the server is not well, which anyone may learn; empty if it is well.
         """
         self.open = False
         self._health, self._trouble = health, trouble
@@ -82,8 +82,8 @@ class RequestFilter:
         """Add the security headers, unless the response opens a websocket.
 
         The page may connect to its own host, which is that of the request or, behind a proxy that
-        does not pass it on, that of an allowed origin: no other page's websocket is let in.
-        Not every browser counts websockets among 'self'.
+        does not pass it on, that of an allowed origin: websockets of other pages are refused.
+        The hosts are listed because not every browser includes websockets in 'self'.
         """
         if response.status_code == HTTPStatus.SWITCHING_PROTOCOLS:
             return

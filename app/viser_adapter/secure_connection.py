@@ -39,26 +39,26 @@ FROM_BROWSER: tuple[type[Any], ...] = (
     wire.FileTransferPart,
 )
 CHANGES = (wire.SceneNodeDragMessage, wire.GuiUpdateMessage)
-"""They may make a lab compute; the rate of each kind is limited."""
+"""Messages that may make a lab compute; the rate of each kind is limited."""
 GESTURES = (wire.ViewerCameraMessage, *CHANGES)
-"""Handled at once: a browser may send many in succession, and no handler of them waits."""
+"""Messages handled at once: a browser may send many in a row, and their handlers never wait."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 _BAD_REQUEST = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 
 
 class Received(bytes):
-    """A decoded message, in place of its bytes, which viser would decode once more.
+    """A decoded message in place of its bytes, which viser would decode again.
 
     Attributes:
-        message: of viser.
+        message: viser's message.
     """
 
     message: Any
 
     @classmethod
     def of(cls, message: Any) -> Received:
-        """What takes the place of a message's bytes."""
+        """The substitute for a message's bytes."""
         received = cls()
         received.message = message
         return received
@@ -68,7 +68,7 @@ _deserialize = wire.Message.deserialize
 
 
 def take_decoded_messages() -> None:
-    """Have viser take messages that are decoded already. This patches it for the whole process."""
+    """Make viser accept decoded messages. This patches viser for the whole process."""
 
     def deserialize(message: bytes) -> Any:
         return message.message if isinstance(message, Received) else _deserialize(message)
@@ -88,7 +88,7 @@ class UnfinishedMessages:
         self._held: dict[SecureConnection, int] = {}
 
     def hold(self, connection: SecureConnection, size: int) -> None:
-        """Set what a connection holds, [B]; beyond the limit, those that hold most are cut off."""
+        """Set a connection's unfinished bytes; beyond the limit, cut off those with the most."""
         self._total += size - self._held.pop(connection, 0)
         if size:
             self._held[connection] = size
@@ -106,12 +106,13 @@ def _forms(max_magnitude: float) -> MessageSchemas:
 class SecureConnection(CountedConnection):
     """A websocket that yields only valid messages, and is closed when there are too many.
 
-    websockets answers GET alone; a HEAD request is passed on to it as GET. It hangs up without an
-    answer when a request is malformed, which a proxy takes for the end of this process.
+    websockets only answers GET, so a HEAD request is passed on to it as GET. It hangs up without an
+    answer on a malformed request, which a proxy takes for the end of this process; here it is
+    answered.
 
-    A message of `GESTURES` is handled as soon as it has come, if nothing that came before it still
-    waits. viser would handle it two turns of the event loop later, and would make two tasks for it,
-    which costs half as much time again.
+    A message of `GESTURES` is handled as soon as it arrives, if no earlier message still waits.
+    viser would handle it two turns of the event loop later, in two tasks, which takes half as much
+    time again.
 
     Attributes:
         is_head: whether the request was HEAD, so that the response has no body.
@@ -132,22 +133,23 @@ class SecureConnection(CountedConnection):
         self._closing: asyncio.Task[None] | None = None
         self._unfinished = unfinished
         self._deadline: asyncio.TimerHandle | None = None
-        self._begun: bytes | None = b""  # of the request, while its method is not known
+        self._begun: bytes | None = b""  # start of the request, until its method is known
         self._request_size, self.is_head, self._refused = 0, False, False
-        self._is_next = False  # whether nothing that came before a message still waits
-        self._decoded: Any = None  # the message that waits, if it is decoded already
-        self._end: ConnectionClosed | None = None  # raised to whoever waited for a message
+        self._is_next = False  # whether no earlier message still waits
+        self._decoded: Any = None  # the waiting message, if it is decoded already
+        self._end: ConnectionClosed | None = None  # raised in the task that waited for a message
 
+    @override
     def data_received(self, data: bytes) -> None:
-        """See `asyncio.Protocol`."""
         if self.request is None:
             data = self._of_request(data)
         if data:
             super().data_received(data)
             self._limit_unfinished()
 
+    @override
     def send_data(self) -> None:
-        """Send what the protocol has to say; before it ends, answer a malformed request."""
+        """Send the protocol's data; answer a malformed request before the protocol ends."""
         malformed = self.request is None and self.protocol.handshake_exc is not None
         if malformed and self._request_size and not self._refused:
             self._refuse()
@@ -165,6 +167,7 @@ class SecureConnection(CountedConnection):
         self._stop_waiting()
         self._unfinished.hold(self, 0)
 
+    @override
     def process_event(self, event: Any) -> None:
         """Count all frames, including pings and fragments, and drop those that exceed the rate."""
         if isinstance(event, Frame) and event.opcode is not Opcode.CLOSE:
@@ -192,7 +195,7 @@ class SecureConnection(CountedConnection):
         """Decode a message.
 
         Raises:
-            InvalidMessage: it is invalid, or there were too many of its kind.
+            InvalidMessage: the message is invalid, or there were too many of its kind.
         """
         message = self._forms.decoded(raw)
         allowance = self._changes.get(type(message))
@@ -220,7 +223,7 @@ class SecureConnection(CountedConnection):
         self.transport.abort()
 
     def _of_request(self, data: bytes) -> bytes:
-        """The bytes of a request to pass on; none until its method is known."""
+        """The bytes of a request to pass on; empty until its method is known."""
         self._request_size += len(data)
         if self._begun is not None:
             self._begun += data
@@ -268,10 +271,11 @@ class SecureConnection(CountedConnection):
         if end is not None:
             clear_frames(end.__traceback__)
 
+    @override
     async def recv(self, decode: bool | None = None) -> Any:
         while True:
             if not self.recv_messages.frames:
-                await asyncio.sleep(0)  # until what came before has been handled
+                await asyncio.sleep(0)  # until the earlier messages have been handled
                 self._is_next = self.handle is not None and not self.recv_messages.frames
             try:
                 raw = await super().recv(decode)

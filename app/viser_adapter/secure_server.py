@@ -1,8 +1,8 @@
 """Protects a viser server from untrusted browsers.
 
-What a browser sends passes the handshake (request_filter.py), the websocket (secure_connection.py:
-size and rate; message_schema.py), message_filter.py (which widget) and widget_validation.py (which
-value). Exceptions in callbacks are logged (error_log.py).
+Data from a browser passes the handshake (request_filter.py), the websocket (secure_connection.py:
+size and rate; message_schema.py: fields and types), message_filter.py (which widget) and
+widget_validation.py (which value). Exceptions in callbacks are logged (error_log.py).
 """
 
 from __future__ import annotations
@@ -52,8 +52,7 @@ __all__ = ["Limits", "PortInUse", "harden", "make_server"]
 _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
-
-BACKLOG = 100  # connections, as asyncio has it
+BACKLOG = 100  # connections, asyncio's default
 STARTING = 8.0  # [s] that a request waits until the server is ready; websockets gives up after 10
 
 
@@ -76,7 +75,7 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may clients that are not browsers. With such an
-            address, visitors are spread over places of their own; see places.py.
+            address, visitors get places of their own; see addresses.py.
         trusted_proxies: see `app.viser_adapter.connection_limits.Proxies`.
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
@@ -99,9 +98,16 @@ def make_server(
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     redirects, spreads = unix_socket is None, bool(door.allowed)
     to_place = partial(_to_place, redirects=redirects, spreads=spreads, elsewhere=elsewhere)
-    with _guarded_serve(listener, door, limits, connections, to_place, elsewhere):
+    with _guarded_serve(
+        listener=listener,
+        requests=door,
+        limits=limits,
+        counts=connections,
+        to_place=to_place,
+        elsewhere=elsewhere,
+    ):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
-    listener.listen(BACKLOG)  # as many may wait in the system, even if fewer are accepted at once
+    listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
     door.open = True
     return server
@@ -121,18 +127,18 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
     def guard(connection: WebsockClientConnection) -> None:
         let_threads_send(connection)
         handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
-        own = MessageFilter(server, connection, handler.__self__, limits)
+        of_client = MessageFilter(server, connection, handler.__self__, limits)
         client = ClientId(connection.client_id)
 
         def handle(message: Any) -> None:
-            for scope in (general, own):
-                scope.receive(client, message)
+            for message_filter in (of_server, of_client):
+                message_filter.receive(client, message)
 
         if (secured := connection_of(server, client)) is not None:
             secured.handle = handle
 
     let_threads_send(websock)
-    general = MessageFilter(server, websock, server.gui, limits)
+    of_server = MessageFilter(server, websock, server.gui, limits)
     websock.on_client_connect(guard)
 
 
@@ -146,13 +152,14 @@ def _to_place(
     spreads: bool,
     elsewhere: Callable[[str], bool],
 ) -> Response | None:
-    """Note the place of a connection, unless it is at another address or process.
+    """Set the place of a connection, unless it belongs to another address or process.
 
-    Every process has the page. A proxy may send it and its websocket to different ones, if it reads
-    the whole path.
+    Every process has the page. A proxy may send the page and its websocket to different ones, if it
+    decides by the whole path.
 
     Args:
-        redirects, spreads: whether a page may be elsewhere, see `redirection`.
+        redirects: whether a page at a similar address is redirected.
+        spreads: see `redirection`.
         elsewhere: see `make_server`.
     """
     is_tab = "Upgrade" in request.headers
@@ -178,16 +185,16 @@ def _logged(answer: Answer) -> Answer:
 def _finish(
     requests: RequestFilter, connection: SecureConnection, request: Request, response: Response
 ) -> None:
-    """Complete a response: the headers of all of them, and only these if no more was asked for."""
+    """Add the security headers to a response, and remove the body if the request was HEAD."""
     requests.add_headers(request, response)
     if connection.is_head:
         response.body = b""
 
 
 def _options(limits: Limits) -> dict[str, Any]:
-    """Limits that websockets knows of."""
+    """Limits that websockets enforces."""
     return {
-        "backlog": min(BACKLOG, limits.max_waiting),  # accepted before one of them is counted
+        "backlog": min(BACKLOG, limits.max_waiting),  # accepted before any of them is counted
         "max_size": limits.max_message_bytes,
         "ping_interval": limits.silence,
         "ping_timeout": limits.silence,
@@ -209,7 +216,7 @@ def _guarded_serve(
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes.
 
-    Whoever comes to a full process for a class that another one has open is sent on there.
+    A full process sends clients of a class that another process has open on to that process.
     """
     library: Any = websockets.asyncio.server
 
@@ -221,8 +228,9 @@ def _guarded_serve(
             if answer := requests.refusal(request, connection.peer):  # or the health report
                 return connection.respond(*answer)
             if answer := counts.refusal(connection, request):
-                is_away = elsewhere(place_of(request.path))
-                return not_here(connection) if is_away else connection.respond(*answer)
+                if elsewhere(place_of(request.path)):
+                    return not_here(connection)
+                return connection.respond(*answer)
             if response := to_place(connection, request):
                 return response
             return add_scripts(process_request(connection, request))
@@ -230,9 +238,12 @@ def _guarded_serve(
         options |= _options(limits)
         finish = partial(_finish, requests)
         options["process_request"], options["process_response"] = answer_request, finish
-        kept = UnfinishedMessages(limits.max_unfinished_bytes)
-        own = {"limits": limits, "connections": counts, "unfinished": kept}
-        options["create_connection"] = partial(SecureConnection, **own)
+        options["create_connection"] = partial(
+            SecureConnection,
+            limits=limits,
+            connections=counts,
+            unfinished=UnfinishedMessages(limits.max_unfinished_bytes),
+        )
         return genuine(_of_our_version(handler), sock=listener, **options)
 
     with _patching:
@@ -266,10 +277,10 @@ async def _opened(requests: RequestFilter) -> None:
 
 
 def _is_news(record: logging.LogRecord) -> bool:
-    """Whether to log a record: not each connection on which no request, or no good one, came.
+    """Whether to log a record; not for each connection without a request, or with a bad one.
 
-    viser has the same filter, but only from the first page that is asked for. Errors of our own
-    are logged where they happen.
+    viser installs the same filter, but only with the first request for a page. Our own errors are
+    logged where they happen.
     """
     return record.getMessage() != "opening handshake failed"
 

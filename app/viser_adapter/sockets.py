@@ -1,4 +1,4 @@
-"""Sockets to listen on: a port or a file."""
+"""Listening sockets: a port or a file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def listen_unix(file: Path) -> socket.socket:
     """Listen on a file that only this user can open.
 
     Raises:
-        OSError: the file, which the message names, cannot be created, or there are no such
+        OSError: the file, which the message names, cannot be created, or the system has no Unix
             sockets.
     """
     if not hasattr(socket, "AF_UNIX"):  # Windows
@@ -51,7 +51,7 @@ def listen_unix(file: Path) -> socket.socket:
 
 
 def open_files() -> int:
-    """How many files this process may have open, after raising that number as far as it may."""
+    """Raise the limit on this process's open files as far as allowed, and return it."""
     try:
         import resource
     except ImportError:  # Windows has no such limit on sockets
@@ -77,5 +77,5 @@ def _address_named(host: str, port: int) -> Iterator[None]:
     except OSError as error:
         if error.errno != errno.EADDRINUSE:
             raise OSError(f"cannot listen on {host}: {error.strerror}") from None
-        way_out = "stop the program that has it, or choose another port (--port 0 takes any)"
-        raise PortInUse(error.errno, f"port {port} on {host} is in use: {way_out}") from None
+        remedy = "stop the program that has it, or choose another port (--port 0 takes any)"
+        raise PortInUse(error.errno, f"port {port} on {host} is in use: {remedy}") from None

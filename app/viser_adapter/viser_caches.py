@@ -1,8 +1,8 @@
-"""Caches for what viser computes anew for every handle or icon although it never changes.
+"""Caches for constants that viser computes again for every handle or icon.
 
 A page has a hundred handles: for each, viser evaluates the type hints of its properties, which is
-two fifths of the time that building a page takes. And for each icon it reads the directory of an
-archive with thousands of them, which is a third of a second before the first picture.
+two fifths of the time to build a page. For each icon it reads the directory of an archive of
+thousands, which delays the first picture by a third of a second.
 """
 
 from __future__ import annotations
@@ -33,5 +33,5 @@ def icon_svg(name: str) -> str:
 
 @cache
 def _archive() -> ZipFile:
-    """Stays open; `ZipFile` is thread-safe."""
+    """The archive of icons, which stays open; `ZipFile` is thread-safe."""
     return ZipFile(_icons.ICONS_DIR / "tabler-icons.zip")

@@ -1,7 +1,7 @@
-"""The parts of viser that its public interface does not promise, and that this folder touches.
+"""The private parts of viser that this folder uses.
 
-At the start they are looked for in the installed viser, without importing it, so that the log says
-what may fail with a version that OnPath was not tested with.
+At the start they are looked up in the installed viser, without importing it, so that the log says
+what may fail with an untested version.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ TOUCHED = {
 
 
 def untested_parts(viser: Path) -> list[str]:
-    """What is untested or missing in a viser, as parts of a sentence; nothing if all is well.
+    """What is untested or missing in a version of viser, as parts of a sentence; empty if nothing.
 
     Args:
         viser: the folder of the package.
@@ -92,7 +92,7 @@ def _text(file: Path) -> str:
 
 
 def check_viser() -> None:
-    """Log in one line what is untested or missing in the installed viser, and go on."""
+    """Log what is untested or missing in the installed viser, in one line, and continue."""
     package = find_spec("viser")
     folders = package.submodule_search_locations if package is not None else None
     faults = untested_parts(Path(folders[0])) if folders else []

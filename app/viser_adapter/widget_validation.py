@@ -12,7 +12,7 @@ Bound = Number | None
 
 
 class Refused(ValueError):
-    """A value that the widget cannot have; the message says what was expected."""
+    """The widget cannot have this value; the message says what was expected."""
 
 
 def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:
@@ -65,7 +65,8 @@ def _numbers(
 ) -> tuple[Number, ...]:
     if not isinstance(value, list) or len(value) != len(like):
         raise Refused(f"expected {len(like)} numbers")
-    return tuple(_number(*each) for each in zip(value, like, low, high, strict=True))
+    numbers = zip(value, like, low, high, strict=True)
+    return tuple(_number(number, old, least, most) for number, old, least, most in numbers)
 
 
 def _number(value: object, like: Number, low: Bound, high: Bound) -> Number:

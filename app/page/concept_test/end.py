@@ -1,4 +1,4 @@
-"""The end of the concept test: thanks, and after the second one what is right, and why."""
+"""The end of the concept test: thanks, and after the second test the right answers and why."""
 
 from __future__ import annotations
 
@@ -27,16 +27,22 @@ def add_test_end(
     Args:
         report: requests the record of all lessons.
     """
-    words, told = run.words, told_tests(run)
-    title = titles_of_tests(run.course, words)[run.progress.lesson]
-    shown = {"run": run, "title": title, "told": told, "colour": AZURE.hex}
-    content = gui.add_html(render("lesson/test_end.html", words=words, **shown))
-    ways: dict[str, Callable[[], None]] = {}
+    words = run.words
+    content = render(
+        "lesson/test_end.html",
+        words=words,
+        run=run,
+        title=titles_of_tests(run.course, words)[run.progress.lesson],
+        told=told_tests(run),
+        colour=AZURE.hex,
+    )
+    text = gui.add_html(content)
+    actions: dict[str, Callable[[], None]] = {}
     route = run.progress.route
     if run.progress.lesson == BEFORE and route in run.course.routes:
-        ways[words("route.follow")] = lambda: post(c.FollowRoute(route))
-    ways |= {
+        actions[words("route.follow")] = lambda: post(c.FollowRoute(route))
+    actions |= {
         words("end.record"): report,
         words("lesson.close"): lambda: post(c.CloseLesson()),
     }
-    return [content, add_buttons(gui, "", ways, lambda act: act())]
+    return [text, add_buttons(gui, "", actions, lambda act: act())]

@@ -1,4 +1,4 @@
-"""The concept test in the overview of the lessons, and how much of it is answered."""
+"""The concept test in the lesson overview, and how many of its questions are answered."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from onpath.lessons.progress import Notes
 
 
 def entry_of_test(name: str, run: LessonState) -> str:
-    """A test in the lesson overview; it names the button that follows."""
+    """A test in the lesson overview, with the name of the button that follows."""
     lesson, words = run.course.lesson(name, run.words.language), run.words
     notes = run.progress.notes.get(name, Notes())
     minutes = words("lesson.minutes", minutes=lesson_minutes(lesson)[0])

@@ -38,15 +38,15 @@ class ClassPanel:
             self._name = _required_text(gui, words("class.nickname"), hint, kind="name")
             self._join = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
             self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
-            said = gui.add_html("")
+            message = gui.add_html("")
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
                 hint = words("class.key_hint")
                 key = _required_text(gui, words("class.key"), hint, kind="secret")
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
-                answer = gui.add_html("")
-        self._try(self._join, lambda: seat.join(self._code.value, self._name.value), said)
-        self._try(self._leave, lambda: seat.leave() or "", said)
-        self._try(teach, lambda: seat.teach(key.value), answer)
+                teach_message = gui.add_html("")
+        self._try(self._join, lambda: seat.join(self._code.value, self._name.value), message)
+        self._try(self._leave, lambda: seat.leave() or "", message)
+        self._try(teach, lambda: seat.teach(key.value), teach_message)
         self._shown: str | None = None
         self.follow(first)
 
@@ -63,20 +63,20 @@ class ClassPanel:
         self._leave.visible = bool(name)
 
     def _try(
-        self, button: viser.GuiButtonHandle, act: Callable[[], str], said: viser.GuiHtmlHandle
+        self, button: viser.GuiButtonHandle, act: Callable[[], str], message: viser.GuiHtmlHandle
     ) -> None:
-        """Act when a button is pressed, and show below it what came of that."""
+        """Act when a button is pressed, and show the outcome below it."""
 
         def tried() -> None:
-            said.content = ""
+            message.content = ""
             try:
                 address = act()  # may rebuild the page without this panel
                 if address:
-                    said.content = render(
+                    message.content = render(
                         "panel/class_link.html", address=address, words=self._words
                     )
             except (ValueError, OSError) as error:
-                said.content = refused(self._words.sentence(error))
+                message.content = refused(self._words.sentence(error))
 
         on_slow_press(button, tried)
 

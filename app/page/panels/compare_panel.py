@@ -1,4 +1,4 @@
-"""The laws under one obstruction, computed in another process; table and picture grow."""
+"""Comparison of laws under one obstruction, computed in another process; table and picture grow."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.exports.comparison import Results
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.page.panels.widgets import on_press
+from onpath.app.page.panels.widgets import note, on_press
 from onpath.lessons.sides import law_label, law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import is_text
@@ -25,13 +25,13 @@ Ask = Callable[[list[str], str, Callable[[Results, bytes], None]], None]
 
 
 class ComparePanel:
-    """Choice of laws and obstruction, and what they lead to.
+    """Choice of laws and obstruction, and the results.
 
-    A law that is typed for a side is among the laws as long as it is there.
+    A law that is typed for a side can be chosen as long as that side has it.
 
     Args:
-        ask: starts a comparison: laws, obstruction, and what is called with the results so far and
-            their picture.
+        ask: starts a comparison; takes the laws, the obstruction, and a function that is called
+            with the results so far and their picture.
     """
 
     def __init__(self, gui: viser.GuiApi, words: Words, first: PageSnapshot, ask: Ask) -> None:
@@ -46,8 +46,8 @@ class ComparePanel:
                 for name, law in LAWS.items()
                 if law.travels and law.suits(system)
             }
-            self._typed = {b: self._own(gui, b, first.run.laws[b]) for b in SIDES}
-            self._own_laws = first.run.laws
+            self._typed = {side: self._add_typed(gui, side, first.run.laws[side]) for side in SIDES}
+            self._side_laws = first.run.laws
             self._obstructions = {words(f"obstruction.{name}"): name for name in OBSTRUCTIONS}
             self._obstruction = gui.add_dropdown(
                 words("compare.obstruction"),
@@ -58,30 +58,30 @@ class ComparePanel:
             self._shown = gui.add_html("")
         on_press(start, self._start)
 
-    def _own(self, gui: viser.GuiApi, side: str, law: str) -> viser.GuiCheckboxHandle:
+    def _add_typed(self, gui: viser.GuiApi, side: str, law: str) -> viser.GuiCheckboxHandle:
         hint, label = self._words("compare.own_hint"), self._words(f"laws.own_{side}")
         return gui.add_checkbox(label, False, visible=is_text(law), hint=hint)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Offer the typed laws of the sides."""
-        if snapshot.run.laws == self._own_laws:
+        if snapshot.run.laws == self._side_laws:
             return
-        self._own_laws = snapshot.run.laws
+        self._side_laws = snapshot.run.laws
         for side, box in self._typed.items():
-            box.visible = is_text(self._own_laws[side])
+            box.visible = is_text(self._side_laws[side])
 
     def _chosen(self) -> list[str]:
-        """The laws that are chosen; the same law typed for both sides once."""
+        """The chosen laws; the same law typed for both sides counts once."""
         laws = [name for name, box in self._laws.items() if box.value]
-        typed = [self._own_laws[b] for b, box in self._typed.items() if box.visible and box.value]
+        typed = [
+            self._side_laws[side] for side, box in self._typed.items() if box.visible and box.value
+        ]
         return [*laws, *dict.fromkeys(typed)]
 
     def _start(self) -> None:
         laws = self._chosen()
         if not 1 <= len(laws) <= MOST:
-            self._shown.content = render(
-                "panel/note.html", said=self._words("compare.count", most=MOST), small=True
-            )
+            self._shown.content = note(self._words("compare.count", most=MOST), small=True)
             return
         self._ask(laws, self._obstructions[self._obstruction.value], self._show)
 

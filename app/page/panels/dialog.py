@@ -1,4 +1,4 @@
-"""Windows that can be closed: by a button at their end, by Escape, beside them, and by an x."""
+"""Windows that close by a button at their end, by Escape, by a click beside them, or by an x."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.lessons.words import Words
 
 @contextmanager
 def dialog(gui: viser.GuiApi, words: Words, title: str) -> Iterator[Callable[[], None]]:
-    """A window whose widgets are added in the context; yields what closes it."""
+    """A window whose widgets are added in the context; yields a function that closes it."""
     with gui.add_modal(title) as modal:
         close = partial(close_once, modal)
         gui.add_html(render("panel/focus.html"))
@@ -25,5 +25,5 @@ def dialog(gui: viser.GuiApi, words: Words, title: str) -> Iterator[Callable[[],
 
 
 def mark_closing(gui: viser.GuiApi, words: Words) -> None:
-    """Make the next button the one that closes the window; see assets/page/dialogs.js."""
+    """Mark the next button as the one that closes the window; see assets/page/dialogs.js."""
     gui.add_html(render("panel/close.html", words=words))

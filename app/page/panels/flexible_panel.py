@@ -27,7 +27,7 @@ class CriticalAlpha:
 
     Args:
         link: the robot's flexible link.
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
 
     Attributes:
         value: the latest result; infinity if there is none up to 1, NaN while unknown.
@@ -68,7 +68,7 @@ def alpha_bar(
 
     Args:
         used: whether the controller uses alpha.
-        beam: number of modes, and the damping ratio of each, on which the limit depends.
+        beam: number of modes, and their damping ratio, on which the limit depends.
     """
 
     def percent(value: float) -> float:
@@ -76,21 +76,21 @@ def alpha_bar(
 
     limit = percent(MOST if math.isinf(critical) else critical) if critical == critical else 100.0
     if math.isnan(critical):
-        said = words("flexible.computing")
+        text = words("flexible.computing")
     elif math.isinf(critical):
-        said = words("flexible.none")
+        text = words("flexible.none")
     else:
-        said = words("flexible.critical", critical=f"{critical:.2f}")
+        text = words("flexible.critical", critical=f"{critical:.2f}")
     if beam is not None and not math.isnan(critical):
-        said += f" ({words('flexible.of_beam', modes=beam[0], zeta=f'{beam[1]:g}')})"
+        text += f" ({words('flexible.of_beam', modes=beam[0], zeta=f'{beam[1]:g}')})"
     if not used:
-        said += f"; {words('flexible.unused')}"
+        text += f"; {words('flexible.unused')}"
     return render(
         "panel/alpha.html",
         alpha=f"{alpha:.2f}",
         place=f"{percent(alpha):.1f}",
         limit=f"{limit:.1f}",
-        said=said,
+        said=text,
         used=used,
         beyond=used and alpha > critical,
         words=words,
@@ -98,13 +98,13 @@ def alpha_bar(
 
 
 class FlexiblePanel:
-    """Output, alpha with its limit, the beam, and how it is drawn and pulled.
+    """Controlled output, alpha with its limit, the beam, and how it is drawn and pulled.
 
     Args:
         link: the robot's flexible link.
         pulls: names of the planes in which an end-point can be pulled, the current one first.
         choose_pull: called with the selected name.
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
     """
 
     def __init__(
@@ -122,7 +122,10 @@ class FlexiblePanel:
         self._critical = CriticalAlpha(link, submit)
         self._shown: tuple[float, float, bool, tuple[int, float]] | None = None
         with gui.add_folder(words("flexible.title")):
-            self._widgets = [ParameterWidgets(gui, words, self._set, ["law", "alpha"], first)]
+            output = ParameterWidgets(
+                gui, words, post=self._set, names=["law", "alpha"], first=first
+            )
+            self._widgets = [output]
             self._bar = gui.add_html("")
             self._numbers = gui.add_markdown("")
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
@@ -138,25 +141,28 @@ class FlexiblePanel:
             )
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
-                self._widgets.append(ParameterWidgets(gui, words, post, list(link.beam), first))
+                names = list(link.beam)
+                self._widgets.append(ParameterWidgets(gui, words, post, names=names, first=first))
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
-                gains = list(link.composite)
-                self._widgets.append(ParameterWidgets(gui, words, post, gains, first))
+                names = list(link.composite)
+                self._widgets.append(ParameterWidgets(gui, words, post, names=names, first=first))
         on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values and the current limit of alpha."""
-        own = snapshot.parameters
+        parameters = snapshot.parameters
         for widgets in self._widgets:
             widgets.follow(snapshot)
         if self._larger.value != snapshot.run.exaggeration:
             self._larger.value = snapshot.run.exaggeration
         self._critical.follow(parameters_of(snapshot), snapshot.joints)
-        beam = int(own["modes"]), float(own["zeta"])
-        shown = float(own["alpha"]), self._critical.value, own["law"] == "redefined", beam
+        alpha, critical = float(parameters["alpha"]), self._critical.value
+        used = parameters["law"] == "redefined"
+        beam = int(parameters["modes"]), float(parameters["zeta"])
+        shown = alpha, critical, used, beam
         if shown != self._shown:
-            self._shown, bar = shown, alpha_bar(*shown[:3], self._words, beam)
-            self._bar.content = bar
+            self._shown = shown
+            self._bar.content = alpha_bar(alpha, critical, used, self._words, beam=beam)
         numbers = deflections(snapshot, self._words)
         if self._numbers.content != numbers:
             self._numbers.content = numbers
@@ -171,7 +177,7 @@ class FlexiblePanel:
 def deflections(snapshot: PageSnapshot, words: Words) -> str:
     """Tip deflection of each robot as text."""
     titles = side_titles(snapshot.laws, words)
-    each = [
+    robots = [
         words("flexible.deflection", robot=titles[side], value=f"{view.deflection * 1e3:.1f}")
         for side, view in snapshot.robots.items()
     ]
@@ -179,6 +185,6 @@ def deflections(snapshot: PageSnapshot, words: Words) -> str:
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
     return words(
         "flexible.deflections",
-        each=", ".join(each),
+        each=", ".join(robots),
         scale=scale or words("scene.true_scale"),
     )

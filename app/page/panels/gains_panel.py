@@ -41,7 +41,7 @@ ADVANCED += ["K3", "tracker_integral", "K4", "across"]
 
 LAST_OF_MODEL = "error_b2"
 Channels = dict[str, tuple[Channel, ...] | Message]
-"""The channels of laws, or why there are none, by whose they are."""
+"""The channels of each law, or why it has none, by the title of its side ("" for both)."""
 
 
 class GainsPanel:
@@ -51,13 +51,13 @@ class GainsPanel:
         self._words = words
         self._shown: tuple[ParameterValues, dict[str, str], LawPlaces] | None = None
         self._widgets = [
-            ParameterWidgets(gui, words, post, BASIC, first),
-            ParameterWidgets(gui, words, post, own_of(ROBOTS[first.key.robot]), first),
+            ParameterWidgets(gui, words, post, names=BASIC, first=first),
+            ParameterWidgets(gui, words, post, names=own_of(ROBOTS[first.key.robot]), first=first),
             OwnGainWidgets(gui, words, post, first),
         ]
         self._settling = gui.add_markdown("")
         self._picture = gui.add_html("")
-        pulse = gui.add_button(  # what a gain changes is seen when something disturbs the robots
+        pulse = gui.add_button(  # the effect of a gain shows when something disturbs the robots
             words("gains.pulse"),
             icon=viser.Icon.WAVE_SINE,
             color="gray",
@@ -65,7 +65,7 @@ class GainsPanel:
         )
         on_press(pulse, lambda: post(Pulse()))
         with gui.add_folder(words("gains.advanced"), expand_by_default=False):
-            self._widgets.append(ParameterWidgets(gui, words, post, ADVANCED, first))
+            self._widgets.append(ParameterWidgets(gui, words, post, names=ADVANCED, first=first))
             reset = gui.add_button(words("gains.defaults"), color="gray", icon=viser.Icon.RESTORE)
             on_press(reset, lambda: post(ResetParameters()))
         with gui.add_folder(words("gains.realism"), expand_by_default=False):
@@ -74,9 +74,10 @@ class GainsPanel:
                 if spec.group != "realism":
                     continue
                 if spec.on is None:
-                    self._widgets.append(ParameterWidgets(gui, words, post, [name], first))
+                    widgets = ParameterWidgets(gui, words, post, names=[name], first=first)
                 else:
-                    self._widgets.append(SwitchedParameter(gui, words, post, name, first))
+                    widgets = SwitchedParameter(gui, words, post, name=name, first=first)
+                self._widgets.append(widgets)
                 if name == LAST_OF_MODEL:
                     add_identify(gui, words, post)
 
@@ -116,7 +117,7 @@ def _text_and_picture(
     places: LawPlaces | None,
     words: Words,
 ) -> tuple[str, str]:
-    """The lines of the poles, and their picture; students of one class mostly see the same."""
+    """The lines of the poles, and their picture. Cached: a class mostly looks at the same gains."""
     places_of = {} if places is None else places.of
     channels = channels_by_owner(parameters, dict(laws), places_of, words)
     return "\n\n".join(lines_of_poles(channels, words)), pole_picture(channels, words)
@@ -125,28 +126,28 @@ def _text_and_picture(
 def channels_by_owner(
     parameters: Parameters, laws: Mapping[str, str], places: Mapping[str, Place], words: Words
 ) -> Channels:
-    """The channels of the laws by whose they are, those with the same gains once."""
+    """The channels of the laws by the title of their side; those that both share are under ""."""
     found, titles = Channels(), side_titles(laws, words)
     for side, law in laws.items():
         channels = channels_of(law, parameters, places.get(side))
-        own = side in places or is_text(law) or isinstance(channels, Message)
-        found[titles[side] if own else ""] = channels
+        differs = side in places or is_text(law) or isinstance(channels, Message)
+        found[titles[side] if differs else ""] = channels
     return found
 
 
 def lines_of_poles(found: Channels, words: Words) -> list[str]:
     """A line of Markdown for each channel of the laws, or why a law has none."""
     lines = list[str]()
-    for whose, channels in found.items():
+    for title, channels in found.items():
         if isinstance(channels, Message):
-            lines.append(f"**{whose}:** {words.sentence(channels)}")
+            lines.append(f"**{title}:** {words.sentence(channels)}")
             continue
-        lines += [_line(channel, words, f"{whose}: " if whose else "") for channel in channels]
+        lines += [_line(channel, words, f"{title}: " if title else "") for channel in channels]
     return lines
 
 
-def _line(channel: Channel, words: Words, whose: str) -> str:
-    name = whose + words(f"gains.{channel.name}")
+def _line(channel: Channel, words: Words, prefix: str) -> str:
+    name = prefix + words(f"gains.{channel.name}")
     poles = words("gains.poles", poles=channel.pole_words())
     if channel.at is not None:
         place = f"{np.degrees(channel.at) % 360:.0f}"

@@ -8,7 +8,7 @@ from onpath.lessons.words import Words
 
 
 def glossary_html(words: Words) -> str:
-    """Both directions of the glossary, each folded: in the lessons' order, and by alphabet."""
+    """Both directions of the glossary, each folded: in the lessons' order, and alphabetically."""
     entries = glossary(words.language)
     back = sorted(entries, key=lambda entry: entry.term.casefold())
     return render(

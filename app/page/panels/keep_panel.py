@@ -29,7 +29,7 @@ class KeepPanel:
                 gui.add_html(render("panel/field.html", kind="code", required=False))
                 self._typed = gui.add_text(words("keep.other"), "", hint=words("keep.other_hint"))
                 go = gui.add_button(words("keep.go"), color="gray", icon=viser.Icon.LOGIN)
-                self._said = gui.add_html("")
+                self._message = gui.add_html("")
                 on_slow_press(go, self._enter)
             share = gui.add_button(words("keep.share"), color="gray", icon=viser.Icon.SHARE)
             self._share = gui.add_html("")
@@ -51,18 +51,15 @@ class KeepPanel:
             self._share.content = _code(self._words("keep.shared"), self._code, self._words)
 
     def _code_in_report(self) -> str:
-        """The session code if the user wants it in the report: whoever reads it can use it."""
+        """The session code, if the user wants it in the report, where every reader can use it."""
         return self._context.code if self._context.keep_days and self._with_code.value else ""
 
     def _enter(self) -> None:
-        self._say(self._words("keep.moment"))
+        self._message.content = render("lesson/text.html", content=self._words("keep.moment"))
         try:
             self._context.enter(self._typed.value)  # rebuilds the page without this panel
         except (ValueError, OSError) as error:
-            self._said.content = refused(self._words.sentence(error))
-
-    def _say(self, said: str) -> None:
-        self._said.content = render("lesson/text.html", content=said)
+            self._message.content = refused(self._words.sentence(error))
 
 
 def _code(label: str, code: str, words: Words) -> str:

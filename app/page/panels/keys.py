@@ -25,7 +25,8 @@ class Key:
         name: of its action in the message catalogue.
         hotkey: viser's name for it.
         written: names of its keys, for display.
-        command: sent to the lab; None for what concerns this tab alone.
+        command: sent to the lab; None for an action of this tab alone.
+        modifier: viser's name for a key to be held down with it, or None.
     """
 
     name: str
@@ -55,8 +56,8 @@ KEYS = (
     Key("none", "escape", "Esc", c.SelectPoint(None)),
     Key("add", "insert", "Ins", c.AddPoint()),
     Key("remove", "delete", "Del", c.RemovePoint()),
-    Key("undo", "Z", "Ctrl Z", c.Undo(), "cmd/ctrl"),
-    Key("redo", "Y", "Ctrl Y", c.Redo(), "cmd/ctrl"),
+    Key("undo", "Z", "Ctrl Z", c.Undo(), modifier="cmd/ctrl"),
+    Key("redo", "Y", "Ctrl Y", c.Redo(), modifier="cmd/ctrl"),
     Key("pull_left", "A", "A", c.MoveHand(-TUG, 0.0)),
     Key("pull_right", "D", "D", c.MoveHand(TUG, 0.0)),
     Key("pull_up", "W", "W", c.MoveHand(0.0, TUG)),
@@ -81,19 +82,19 @@ KEYS = (
 
 
 def add_keys(
-    gui: viser.GuiApi, words: Words, post: Post, own: Mapping[str, Callable[[], None]]
+    gui: viser.GuiApi, words: Words, post: Post, page_actions: Mapping[str, Callable[[], None]]
 ) -> None:
     """Register the shortcuts, which also appear in viser's command palette.
 
     Args:
-        own: what the keys without a command do, by name.
+        page_actions: the actions of the keys without a command, by name.
     """
     for key in KEYS:
         handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
 
         async def triggered(_: object, key: Key = key) -> None:
             if key.command is None:
-                own[key.name]()
+                page_actions[key.name]()
             else:
                 post(key.command)
 

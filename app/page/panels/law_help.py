@@ -1,4 +1,4 @@
-"""The page of help about the control laws, and about the names of a typed one."""
+"""The help page about the control laws, and about the names that a typed law may use."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ def law_help(laws: Iterable[str], spatial: bool, own_first: bool, words: Words) 
     """What each law does, what it is good at, where it fails and where it comes from.
 
     Args:
-        laws: names of the registry.
-        spatial: whether to explain the names that there are in space, too.
-        own_first: whether the page begins with what a typed law is.
+        laws: names in the registry.
+        spatial: whether to explain the names for space curves, too.
+        own_first: whether the page begins with the typed laws.
     """
-    told = [
+    descriptions = [
         (
             law_label(name, words),
             law_text(name, words),
@@ -34,7 +34,7 @@ def law_help(laws: Iterable[str], spatial: bool, own_first: bool, words: Words) 
     functions = ", ".join(FUNCTIONS)
     return render(
         "panel/law_help.html",
-        laws=told,
+        laws=descriptions,
         own_first=own_first,
         bounds=words("laws.bounds", reach=f"{1e3 * INTEGRAL_REACH:.0f}"),
         own=words("laws.own"),

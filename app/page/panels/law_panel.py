@@ -1,4 +1,4 @@
-"""The control laws of the two sides: a menu for each, a box for an own law, and a help page."""
+"""The control laws of the two sides: a menu and a box to type a law for each, and a help page."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from onpath.models.control.laws.own import OWN, is_text, tidy
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import SIDES
 
-MOST_ASKED = 8  # laws that were asked for and are remembered until they come
+MOST_ASKED = 8  # requested laws that are remembered until they come
 Menu = viser.GuiDropdownHandle[str]
 
 
@@ -42,19 +42,20 @@ class LawPanel:
         for side in SIDES:
             self._menus[side] = self._add(gui, side)
             use = partial(self._use, side)
-            self._boxes[side] = OwnLawBox(gui, words, side, self._laws[side], use)
+            law = self._laws[side]
+            self._boxes[side] = OwnLawBox(gui, words, side=side, law=law, use=use)
         self._just_changed: set[str] = set()
         self._shown: tuple[dict[str, str], dict[str, str]] | None = None
-        self._sentences = gui.add_html(self._said())
+        self._sentences = gui.add_html(self._descriptions())
         about = gui.add_button(words("laws.about"), color="gray", icon=viser.Icon.HELP)
         on_menu_press(about, self._open_help)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's laws.
 
-        A snapshot that is shown right after a change may have been taken before it, so it does not
-        set the changed menu back; the next one is right. A law that was asked for here may come
-        while the user goes on typing; only one that comes from elsewhere changes the box.
+        The first snapshot after a change may have been taken before it, so it does not set the
+        changed menu back; the next one is right. A law that was asked for here may come while the
+        user goes on typing; only a law from elsewhere changes the box.
         """
         run, late, self._just_changed = snapshot.run, self._just_changed, set[str]()
         now = None if late else (run.laws, run.law_refusals)
@@ -75,12 +76,12 @@ class LawPanel:
             self._boxes[side].follow(run.law_refusals.get(side, ""))
         if run.laws != self._laws:
             self._laws = run.laws
-            self._sentences.content = self._said()
+            self._sentences.content = self._descriptions()
 
     def _label(self, side: str, law: str) -> str:
-        """The entry of the menu that is shown."""
-        own = is_text(law) or side in self._typing
-        return self._words("laws.own") if own else law_label(law, self._words)
+        """The menu's entry for a law."""
+        typed = is_text(law) or side in self._typing
+        return self._words("laws.own") if typed else law_label(law, self._words)
 
     def _add(self, gui: viser.GuiApi, side: str) -> Menu:
         words = self._words
@@ -111,18 +112,18 @@ class LawPanel:
         self._post(command)
 
     def _was_asked(self, side: str, law: str) -> bool:
-        """Whether a law that has come was asked for here; it and those before it are forgotten."""
+        """Whether a new law was asked for here; forgets it and the requests before it."""
         asked = self._asked[side]
         if law not in asked:
             return False
         self._asked[side] = asked[asked.index(law) + 1 :]
         return True
 
-    def _said(self) -> str:
+    def _descriptions(self) -> str:
         """What the laws do, each once, in the colour of its side."""
-        said = {law: OF_SIDE[side].hex for side, law in reversed(self._laws.items())}
+        colours = {law: OF_SIDE[side].hex for side, law in reversed(self._laws.items())}
         laws = [
-            (said[law], law_label(law, self._words), law_text(law, self._words), is_text(law))
+            (colours[law], law_label(law, self._words), law_text(law, self._words), is_text(law))
             for law in dict.fromkeys(self._laws.values())
         ]
         return render("panel/laws.html", laws=laws)

@@ -1,4 +1,4 @@
-"""The box in which a user types a law for one side, with the button that puts it into force."""
+"""The box in which a user types a law for one side, with the button that applies it."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from onpath.models.control.laws.own import PATH_FOLLOWING, is_text, tidy
 
 
 class OwnLawBox:
-    """A text box, a button, and why the text was refused; hidden under other laws.
+    """A text box, a button, and the reason of a refusal; hidden while another law is chosen.
 
-    Enter presses the button, see assets/page/keys.js.
+    Enter presses the button; see assets/page/keys.js.
 
     Args:
         use: called with the text when the button is pressed.
@@ -34,13 +34,13 @@ class OwnLawBox:
         self._use = gui.add_button(
             words("laws.use"), color="gray", visible=shown, icon=viser.Icon.CHECK
         )
-        self._why = gui.add_html("", visible=shown)
+        self._reason = gui.add_html("", visible=shown)
         self._refusal = ""
         on_press(self._use, lambda: use(self._text.value))
 
     def show(self, visible: bool) -> None:
         """Show or hide everything."""
-        for handle in (self._text, self._use, self._why):
+        for handle in (self._text, self._use, self._reason):
             if handle.visible != visible:
                 handle.visible = visible
 
@@ -50,10 +50,10 @@ class OwnLawBox:
             self._text.value = lines_of(law)
 
     def follow(self, refusal: str) -> None:
-        """Show why the last text was refused."""
+        """Show why the last text was refused; an empty reason hides it."""
         if refusal != self._refusal:
             self._refusal = refusal
-            self._why.content = refused(refusal) if refusal else ""
+            self._reason.content = refused(refusal) if refusal else ""
 
 
 def lines_of(law: str) -> str:

@@ -10,7 +10,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.widgets import Post, on_press, on_user_update
 from onpath.lessons.words import Words
 
-REACH = 60.0
+REACH = 60.0  # [s]
 
 
 class PastPanel:

@@ -36,34 +36,34 @@ class PathChoice:
         self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
         if isinstance(robot_of(first).frame, SlantedPlane):
             self._shown["circle"] = words("design.slanted_circle")
-        self._own = words("design.own")
+        self._custom = words("design.own")
         for name in refused_presets(robot_of(first)):
             self._shown[name] = words("design.refused", path=self._shown[name])
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
             self._options(first),
-            initial_value=self._shown.get(first.edit.name, self._own),
+            initial_value=self._shown.get(first.edit.name, self._custom),
             hint=words("design.path_hint"),
         )
         on_user_update(
             self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
-        risen = [name for name in ("rise",) if name in first.parameters]
-        self._rise = ParameterWidgets(gui, words, post, risen, first)
+        names = ["rise"] if "rise" in first.parameters else []
+        self._rise = ParameterWidgets(gui, words, post, names=names, first=first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the current preset and rise."""
         self._rise.follow(snapshot)
-        shown = self._shown.get(snapshot.edit.name, self._own)
+        shown = self._shown.get(snapshot.edit.name, self._custom)
         if self._choice.value != shown:
             self._choice.options = self._options(snapshot)
             self._choice.value = shown
 
     def _options(self, snapshot: PageSnapshot) -> list[str]:
-        """The presets, and a name for a path of one's own while there is one."""
-        own = snapshot.edit.name not in self._shown
-        return [*self._shown.values(), *([self._own] if own else [])]
+        """The presets, and an entry for the user's own path while there is one."""
+        presets = list(self._shown.values())
+        return presets if snapshot.edit.name in self._shown else [*presets, self._custom]
 
 
 @lru_cache(maxsize=64)
@@ -112,11 +112,11 @@ class PathPanel:
         on_user_update(zone, show_zone)
 
     def _add_plane(self, gui: viser.GuiApi, post: Post, first: PageSnapshot) -> None:
-        """Add number inputs for the plane of eq. (23); another plane builds the page anew."""
-        own, words = specs(ROBOTS[first.key.robot].parameters), self._words
+        """Add number inputs for the plane of eq. (23); a change of the plane rebuilds the page."""
+        known, words = specs(ROBOTS[first.key.robot].parameters), self._words
         gui.add_markdown(words("design.slanted"))
         for name in ("b", "d", "centre"):
-            spec = own[name]
+            spec = known[name]
             box = gui.add_number(
                 label_of(words, name, spec) + (f" [{spec.unit}]" if spec.unit else ""),
                 float(first.parameters[name]),
@@ -151,7 +151,7 @@ class PathPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the selected point's coordinates, if one is selected."""
-        for name, box in self._plane.items():  # one that was refused goes back
+        for name, box in self._plane.items():  # a refused value goes back
             self._set(box, float(snapshot.parameters[name]))
         edit = snapshot.edit
         if edit.version == self._version:

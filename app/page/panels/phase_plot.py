@@ -1,4 +1,4 @@
-"""The phase plane (ξ₁, ξ₂) of both robots, live: where the state is, and whence it came."""
+"""The phase plane (ξ₁, ξ₂) of both robots, live: the current states and their recent paths."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ STEPS = (1, 2, 5, 10)  # of the ranges, times a power of ten
 
 
 class PhasePlot:
-    """One picture, drawn anew when the time that is shown changes."""
+    """One picture, redrawn when the displayed time changes."""
 
     def __init__(self, gui: viser.GuiApi, words: Words) -> None:
         self._words, self._shown = words, (-1.0, "")
@@ -65,7 +65,7 @@ def phase_picture(
         {
             "title": title,
             "colour": OF_SIDE[side],
-            "width": 3 if i == 0 else 1.6,  # so that one is seen under the other
+            "width": 3 if i == 0 else 1.6,  # so that one line stays visible under the other
             "points": " ".join(f"{x:.1f},{y:.1f}" for x, y in places[:, i]),
             "now": places[-1, i].round(1).tolist() if len(places) else None,
         }

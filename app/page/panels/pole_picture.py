@@ -33,7 +33,7 @@ def pole_picture(found: Mapping[str, tuple[Channel, ...] | Message], words: Word
     Both axes have the same scale, so that lines through the origin are those of equal damping.
 
     Args:
-        found: channels, or why there are none, by whose they are.
+        found: the channels of each law, or why it has none.
     """
     channels = [c for each in found.values() if not isinstance(each, Message) for c in each]
     if not channels:

@@ -34,10 +34,10 @@ def robot_sketch(robot: Robot) -> str:
     A robot with two outputs is seen across their plane, and others from the front.
     """
     q = ca.SX.sym("q", robot.system.n)
-    drawn = ca.Function("drawn", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
+    skeleton = ca.Function("skeleton", [q], [ca.densify(x) for x in robot.skeleton(q, ca.SX(1))])
     home = robot.rest(robot.frame.lift(np.zeros(2)))
     seen_along = robot.axes if robot.system.p == 2 else np.array(AXES[2])
-    bars, joints = ((seen_along @ points.full()).T for points in drawn.call([ca.DM(home)]))
+    bars, joints = ((seen_along @ points.full()).T for points in skeleton.call([ca.DM(home)]))
     low, high = bars.min(axis=0), bars.max(axis=0)
     scale = (np.array(SIZE) - 2 * MARGIN).min() / max(float((high - low).max()), 1e-6)
 

@@ -40,12 +40,12 @@ class RunPanel:
             color="gray",
             hint=words("run.run_hint"),
         )
-        row: dict[str, Callable[[], None]] = {
+        actions: dict[str, Callable[[], None]] = {
             words("run.step"): lambda: post(c.StepOnce()),
             words("run.reset"): lambda: post(c.Reset()),
             words("run.view"): reset_view,
         }
-        add_buttons(gui, "", row, lambda act: act())
+        add_buttons(gui, "", actions, lambda act: act())
         self._rate = add_menu(
             gui,
             words("run.rate"),

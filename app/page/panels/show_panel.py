@@ -1,4 +1,4 @@
-"""The folder "Show": what is drawn in the scene on demand, and what its lines and colours mean."""
+"""The folder "Show": switches for the optional drawings in the scene, and their legends."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from onpath.app.common.palette import SCALE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.overlays import Overlays
-from onpath.app.page.panels.widgets import on_user_update
+from onpath.app.page.panels.widgets import note, on_user_update
 from onpath.app.scene.rank_nodes import largest, map_opacity
 from onpath.app.scene.tube_nodes import TubeShape
 from onpath.lessons.words import Words
@@ -35,7 +35,7 @@ class ShowPanel:
     """Switches, all off at first, and a legend for those that need one.
 
     Args:
-        overlays: what is switched.
+        overlays: the drawings.
         expanded: whether the folder is open at first.
     """
 
@@ -44,7 +44,7 @@ class ShowPanel:
     ) -> None:
         self._words, self._overlays = words, overlays
         self._boxes: dict[str, viser.GuiCheckboxHandle] = {}
-        self._said: tuple[Any, ...] = (None,)
+        self._shown: tuple[Any, ...] = (None,)
         with gui.add_folder(words("show.title"), expand_by_default=expanded):
             for name in SWITCHES:
                 self._add(gui, name)
@@ -60,19 +60,20 @@ class ShowPanel:
         self._boxes[name] = box
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show what is switched on, also from elsewhere on the page, and its numbers."""
+        """Show which drawings are on, even if switched elsewhere on the page, and their numbers."""
         overlays = self._overlays
         for name, box in self._boxes.items():
             wanted = getattr(overlays.switches, name)
             if box.value != wanted:
                 box.value = wanted
         alpha = _alpha(snapshot) if overlays.rank_map is not None else None
-        said = overlays.shape, overlays.switches.grid, overlays.rank_map, alpha
-        if said != self._said:
-            self._said = said
-            self._numbers.content = tube_numbers(*said[:2], self._words)
+        shape, grid, rank_map = overlays.shape, overlays.switches.grid, overlays.rank_map
+        shown = shape, grid, rank_map, alpha
+        if shown != self._shown:
+            self._shown = shown
+            self._numbers.content = tube_numbers(shape, grid, self._words)
             self._legend.content = rank_legend(
-                overlays.rank_map, alpha, self._words, map_opacity(overlays.stage)
+                rank_map, alpha, self._words, opacity=map_opacity(overlays.stage)
             )
 
 
@@ -87,11 +88,13 @@ def tube_numbers(shape: TubeShape | None, grid: bool, words: Words) -> str:
     """The width of the tube and the distances between the curves, as HTML; empty without a tube."""
     if shape is None:
         return ""
-    said = words("show.width_none")
+    text = words("show.width_none")
     if shape.width < inf:
-        said = words("show.width", width=f"{1e3 * shape.width:.1f}")
-    lines = words("show.steps", xi=f"{1e3 * shape.step:g}", theta=f"{shape.degrees:g}")
-    return render("panel/note.html", said=f"{said} {lines}" if grid else said, small=True)
+        text = words("show.width", width=f"{1e3 * shape.width:.1f}")
+    if grid:
+        steps = words("show.steps", xi=f"{1e3 * shape.step:g}", theta=f"{shape.degrees:g}")
+        text = f"{text} {steps}"
+    return note(text, small=True)
 
 
 def rank_legend(

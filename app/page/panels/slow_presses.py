@@ -1,4 +1,4 @@
-"""Button presses that may block or rebuild the page: each in its own thread, few for each tab."""
+"""Button presses that may block or rebuild the page: each runs in a thread, few for each tab."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import viser
 
 MOST, APART = 5, 0.25
-"""Presses that a tab may make in quick succession, and the time until it may make one more, [s]."""
+"""Presses that a tab may make in quick succession, and the time that each one uses up, [s]."""
 
 
 class Presses:
@@ -31,13 +31,13 @@ class Presses:
         self._allowance = Allowance(MOST, 1 / APART, clock)
 
     def begin(self) -> bool:
-        """Whether one may be made now; it lasts until `end`, which any thread may call."""
+        """Begin a press, if one is allowed now; it lasts until `end`. Returns whether it is."""
         if not self._allowance.covers() or not self._under_way.acquire(blocking=False):
             return False
         return self._allowance.take()
 
     def end(self) -> None:
-        """See `begin`."""
+        """End the press. Any thread may call this."""
         self._under_way.release()
 
 
@@ -47,8 +47,8 @@ _presses: WeakKeyDictionary[Any, Presses] = WeakKeyDictionary()
 def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
     """Call `act()` in a separate thread when the button is pressed.
 
-    It may block or rebuild the page. A press from the same tab is dropped while it runs, or if
-    there are more of them than any user makes; see `MOST`.
+    `act` may block or rebuild the page. Further presses from the same tab are dropped while it
+    runs, and when there are more of them than any user makes; see `MOST`.
     """
 
     def run(presses: Presses) -> None:
@@ -70,10 +70,12 @@ def on_slow_press(handle: Any, act: Callable[[], None]) -> None:
 def on_menu_press(handle: Any, open_menu: Callable[[], Callable[[], None]]) -> None:
     """Open a window when the button is pressed, in place of the one that it opened before.
 
-    A browser does not say that its user has closed a window, and a press may come at any rate.
+    A browser does not report that its user has closed a window, and it may send presses at any
+    rate.
 
     Args:
-        open_menu: opens the window, and returns what closes it; called in a separate thread.
+        open_menu: opens the window and returns a function that closes it; called in a separate
+            thread.
     """
     opened: list[Callable[[], None]] = []
 

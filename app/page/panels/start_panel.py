@@ -1,4 +1,4 @@
-"""Where and how the next run starts: numbers, and the start in the scene, to be dragged."""
+"""The start of the next run: numbers, and a start in the scene that can be dragged."""
 
 from __future__ import annotations
 
@@ -46,8 +46,8 @@ class StartPanel:
         with gui.add_folder(words("start.title"), expand_by_default=False):
             seen = gui.add_checkbox(words("start.show"), False, hint=words("start.show_hint"))
             self._numbers = {name: self._add(gui, words, name) for name in UNITS}
-            ways = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
-            add_buttons(gui, "", ways, post)
+            commands = {words("start.reset"): c.Reset(), words("start.default"): c.StartOnPath()}
+            add_buttons(gui, "", commands, post)
         on_user_update(seen, show)
         for name, handle in self._numbers.items():
             on_user_update(handle, partial(self._change, post, name))
@@ -73,8 +73,8 @@ class StartPanel:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's start.
 
-        A snapshot that is shown right after a change may have been taken before it, so it does not
-        set the number back; the next one is right, and does so if the lab has refused the start.
+        The first snapshot after a change may have been taken before it, so it does not set the
+        number back; the next one is right, and does so if the lab has refused the start.
         """
         if self._just_changed:
             self._just_changed, self._shown = False, None

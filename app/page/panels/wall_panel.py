@@ -1,4 +1,4 @@
-"""The wall: a switch, its place and angle as numbers, and the forces on it."""
+"""The wall: a switch, its position and angle as numbers, and the forces on it."""
 
 from __future__ import annotations
 
@@ -61,8 +61,8 @@ class WallPanel:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's wall.
 
-        A snapshot that is shown right after a change may have been taken before it, so it does not
-        set the changed number back; the next one is right.
+        The first snapshot after a change may have been taken before it, so it does not set the
+        changed number back; the next one is right.
         """
         wall = snapshot.obstacle
         if self._just_changed:

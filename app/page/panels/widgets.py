@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any, TypeVar
 
 import viser
+from typing_extensions import override
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
@@ -75,7 +76,7 @@ def add_menu(
     shown: str | None = None,
     hint: str | None = None,
 ) -> viser.GuiDropdownHandle[str]:
-    """A dropdown of options by their labels; `act(option)` when the user chooses one."""
+    """Add a dropdown of options by label; call `act(option)` when the user chooses one."""
     menu = gui.add_dropdown(label, list(options), initial_value=shown, hint=hint)
     on_user_update(menu, lambda chosen: act(options[chosen]))
     return menu
@@ -84,7 +85,7 @@ def add_menu(
 def add_buttons(
     gui: viser.GuiApi, label: str, options: Mapping[str, Option], act: Callable[[Option], None]
 ) -> viser.GuiButtonGroupHandle:
-    """A row of buttons, one for each option by its label; `act(option)` when one is pressed."""
+    """Add a row of buttons, one for each option by label; call `act(option)` on a press."""
     group = gui.add_button_group(label, list(options))
     on_press(group, lambda: act(options[group.value]))
     return group
@@ -96,14 +97,14 @@ def close_once(window: Any) -> None:
         window.close()
 
 
-def note(said: str, small: bool = False) -> str:
-    """Add a line of text between widgets."""
-    return render("panel/note.html", said=said, small=small)
+def note(text: str, small: bool = False) -> str:
+    """A line of text between widgets, as HTML."""
+    return render("panel/note.html", said=text, small=small)
 
 
-def refused(why: str) -> str:
-    """The reason why an input is refused, as HTML, to be shown below the button."""
-    return render("panel/refusal.html", said=why)
+def refused(reason: str) -> str:
+    """The reason why an input was refused, as HTML, to be shown below the button."""
+    return render("panel/refusal.html", said=reason)
 
 
 def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
@@ -131,8 +132,8 @@ def option_of(words: Words, name: str, option: Any) -> str:
 class ParameterWidgets:
     """Widgets for parameters that post changes and follow the lab's values.
 
-    A snapshot that is shown right after a change may have been taken before it, so it does not set
-    the changed widget back; the next one is right.
+    The first snapshot after a change may have been taken before it, so it does not set the changed
+    widget back; the next one is right.
 
     Args:
         gui: parent of the widgets.
@@ -207,14 +208,15 @@ def _digits(step: float) -> int:
 
 
 class OwnGainWidgets(ParameterWidgets):
-    """Sliders for the gains that only single laws have, shown while a side has such a law."""
+    """Sliders for the gains of single laws, shown while a side has such a law."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        super().__init__(gui, words, post, list(OWN_GAINS), first)
+        super().__init__(gui, words, post, names=list(OWN_GAINS), first=first)
         self._show(first)
 
+    @override
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's values, and those that its laws use."""
+        """Show the lab's values, and only the sliders that its laws use."""
         super().follow(snapshot)
         self._show(snapshot)
 
@@ -237,11 +239,12 @@ class SwitchedParameter(ParameterWidgets):
         self._switch = gui.add_checkbox(
             label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
         )
-        super().__init__(gui, words, post, [name], first)
+        super().__init__(gui, words, post, names=[name], first=first)
         self._slider = self._handles[name]
         self._slider.visible = on
         on_user_update(self._switch, self._turn)
 
+    @override
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's value, and the slider only while checked."""
         super().follow(snapshot)

@@ -17,7 +17,7 @@ from onpath.lessons.words import Words
 class AskAgain:
     """A switch that shows or hides the answers, and a button that asks for second ones.
 
-    Asking again hides the answers, so that nobody follows the majority while they are discussed.
+    Asking again hides the answers, so that nobody follows the majority during the discussion.
 
     Args:
         look_again: updates the answers on the page.
@@ -34,7 +34,7 @@ class AskAgain:
         self._words, self._course, self._teaching = words, course, teaching
         self._look_again = look_again
         again = gui.add_button(words("class.ask_again"), color="gray", icon=viser.Icon.REPEAT)
-        self._said = gui.add_html("")
+        self._message = gui.add_html("")
         self._shown = gui.add_checkbox(words("class.show_answers"), teaching.chosen.shown)
         on_press(again, self._ask)
         on_user_update(self._shown, self._show)
@@ -48,9 +48,9 @@ class AskAgain:
         lesson = self._course.lesson(chosen.lesson, words.language)
         found = prediction_at(lesson, min(chosen.step, len(lesson.steps) - 1))
         if found is None:
-            self._said.content = note(words("class.no_prediction"))
+            self._message.content = note(words("class.no_prediction"))
             return
         classroom.push(TakeStep(chosen.lesson, found[0], again=True))
         self._shown.value = False
         self._show(False)
-        self._said.content = note(words("class.sent", count=len(classroom.members())))
+        self._message.content = note(words("class.sent", count=len(classroom.members())))

@@ -1,4 +1,4 @@
-"""What the teacher's page shows of a step: the class's answers, without names."""
+"""The class's answers to a step, without names, for the teacher's page."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from onpath.lessons.words import Words
 
 
 class ClassAnswers:
-    """The answers to what the teacher has chosen to look at."""
+    """The answers to the question that the teacher has chosen."""
 
     def __init__(self, course: Course, words: Words, teaching: TeacherContext) -> None:
         self._course, self._words, self._teaching = course, words, teaching
@@ -36,40 +36,40 @@ class ClassAnswers:
         lesson = self._course.lesson(chosen.lesson, self._words.language)
         index = min(chosen.step, len(lesson.steps) - 1)
         members = self._teaching.classroom.members().values()
-        ways = [of_today(self._course, member.progress) for member in members]
+        students = [of_today(self._course, member.progress) for member in members]
         if chosen.lesson in self._course.tests:
-            return self._test(lesson, index, ways, large)
-        return self._prediction(lesson, index, ways, large)
+            return self._test(lesson, index, students, large)
+        return self._prediction(lesson, index, students, large)
 
-    def _test(self, test: Lesson, index: int, ways: list[Progress], large: bool) -> str:
+    def _test(self, test: Lesson, index: int, students: list[Progress], large: bool) -> str:
         """A question of the test, answered before and after the course, and the class's gain."""
         words, revealed = self._words, self._teaching.chosen.revealed
         rounds = [
-            (words(title), item_distribution(test, index, name, ways))
+            (words(title), item_distribution(test, index, name, students))
             for name, title in zip(TESTS, ("test.before", "test.after"), strict=True)
         ]
         asked = page.choices_view(question_at(test, index), rounds, revealed, words, large)
-        return gain_view(test, ways, revealed, words, large) + asked
+        return gain_view(test, students, revealed, words, large) + asked
 
-    def _prediction(self, lesson: Lesson, index: int, ways: list[Progress], large: bool) -> str:
+    def _prediction(self, lesson: Lesson, index: int, students: list[Progress], large: bool) -> str:
         words, revealed = self._words, self._teaching.chosen.revealed
         found = prediction_at(lesson, index)
         if found is None:
             return note(words("class.no_prediction"))
         at, block = found
-        truth = truth_of(lesson.name, at, [*ways, self._teaching.progress()])
+        truth = truth_of(lesson.name, at, [*students, self._teaching.progress()])
         if truth is None and revealed:
             truth = self._truth_at(lesson, at)
-        counted = distribution(block, lesson.name, at, ways)
+        counted = distribution(block, lesson.name, at, students)
         second = None
-        if is_asked_again(lesson.name, at, ways):
-            second = distribution(block, lesson.name, at, ways, again=True)
+        if is_asked_again(lesson.name, at, students):
+            second = distribution(block, lesson.name, at, students, again=True)
         if not self._teaching.chosen.shown:
             return page.hidden_view(block, second or counted, words, large)
         laws = lesson.laws_shown(at)
         picks = self._picks(lesson.name, at, counted, second)
         view = page.prediction_view(
-            block, counted, truth, revealed, words, large, laws, second, picks
+            block, counted, truth, revealed, words, large, laws=laws, second=second, picks=picks
         )
         missing = revealed and not counted.counts and truth is None
         return view + note(words("class.no_truth")) if missing else view
@@ -77,18 +77,18 @@ class ClassAnswers:
     def _picks(
         self, lesson: str, at: int, counted: Distribution, second: Distribution | None
     ) -> Picks:
-        """The sketches that the teacher has picked; each is numbered when it is first seen."""
+        """The sketches that the teacher has picked; each gets its number when first seen."""
         chosen, numbers = self._teaching.chosen, []
         for again, found in ((False, counted), (True, second)):
             if found is None:
                 continue
             seen = chosen.numbered.setdefault((lesson, at, again), [])
-            seen.extend(each for each in found.sketches if each not in seen)
-            numbers.append(tuple(seen.index(each) + 1 for each in found.sketches))
+            seen.extend(sketch for sketch in found.sketches if sketch not in seen)
+            numbers.append(tuple(seen.index(sketch) + 1 for sketch in found.sketches))
         return Picks(chosen.picked, tuple(numbers))
 
     def _truth_at(self, lesson: Lesson, at: int) -> Truth | None:
-        """What happens, computed once if nobody has run it."""
+        """The result of the experiment, computed once if nobody has run it."""
         key = lesson.name, at
         if key not in self._computed:
             self._computed[key] = computed_truth(lesson, at)

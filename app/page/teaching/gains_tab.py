@@ -22,9 +22,9 @@ class GainsTab:
     def look(self, large: bool) -> None:
         """Show everyone's gains as they are now."""
         gains = [member.gains for member in self._class.members().values()]
-        seen = gains_view(self._pair, gains, self._words, large)
-        if self._shown.content != seen:
-            self._shown.content = seen
+        view = gains_view(self._pair, gains, self._words, large)
+        if self._shown.content != view:
+            self._shown.content = view
 
     def _choose(self, pair: tuple[str, str]) -> None:
         self._pair = pair

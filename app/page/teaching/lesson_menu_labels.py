@@ -1,4 +1,4 @@
-"""How lessons, tests and their steps are called in the menus of the teacher's page."""
+"""Labels of lessons, tests and steps in the menus of the teacher's page."""
 
 from __future__ import annotations
 

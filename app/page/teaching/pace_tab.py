@@ -38,7 +38,7 @@ class PaceTab:
         self._last = gui.add_dropdown(words("pace.last"), steps, initial_value=steps[last])
         keep = gui.add_button(words("pace.keep"), icon=viser.Icon.ARROWS_HORIZONTAL)
         self._end = gui.add_button(words("pace.end"), color="gray", icon=viser.Icon.LOCK_OPEN)
-        self._said = gui.add_html("")
+        self._message = gui.add_html("")
         self._shown = gui.add_html("")
         self._below, self._above = self._shown.order, menu.order - 0.5
         on_user_update(menu, self._choose)
@@ -46,23 +46,29 @@ class PaceTab:
         on_press(self._end, self._let_go)
 
     def look(self, large: bool) -> None:
-        """Show where everybody is now, for a projector above the controls."""
+        """Show where everybody is now; for a projector, above the controls."""
         order = self._above if large else self._below
         if self._shown.order != order:
             self._shown.order = order
         pace, words = self._class.orders.pace, self._words
         lesson = self._course.lesson(self._lesson, words.language)
-        ways = [member.progress for member in self._class.members().values()]
-        seen = pace_view(lesson, ways, pace, words, large)
-        if self._shown.content != seen:
-            self._shown.content = seen
-        said = note(words("pace.none"))
+        students = [member.progress for member in self._class.members().values()]
+        view = pace_view(lesson, students, pace, words, large)
+        if self._shown.content != view:
+            self._shown.content = view
+        message = note(words("pace.none"))
         if pace is not None:
             titles = {name: title for title, name in self._names.items()}
-            told = {"lesson": titles[pace.lesson], "first": pace.first + 1, "last": pace.last + 1}
-            said = note(words("pace.kept", **told))
-        if self._said.content != said:
-            self._said.content = said
+            message = note(
+                words(
+                    "pace.kept",
+                    lesson=titles[pace.lesson],
+                    first=pace.first + 1,
+                    last=pace.last + 1,
+                )
+            )
+        if self._message.content != message:
+            self._message.content = message
         if self._end.visible != (pace is not None):
             self._end.visible = pace is not None
 
@@ -78,8 +84,8 @@ class PaceTab:
 
     def _keep(self) -> None:
         steps = self._steps()
-        at = sorted(steps.index(menu.value) for menu in (self._first, self._last))
-        self._class.keep_within(Pace(self._lesson, *at))
+        first, last = sorted(steps.index(menu.value) for menu in (self._first, self._last))
+        self._class.keep_within(Pace(self._lesson, first, last))
 
     def _let_go(self) -> None:
         self._class.keep_within(None)

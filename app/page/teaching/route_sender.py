@@ -24,12 +24,12 @@ class RouteSender:
         if self._names:
             self._menu = gui.add_dropdown(words("route.route"), list(self._names))
             send = gui.add_button(words("route.send"), icon=viser.Icon.SEND)
-            self._said = gui.add_html("")
+            self._message = gui.add_html("")
             on_press(send, self._send)
 
     def _send(self) -> None:
         name = self._names[self._menu.value]
         first = self._course.routes[name].stop[0]
         self._class.push(TakeStep(first.lesson, first.steps[0] - 1, name))
-        said = self._words("class.sent", count=len(self._class.members()))
-        self._said.content = note(said)
+        message = self._words("class.sent", count=len(self._class.members()))
+        self._message.content = note(message)

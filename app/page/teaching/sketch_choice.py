@@ -1,4 +1,4 @@
-"""Which of the class's sketches are shown, by numbers that tell nothing of who drew them."""
+"""The choice of the class's sketches to show, by numbers that do not reveal who drew them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class SketchChoice:
         on_user_update(self._box, self._choose)
 
     def clear(self) -> None:
-        """Show all sketches again, as those of another step are other ones."""
+        """Show all sketches again, since another step has other ones."""
         self._chosen.picked = ()
         if self._box.value:
             self._box.value = ""
@@ -40,6 +40,6 @@ class SketchChoice:
 
 
 def picked(typed: str) -> tuple[int, ...]:
-    """The numbers in a text, each once; whatever else is in it is ignored."""
+    """The numbers in a text, each once; everything else in it is ignored."""
     found = (int(number) for number in re.findall(r"(?a:\d{1,4})", typed[:200]))
     return tuple(dict.fromkeys(number for number in found if 0 < number <= MOST_MEMBERS))

@@ -1,4 +1,4 @@
-"""Teacher's controls for all labs: freeze, send a set-up."""
+"""The teacher's controls for all labs: freeze them, send them a set-up."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class TeacherControls:
             gui.add_html(render("panel/field.html", kind="code", required=False))
             code = gui.add_text(words("keep.paste"), "", hint=words("keep.paste_hint"))
             push = gui.add_button(words("class.push_code"), color="gray", icon=viser.Icon.SEND)
-        self._said = gui.add_html("")
+        self._message = gui.add_html("")
         stop = gui.add_button(words("class.stop_teaching"), color="gray", icon=viser.Icon.DOOR_EXIT)
         on_press(send, self._send_own)
         on_press(push, lambda: self._send_code(code.value))
@@ -36,18 +36,18 @@ class TeacherControls:
 
     def _send_own(self) -> None:
         self._teaching.send_setup()
-        self._tell_sent()
+        self._show_sent()
 
     def _send_code(self, text: str) -> None:
         try:
             self._class.push(TakeSetup(decode(text)))
         except ValueError as error:
-            self._said.content = note(self._words.sentence(error))
+            self._message.content = note(self._words.sentence(error))
             return
-        self._tell_sent()
+        self._show_sent()
 
-    def _tell_sent(self) -> None:
-        self._said.content = note(self._words("class.sent", count=len(self._class.members())))
+    def _show_sent(self) -> None:
+        self._message.content = note(self._words("class.sent", count=len(self._class.members())))
 
 
 class FollowedStudent:

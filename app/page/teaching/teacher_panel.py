@@ -41,7 +41,7 @@ class TeacherPanel:
 
     Args:
         post: receives the commands for the teacher's own lab.
-        submit: runs something in another thread.
+        submit: runs a function in another thread.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class TeacherPanel:
             self._show_names()
             still = self._teaching.why_still(self._words)
             _show(self._still, note(still) if still else "")
-            _show(self._deleted, note(self._chosen.told) if self._chosen.told else "")
+            _show(self._deleted, note(self._chosen.message) if self._chosen.message else "")
             self._show_standing()
             if self._course.lessons:
                 _show(self._prediction, self._answers.view(self._large))
@@ -106,8 +106,13 @@ class TeacherPanel:
 
     def _build_pace(self, panel: Any) -> None:
         with panel.add_tab(self._words("pace.title"), viser.Icon.WALK):
-            chosen = self._chosen
-            self._pace = PaceTab(self._gui, self._words, self._course, chosen, self._class)
+            self._pace = PaceTab(
+                gui=self._gui,
+                words=self._words,
+                course=self._course,
+                chosen=self._chosen,
+                classroom=self._class,
+            )
 
     # Progress
 
@@ -150,14 +155,14 @@ class TeacherPanel:
         push = self._class.orders.push
         self._clear.visible = push is not None
         if push is None:
-            said = ""
+            message = ""
         elif isinstance(push, TakeStep):
             titles = {name: title for title, name in self._lessons.items()}
             title = titles.get(push.lesson, "")
-            said = self._words("class.standing_step", lesson=title, step=push.step + 1)
+            message = self._words("class.standing_step", lesson=title, step=push.step + 1)
         else:
-            said = self._words("class.standing_setup")
-        _show(self._standing, note(said) if said else "")
+            message = self._words("class.standing_setup")
+        _show(self._standing, note(message) if message else "")
 
     def _ask_to_delete(self) -> None:
         """Delete the student who is followed, after confirmation."""
@@ -170,17 +175,17 @@ class TeacherPanel:
     def _delete_student(self, code: str) -> None:
         try:
             self._teaching.delete(code)
-            said = self._words("class.deleted")
+            message = self._words("class.deleted")
         except (OSError, ValueError) as error:
-            said = self._words.sentence(error)
+            message = self._words.sentence(error)
         else:
             self._chosen.numbered.clear()
             self._choose_followed("")  # which may rebuild the page
-        self._chosen.told = said
+        self._chosen.message = message
         self._look_again()
 
     def _choose_followed(self, name: str) -> None:
-        self._chosen.followed, self._chosen.told = self._followable().get(name, ""), ""
+        self._chosen.followed, self._chosen.message = self._followable().get(name, ""), ""
         self._look_again()
 
     # Predictions
@@ -190,15 +195,21 @@ class TeacherPanel:
         if not self._course.has(chosen.lesson):
             chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
         lessons, steps = self._lessons, self._steps()
-        own = next(label for label, name in lessons.items() if name == chosen.lesson)
+        shown = next(label for label, name in lessons.items() if name == chosen.lesson)
         self._codes.append(gui.add_html(""))
-        lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=own)
+        lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=shown)
         self._step = gui.add_dropdown(
             words("class.step_head"), steps, initial_value=steps[chosen.step]
         )
         push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
         self._sent = gui.add_html("")
-        AskAgain(gui, words, self._course, self._teaching, self._look_again)
+        AskAgain(
+            gui=gui,
+            words=words,
+            course=self._course,
+            teaching=self._teaching,
+            look_again=self._look_again,
+        )
         self._sketches = SketchChoice(gui, words, chosen, self._look_again)
         RouteSender(gui, words, self._course, self._class)
         reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
@@ -240,7 +251,7 @@ class TeacherPanel:
         self._look_again()
 
     def _place_prediction(self) -> None:
-        """Below the controls, or for a projector above them."""
+        """Place the answers below the controls or, for a projector, above them."""
         self._prediction.order = self._above if self._large else self._below
 
     def _look_again(self) -> None:
@@ -248,8 +259,8 @@ class TeacherPanel:
 
     def _push_step(self) -> None:
         self._class.push(TakeStep(self._chosen.lesson, self._chosen.step))
-        said = self._words("class.sent", count=len(self._class.members()))
-        self._sent.content = note(said)
+        message = self._words("class.sent", count=len(self._class.members()))
+        self._sent.content = note(message)
 
     # Export and deletion
 
@@ -259,7 +270,7 @@ class TeacherPanel:
         export = gui.add_button(words("class.export"), icon=viser.Icon.FILE_EXPORT)
         end = gui.add_button(words("class.end"), color="gray", icon=viser.Icon.DOOR_EXIT)
         forget = gui.add_button(words("class.forget"), color="red", icon=viser.Icon.TRASH)
-        self._told = gui.add_html("")
+        self._outcome = gui.add_html("")
         on_press(export, lambda: self._submit(self._export))
         on_press(end, lambda: self._ask(words("class.end"), words("class.end_sure"), self._end))
         on_press(
@@ -273,9 +284,9 @@ class TeacherPanel:
             session: replace(member, progress=of_today(course, member.progress))
             for session, member in self._class.members().items()
         }
-        ways = [(session, member.progress) for session, member in members.items()]
+        students = [(session, member.progress) for session, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
-        tests = sheets_without_names(test, ways, self._class.code) if test else []
+        tests = sheets_without_names(test, students, self._class.code) if test else []
         made = datetime.now(UTC)
         data = class_record(members.values(), course, language, made, tests)
         name = f"onpath-class-{made:%Y-%m-%d}.xlsx"
@@ -283,18 +294,18 @@ class TeacherPanel:
 
     def _end(self) -> None:
         try:
-            said = self._words("class.ended", count=self._class.end())
+            message = self._words("class.ended", count=self._class.end())
         except OSError as error:
-            said = self._words.sentence(error)
-        self._told.content = note(said)
+            message = self._words.sentence(error)
+        self._outcome.content = note(message)
         self._look_again()
 
     def _forget(self) -> None:
         try:
-            said = self._words("class.forgotten", count=self._teaching.forget())
+            message = self._words("class.forgotten", count=self._teaching.forget())
         except (OSError, ValueError) as error:
-            said = self._words.sentence(error)
-        self._told.content = note(said)
+            message = self._words.sentence(error)
+        self._outcome.content = note(message)
         self._look_again()
 
     def _ask(self, title: str, question: str, act: Callable[[], None]) -> None:

@@ -1,1 +1,1 @@
-"""What is drawn by hand in the scene: paths, and predictions as sketches."""
+"""Freehand drawing in the scene: paths, and predictions as sketches."""

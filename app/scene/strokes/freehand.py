@@ -40,8 +40,13 @@ class Freehand:
         self._plane, self._box = stage.path_plane, stage.reachable
         self._on_stroke = on_stroke
         self._base = self._bases[0]  # of the robot in front of which the stroke is drawn
-        look = (stage.tones.line, 0.003)
-        self._line = SketchLine(scene, "/freehand/line", look, CLOSEST, self._before_the_robot)
+        self._line = SketchLine(
+            scene=scene,
+            name="/freehand/line",
+            look=(stage.tones.line, 0.003),
+            closest=CLOSEST,
+            place=self._before_the_robot,
+        )
         self.active = True
         sheet = meshes.sheet(*stage.sheet)
         self._sheets = add_copies(
@@ -50,7 +55,7 @@ class Freehand:
         self._sheets.on_drag("left")(self._dragged)
 
     def cancel(self) -> None:
-        """Removes the sheets. Idempotent."""
+        """Remove the sheets. Idempotent."""
         if self.active:
             self.active = False
             self._sheets.remove()
@@ -62,7 +67,9 @@ class Freehand:
 
     async def _dragged(self, event: viser.SceneNodeDragEvent[viser.BatchedMeshHandle]) -> None:
         index = event.instance_index
-        if not self.active or index is None or index >= len(self._bases):  # a browser may send any
+        if (
+            not self.active or index is None or index >= len(self._bases)
+        ):  # a browser may send any number
             return
         self._base = self._bases[index]
         camera = event.client.camera.position

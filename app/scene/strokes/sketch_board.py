@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 FORM = 0.62  # height to width
 MARGIN = 0.09  # margin between the board's edge and the axes, as a fraction of its width
-PIXELS = 900  # fraction of the picture's width
+PIXELS = 900  # width of the picture
 CLOSEST = 0.002  # spacing of two points of a curve, as a fraction of the board's width
 
 
@@ -51,9 +51,12 @@ class SketchBoard:
         self._right, self._up, self._middle, width = _placed(stage)
         self._size = width * np.array([1.0, FORM])
         self._inner = 1 - 2 * MARGIN * np.array([1.0, 1.0 / FORM])
-        look = (palette.SELECTED, 0.006)
         self._line = SketchLine(
-            scene, "/board/line", look, CLOSEST, partial(self._world, above=0.003)
+            scene=scene,
+            name="/board/line",
+            look=(palette.SELECTED, 0.006),
+            closest=CLOSEST,
+            place=partial(self._world, above=0.003),
         )
         handle = scene.add_image(
             "/board/sheet",
@@ -119,8 +122,8 @@ class SketchBoard:
         hit = intersect_ray_plane(camera, pointer - camera, self._middle, normal)
         if hit is None:
             return None
-        way = hit - self._middle
-        place = np.array([way @ self._right, way @ self._up]) / self._size
+        offset = hit - self._middle
+        place = np.array([offset @ self._right, offset @ self._up]) / self._size
         return np.clip(place, -0.5 * self._inner, 0.5 * self._inner)
 
 

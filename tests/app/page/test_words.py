@@ -420,7 +420,7 @@ def test_a_teacher_is_told_in_german_what_cannot_be_forgotten(ask: str) -> None:
     asked: Any = SimpleNamespace(end=fails, forget=fails)
     told, words = SimpleNamespace(content=""), Words("de")
     panel: Any = SimpleNamespace(
-        _words=words, _class=asked, _teaching=asked, _told=told, _look_again=lambda: None
+        _words=words, _class=asked, _teaching=asked, _outcome=told, _look_again=lambda: None
     )
     getattr(TeacherPanel, ask)(panel)
     assert "die Datenbank meldet: disk full" in told.content
