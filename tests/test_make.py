@@ -90,7 +90,7 @@ def test_minutes_of_attacks_are_where_make_looks_for_them() -> None:
     """`make thorough` collects them in one folder, which is sooner than in all of them."""
     files = (ROOT / "tests").rglob("test_*.py")
     marked = {file for file in files if re.search(r"mark\.soak\b", file.read_text("utf-8"))}
-    assert {file.parent for file in marked} == {ROOT / "tests" / "side"}
+    assert {file.parent for file in marked} == {ROOT / "tests" / "bench"}
 
 
 def test_examples_are_at_random_only_when_asked(request: pytest.FixtureRequest) -> None:

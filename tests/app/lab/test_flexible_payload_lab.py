@@ -91,7 +91,7 @@ def test_a_robot_with_other_states_begins_anew_and_the_user_is_told(
 ) -> None:
     lab = flexible_lab(0.3)
     do(lab, c.SetParameter(name, value))
-    assert lab.session.time == 0 and "begun anew" in lab.message
+    assert lab.session.time == 0 and "restarted" in lab.message
 
 
 def test_a_load_with_another_number_of_modes_begins_anew() -> None:
@@ -100,4 +100,4 @@ def test_a_load_with_another_number_of_modes_begins_anew() -> None:
     assert lab.session.time == 0
     run(lab, 0.2)
     do(lab, c.ResetParameters())
-    assert lab.session.time == 0 and "begun anew" in lab.message
+    assert lab.session.time == 0 and "restarted" in lab.message

@@ -91,7 +91,7 @@ def test_another_plane_in_the_lab_begins_a_run_there() -> None:
     runs, before = lab.session.run_number, take_snapshot(lab, 1.0)
     for name, value in PLANE.items():
         do(lab, c.SetParameter(name, value))
-    assert "begun anew" in lab.message and lab.session.run_number > runs
+    assert "restarted" in lab.message and lab.session.run_number > runs
     assert (
         take_snapshot(lab, 1.0).key != before.key
     )  # the page is built anew: drags are in that plane

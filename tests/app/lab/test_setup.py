@@ -189,7 +189,7 @@ BAD: dict[str, tuple[Setup, str]] = {
     "path": (own(name="spiral"), "unknown path"),
     "preset with numbers": (own(name="circle", numbers=(1, 2)), "no numbers"),
     "no points": (own(name="edited"), "2 to 24 points"),
-    "half a point": (own(name="edited", numbers=(1, 2, 3)), "half a point"),
+    "half a point": (own(name="edited", numbers=(1, 2, 3)), "a point is incomplete"),
     "points in one place": (own(name="edited", numbers=(1, 2) * 5), "at least 3 points"),
     "far away": (own(name="edited", numbers=(0, 0, 900_000, 0, 0, 900_000)), "within 0.2 m"),
     "farther": (own(name="edited", numbers=(0, 0, 10**9, 0, 0, 10**9)), "Expected"),

@@ -179,7 +179,7 @@ TEXT = "\n".join(",".join(row) for row in cells()[:41])
         ("\n\n# nothing\n", "line 1: there is no column x"),
         ("a;b\n1;2\n", "line 1: there is no column x"),
         ("x,x,y\n1,2,3\n", "line 1: there are several columns x"),
-        ("x,y\n", "line 1: there are no rows"),
+        ("x,y\n", "line 1: no rows follow"),
         ("sep=|\nx|y\n1|2\n", "line 1: '|' separates no columns"),
         ("# a\nx,y\n\n1,2\n3\n", "line 5: expected 2 cells, got 1"),
         ("x,y\n1,2,,3\n", "line 2: expected 2 cells, got 4"),
