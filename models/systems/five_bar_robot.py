@@ -13,7 +13,7 @@ from onpath.models.systems import five_bar
 from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import BalancedLinkage, Robot, RobotEntry, Stop
+from onpath.models.systems.robots import BalancedLinkage, Robot, RobotEntry, StopCondition
 
 COLLAPSE = Message("stop.collapsed")
 COLLAPSED = 0.02  # |sin(q1 - q2)| below which the linkage counts as collapsed
@@ -61,12 +61,12 @@ def model(parameters: Parameters) -> Array:
     return _model(chosen.error_M11, chosen.error_M22, chosen.error_b1, chosen.error_b2)
 
 
-def collapse(q: ca.SX) -> Stop:
+def collapse(q: ca.SX) -> StopCondition:
     """Stops a run near a collapsed parallelogram, |sin(q1 - q2)| = 0.
 
     Source: eq. (14).
     """
-    return Stop(ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED, COLLAPSE)
+    return StopCondition(ca.fabs(ca.sin(q[0] - q[1])) < COLLAPSED, COLLAPSE)
 
 
 LINKS = five_bar.load_links()

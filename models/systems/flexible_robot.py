@@ -30,7 +30,7 @@ from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.flexible_parameters import PLANE, FlexibleParameters
 from onpath.models.systems.forces import Grip, SpringLimits
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import FlexibleLink, Robot, RobotEntry, Stop
+from onpath.models.systems.robots import FlexibleLink, Robot, RobotEntry, StopCondition
 from onpath.models.systems.system import MechanicalSystem, conditioning_of
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
 
@@ -136,7 +136,9 @@ def _extras(system: MechanicalSystem, beam: BeamModes) -> dict[str, ca.SX]:
     return {"deflection": ca.sum1(modes), "modes": modes, "internal_energy": energy}
 
 
-def _stops(system: MechanicalSystem, beam: BeamModes, modes: int, plant: str) -> tuple[Stop, ...]:
+def _stops(
+    system: MechanicalSystem, beam: BeamModes, modes: int, plant: str
+) -> tuple[StopCondition, ...]:
     """Stops for a link that bends or vibrates too much, and for a collapsed linkage."""
     bent, rate = (ca.fabs(ca.dot(x[RIGID:], ca.DM(beam.tip))) for x in (system.q, system.v))
     bad = ca.fmax(bent > MOST_BENT * LINKS.beam, rate > FASTEST_TIP)
@@ -146,7 +148,7 @@ def _stops(system: MechanicalSystem, beam: BeamModes, modes: int, plant: str) ->
             return BENT_OR_UNSTABLE
         return UNSTABLE if is_unstable_inside(modes, plant, q, parameters) else BENT
 
-    return Stop(bad, reason), collapse(system.q)
+    return StopCondition(bad, reason), collapse(system.q)
 
 
 def is_unstable_inside(modes: int, plant: str, q: Array, parameters: Parameters) -> bool:

@@ -32,7 +32,7 @@ _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Stop:
+class StopCondition:
     """A state in which a run of a robot counts as diverged.
 
     Attributes:
@@ -92,7 +92,7 @@ class Robot:
     home: tuple[float, float, float]
     reach: float
     regularity: ca.SX | None = None
-    stops: tuple[Stop, ...] | None = None
+    stops: tuple[StopCondition, ...] | None = None
     extras: Mapping[str, ca.SX] = field(default_factory=dict[str, ca.SX])
     frame: Frame = _PLANE
     drawing: Drawing = _DRAWING
@@ -221,14 +221,14 @@ def stop_code(robot: Robot) -> ca.SX:
     return code
 
 
-def stops_of(robot: Robot) -> tuple[Stop, ...]:
+def stops_of(robot: Robot) -> tuple[StopCondition, ...]:
     """`Robot.stops`, with the usual stops for None."""
     return _usual_stops(robot.core) if robot.stops is None else robot.stops
 
 
 @lru_cache(maxsize=64)
-def _usual_stops(robot: Robot) -> tuple[Stop, ...]:
-    return (Stop(_relative(robot)(robot.system.q) < LEAST_REGULARITY, AT_A_LIMIT),)
+def _usual_stops(robot: Robot) -> tuple[StopCondition, ...]:
+    return (StopCondition(_relative(robot)(robot.system.q) < LEAST_REGULARITY, AT_A_LIMIT),)
 
 
 @lru_cache(maxsize=64)

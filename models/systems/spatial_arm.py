@@ -36,7 +36,7 @@ from onpath.models.paths.frames import LevelPlane
 from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
 from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, Stop
+from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, StopCondition
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 from onpath.models.systems.two_links import elbow_up
 
@@ -205,7 +205,7 @@ SPATIAL_ARM = Robot(
     skeleton=skeleton,
     home=MIDDLE,
     reach=LINKS.l2 + LINKS.l3,
-    stops=(Stop(broken(EQUATIONS.q), SINGULAR),),
+    stops=(StopCondition(broken(EQUATIONS.q), SINGULAR),),
     frame=LevelPlane(),
     drawing=DRAWING,
 )

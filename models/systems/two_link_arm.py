@@ -32,7 +32,7 @@ from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.parameter_specs import model_error, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters
-from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, Stop
+from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, StopCondition
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 from onpath.models.systems.two_links import elbow_up
 
@@ -165,7 +165,9 @@ TWO_LINK_ARM = Robot(
     skeleton=skeleton,
     home=(LINKS.l2, 0.0, LINKS.l1),
     reach=LINKS.l1 + LINKS.l2,
-    stops=(Stop(ca.sin(EQUATIONS.q[1]) > -STRETCHED, SINGULAR),),  # or beyond, the elbow down
+    stops=(
+        StopCondition(ca.sin(EQUATIONS.q[1]) > -STRETCHED, SINGULAR),
+    ),  # or beyond, the elbow down
     drawing=DRAWING,
 )
 ROBOT = RobotEntry(

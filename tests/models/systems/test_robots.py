@@ -66,7 +66,7 @@ WRONG = {
     "solve(M, R) does not return": ("inputs=2", "inputs=2, solve=lambda m, r: r"),
     "a run stops at rest": (
         "        regularity=",
-        "        stops=(Stop(ca.fabs(q[0]) > 0.01, SINGULAR),),\n        regularity=",
+        "        stops=(StopCondition(ca.fabs(q[0]) > 0.01, SINGULAR),),\n        regularity=",
     ),
     "payload changes tool, on which h(q) depends": ("output=q", "output=q * (1 + 1e-9 * tool)"),
     "the drawing's motors": (
@@ -85,7 +85,7 @@ def test_what_is_wrong_with_a_new_robot_is_said(
     assert GANTRY.count(right) == 1
     text = GANTRY.replace(right, wrong).replace(
         "import Robot, RobotEntry",
-        "import SINGULAR, Robot, RobotEntry, Stop\nimport numpy as np\n"
+        "import SINGULAR, Robot, RobotEntry, StopCondition\nimport numpy as np\n"
         "from onpath.models.systems.drawing import Drawing",
     )
     with new_robot(tmp_path, monkeypatch, text) as entry:
