@@ -49,8 +49,8 @@ class PathChoice:
         on_user_update(
             self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
         )
-        names = ["rise"] if "rise" in first.parameters else []
-        self._rise = ParameterWidgets(gui, words, post, names=names, first=first)
+        rises = ["rise"] if "rise" in first.parameters else []
+        self._rise = ParameterWidgets(gui, words, post, names=rises, first=first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the current preset and rise."""
