@@ -296,7 +296,7 @@ def test_round_the_circle_as_lesson_1_tells_it() -> None:
 def test_the_readme_s_experiment() -> None:
     texts = stated_in_readme(
         "held back from # to # s, the follower is never further than # mm from the circle and the"
-        " tracker # mm. These values hold for where the robots are at # s;"
+        " tracker # mm. These values hold for the places of the robots at # s;"
     )
     chosen = experiments()["obstruction"]
     most = [1e3 * float(run(chosen, who).distance.max()) for who in (FOLLOWER, TRACKER)]
