@@ -58,9 +58,9 @@ TOUCHED = {
     "infra/_infra.py": (
         "WebsockClientConnection WebsockMessageHandler WebsockServer _append_aligned_buffers"
         " _broadcast_buffer _handle_incoming_message _incoming_handlers _live_connections"
-        " _record_handles _server_thread _state ZstdCompressor"
+        " _record_handles _state"
     ),
-    "infra/_messages.py": "deserialize excluded_self_client wire_field_names",
+    "infra/_messages.py": "deserialize excluded_self_client",
 }
 """Names in viser's modules, by file."""
 
