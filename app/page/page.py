@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import viser
 
 from onpath.app.common.palette import AZURE
@@ -28,6 +29,7 @@ from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import Build, StepControls, StepPlot
 from onpath.app.page.step_drawings import StepDrawings
+from onpath.app.page.strip_words import strip_words
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -106,9 +108,20 @@ class Page:
                 part.follow(snapshot)
 
     @property
+    def seen_height(self) -> float:
+        """Height of the part of the scene that the canvas shows, where the camera looks, [m]."""
+        camera = self._client.camera
+        distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
+        return float(2 * distance * np.tan(camera.fov / 2))
+
+    @property
     def captions(self) -> dict[str, str]:
         """What each robot is doing, by side; see `Captions.shown`."""
         return self._scene.captions.shown
+
+    def settle(self) -> None:
+        """Refit the camera now and for a while, because the canvas has changed its size."""
+        self._framed, self._settling = 0.0, SETTLING
 
     def reset_view(self) -> None:
         """Schedule a reset of the camera to its initial pose. Thread-safe."""
@@ -140,6 +153,10 @@ class Page:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 
+    def _has_strip(self, snapshot: PageSnapshot) -> bool:
+        """Whether our own strip stands below the scene; see assets/web/lab.ts."""
+        return not snapshot.key.in_lesson
+
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
         return self._context.post
@@ -148,7 +165,9 @@ class Page:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
         stage = stage_of(robot, DARK if self._context.dark else LIGHT)
-        self._scene = Scene(self._client, stage, _hooks(post, robot), words)
+        stripped = self._has_strip(first)
+        hooks = _hooks(post, robot)
+        self._scene = Scene(self._client, stage, hooks, words, titled=not stripped)
         self._scene.build(first)
         one_at_a_time.rest()
         self._overlays = Overlays(
@@ -161,8 +180,9 @@ class Page:
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
+        ticket, parts = self._context.ticket, strip_words(words) if stripped else ""
         self._client.gui.add_html(
-            render("panel/page.html", words=words, ticket=self._context.ticket)
+            render("panel/page.html", words=words, ticket=ticket, parts=parts)
         )
         self._narration = Narration(
             self._client.gui, words, self._preferences, self._scene.captions
@@ -244,12 +264,9 @@ class Page:
     def _build_free_lab(
         self, controls: PanelFactory, first: PageSnapshot, words: Words, post: Post
     ) -> None:
-        """Build all panels: first the run controls, then the plot of their effect."""
-        self._build_numbers(words)
+        """Build all panels; numbers, chart and the buttons for time are in the strip."""
         self._build_navigation(first, words, post)
-        self._parts += controls.run(first)
-        self._build_distance(first, words)
-        self._parts += controls.the_rest(first)
+        self._parts += controls.beside_strip(first)
         self._parts.append(FirstMinute(self._client, words))
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:

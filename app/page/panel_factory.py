@@ -18,14 +18,14 @@ from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.law_panel import LawPanel
-from onpath.app.page.panels.past_panel import PastPanel
+from onpath.app.page.panels.past_panel import PastPanel, add_exports
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.run_panel import HoldDirection, RunPanel
 from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_user_update
+from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
 from onpath.app.page.plots import MORE, PHASE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -92,15 +92,17 @@ class PanelFactory:
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
-        return self.run(first) + self.the_rest(first)
+        return [part for name in (*RUN, *REST) for part in self._add(name, first)]
 
-    def run(self, first: PageSnapshot) -> list[Part]:
-        """Build the controls that run and hold the robots."""
-        return [part for name in RUN for part in self._add(name, first)]
+    def beside_strip(self, first: PageSnapshot) -> list[Part]:
+        """Build all panels except those that the strip replaces; see assets/web/lab.ts."""
+        self._add_view()
+        names = ("direction", *("export" if name == "past" else name for name in REST))
+        return [part for name in names for part in self._add(name, first)]
 
-    def the_rest(self, first: PageSnapshot) -> list[Part]:
-        """Build all other panels."""
-        return [part for name in REST for part in self._add(name, first)]
+    def _add_view(self) -> None:
+        text, icon = self._words("run.view"), viser.Icon.ZOOM_RESET
+        on_press(self._gui.add_button(text, color="gray", icon=icon), self._reset_view)
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the run panel, the controls of a lesson's step, and its plots without a window."""
@@ -163,6 +165,7 @@ class PanelFactory:
             "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "past": lambda: PastPanel(gui, words, post, exporter),
+            "export": lambda: _silent(add_exports(gui, words, exporter)),
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
             "laws": lambda: LawPanel(gui, words, post, first),

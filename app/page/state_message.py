@@ -12,11 +12,14 @@ from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
 
-def state_message(snapshot: PageSnapshot, captions: Mapping[str, str]) -> dict[str, Any]:
+def state_message(
+    snapshot: PageSnapshot, captions: Mapping[str, str], height: float
+) -> dict[str, Any]:
     """The message of a lab's state, in the page's language; see app/viser_adapter/README.md.
 
     Args:
         captions: of the robots, by side; see `app.scene.captions.Captions`.
+        height: that the canvas shows, see `Page.seen_height`, [m].
     """
     words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
@@ -32,9 +35,12 @@ def state_message(snapshot: PageSnapshot, captions: Mapping[str, str]) -> dict[s
         "clocks": [law_named(law).by_clock for law in laws.values()],
         "stopped": [side in snapshot.stopped for side in laws],
         "rate": run.rate,
+        "achieved": round(snapshot.achieved_speed / run.rate, 1) * run.rate,
         "together": run.copy,
         "undo": run.can_undo_going_on,
         "message": snapshot.message,
         "level": snapshot.message_level if snapshot.message else "",
+        "presenting": snapshot.key.presenting,
+        "height": round(height, 3),
         "own": not snapshot.key.student,
     }

@@ -44,19 +44,19 @@ class TeacherView(Page):
         return _ignore if snapshot.key.student else self._context.post
 
     @override
+    def _has_strip(self, snapshot: PageSnapshot) -> bool:
+        return True  # also for a student in a lesson
+
+    @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui, own_words, teaching = self._client.gui, self._own_words, self._teaching
         if first.key.student:
             self._parts.append(FollowedStudent(gui, own_words, teaching))
-            self._build_numbers(words)
-            self._build_distance(first, words)
             self._parts.append(self._controls(own_words, post).show())
         else:
             self._parts.append(TeacherControls(gui, own_words, teaching))
-            self._build_numbers(words)
             self._build_menus(first, own_words, post)
-            self._build_distance(first, words)
-            self._parts += self._controls(own_words, post).everything(first)
+            self._parts += self._controls(own_words, post).beside_strip(first)
         panel = TeacherPanel(
             client=self._client,
             words=own_words,

@@ -63,8 +63,9 @@ class Scene:
         stage: Stage,
         hooks: SceneCallbacks | None = None,
         words: Words = ENGLISH,
+        titled: bool = True,
     ) -> None:
-        self._client = client
+        self._client, self._titled = client, titled
         self._stage, self._words = stage, words
         self._sides = list(stage.bases)
         self._origins = stage.origins
@@ -96,7 +97,9 @@ class Scene:
         """Create all nodes once, with the snapshot's numbers of bars, joints and points."""
         motion = snapshot.motion
         self._bases = build_stage(self._client.scene, self._stage)
-        self._titles = Titles(self._client.scene, self._stage, self._words)
+        self._titles = (
+            Titles(self._client.scene, self._stage, self._words) if self._titled else None
+        )
         self._machine = RobotNodes(
             scene=self._client.scene,
             stage=self._stage,
@@ -132,7 +135,9 @@ class Scene:
 
     def update_traces(self, snapshot: Snapshot) -> None:
         """Redraw traces, titles, markers, force labels and a stroke; called at 5 to 10 Hz."""
-        self._titles.show(snapshot.laws, self.captions.follow(snapshot))
+        captions = self.captions.follow(snapshot)
+        if self._titles is not None:
+            self._titles.show(snapshot.laws, captions)
         self._machine.update_laws(snapshot.laws)
         self._machine.update_traces([snapshot.robots[side] for side in self._sides])
         self._contacts.update(snapshot)
@@ -163,7 +168,8 @@ class Scene:
         A board in front of the robots does not hide all of them: titles are drawn on top of
         everything else, and single pixels of round parts show through at their edges.
         """
-        self._titles.hide(not visible)
+        if self._titles is not None:
+            self._titles.hide(not visible)
         self._machine.hide(not visible)
         for base in self._bases:
             base.visible = visible

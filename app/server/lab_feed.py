@@ -63,7 +63,8 @@ class LabFeed(CountingDisplay):
             self._show_motion(lab)
         if self._data is not None and self._last is not None:
             is_turn_of_data = is_turn(frame + self._offset, max(stride, EVERY))
-            self._data.follow(self._source(lab, 1.0)[0], self._last.path, is_turn_of_data)
+            shown, path = self._source(lab, 1.0)[0], self._last.path
+            self._data.follow(shown, path, is_turn_of_data, self.page.settle)
 
     def _show_motion(self, lab: Lab) -> None:
         lab, _, student = self._source(lab, 1.0)
@@ -82,7 +83,7 @@ class LabFeed(CountingDisplay):
         self.page.show(snapshot)
         self.page.exporter.serve(lab)
         if self._data is not None:
-            self._data.tell(snapshot, self.page.captions)
+            self._data.tell(snapshot, self.page.captions, self.page.seen_height)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""

@@ -22,6 +22,7 @@ from onpath.app.exports import exporter as exports
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
+from onpath.app.page.own_part import own_part
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.teacher_view import TeacherView
@@ -109,6 +110,7 @@ class LabServer:
             port,
             label="OnPath",
             channel=self._channel,
+            scripts=own_part(),
             health=partial(metrics_json, self.simulation),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -16,6 +16,7 @@ from onpath.app.lab.snapshots.snapshot import PathView
 from onpath.app.page.state_message import state_message
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 
+RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
 
@@ -35,6 +36,7 @@ class PageData:
         self._path: PathView | None = None
         self._robot: object = None
         self._state: dict[str, Any] = {}
+        self._is_resized = False
 
     @property
     def ticket(self) -> str:
@@ -45,8 +47,14 @@ class PageData:
         """End the ticket. Thread-safe."""
         self._stream.close()
 
-    def follow(self, lab: Lab, path: PathView | None, is_turn: bool) -> None:
-        """Note the present sample, and hand over a frame if it is its turn."""
+    def follow(
+        self, lab: Lab, path: PathView, is_turn: bool, on_resize: Callable[[], None]
+    ) -> None:
+        """Note the present sample, and hand over a frame if it is its turn.
+
+        Args:
+            on_resize: called if the page has told that its canvas has another size.
+        """
         stream, self._is_own = self._stream, lab is self._own
         if not stream.is_open:
             return
@@ -54,8 +62,11 @@ class PageData:
             self._opened = stream.opened
             self._source.forget()
             self._path, self._state = None, {}
+        if self._is_resized:
+            self._is_resized = False
+            on_resize()
         self._source.note(lab.session)
-        if not is_turn or stream.is_busy or path is None:
+        if not is_turn or stream.is_busy:
             return
         messages = list[Message]()
         robot = lab.session.robot
@@ -67,11 +78,11 @@ class PageData:
         if messages:
             stream.hand_over(*messages)
 
-    def tell(self, snapshot: PageSnapshot, captions: Mapping[str, str]) -> None:
+    def tell(self, snapshot: PageSnapshot, captions: Mapping[str, str], height: float) -> None:
         """Hand over the state, if it has changed; see `state_message`."""
         if not self._stream.is_open or self._stream.is_busy:
             return
-        state = state_message(snapshot, captions)
+        state = state_message(snapshot, captions, height)
         if state != self._state:
             self._state = state
             self._stream.hand_over(partial(msgspec.json.encode, state))
@@ -82,6 +93,9 @@ class PageData:
 
     def _receive(self, text: str) -> bytes:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
+        if text == RESIZED:
+            self._is_resized = True
+            return b""
         try:
             command = command_from(text)
         except NoCommand as error:

@@ -15,11 +15,15 @@ ELEMENTS = {".js": b"script", ".css": b"style"}
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
 
 
-def add_scripts(response: Response | None) -> Response | None:
-    """Insert our scripts into a response if it is viser's page; leave all others unchanged."""
+def add_scripts(response: Response | None, more: bytes = b"") -> Response | None:
+    """Insert our scripts into a response if it is viser's page; leave all others unchanged.
+
+    Args:
+        more: elements to insert after those of assets/page.
+    """
     if response and response.headers.get("Content-Type", "").startswith("text/html"):
         packed = response.headers.get("Content-Encoding") == "gzip"
-        response.body = _page(bytes(response.body), packed)
+        response.body = _page(bytes(response.body), packed, more)
         del response.headers["Content-Length"]
         response.headers["Content-Length"] = str(len(response.body))
     return response
@@ -54,8 +58,8 @@ def words() -> bytes:
 
 
 @lru_cache(maxsize=4)
-def _page(body: bytes, packed: bool) -> bytes:
+def _page(body: bytes, packed: bool, more: bytes) -> bytes:
     """The page with our scripts. Cached, because viser serves the same bytes every time."""
     page = gzip.decompress(body) if packed else body
-    page = with_scripts(page.replace(*TITLES, 1), our_scripts())
+    page = with_scripts(page.replace(*TITLES, 1), our_scripts() + more)
     return gzip.compress(page, mtime=0) if packed else page

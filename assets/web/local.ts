@@ -67,7 +67,7 @@ export class LocalEngine implements Engine {
         else if (act.do === "goOn") this.goOn()
         else {
             this.show(null)
-            if (act.do === "hold") simulation.hold(act.on, act.side)
+            if (act.do === "hold") this.hold(act.on, act.side)
             else if (act.do === "pull") simulation.pull(act.by as [number, number] | null, act.side)
             else if (act.do === "run") this.running = act.on
             else if (act.do === "rate") this.rate = act.rate
@@ -108,6 +108,12 @@ export class LocalEngine implements Engine {
         if (moment && before === null) this.resumes = this.running
         if (moment) this.running = false
         else if (before !== null) this.running = this.resumes
+    }
+
+    /** Hold robots or let them go, and let time run: somebody wants to see what happens. */
+    private hold(on: boolean, side?: number): void {
+        this.simulation.hold(on, side)
+        this.running = true
     }
 
     private goOn(): void {

@@ -1,4 +1,5 @@
-// One script for all pages: an exported figure (app/exports/standalone), or a page of the course (app/exports/site).
+// One script for all pages: an exported figure (app/exports/standalone), a page of the course (app/exports/site), or
+// the page of the lab, which has no data of its own.
 
 import { made, refused } from "./controls"
 import { judge } from "./checks"
@@ -6,6 +7,7 @@ import { Figure } from "./figure"
 import type { FigureData } from "./figure_data"
 import { gradeOf } from "./grade"
 import { Kernels } from "./kernels"
+import { showLab } from "./lab"
 import { LessonPage } from "./lesson"
 import type { PageData } from "./lesson_data"
 import { said } from "./words"
@@ -49,7 +51,9 @@ function showPage(page: PageData): void {
     Object.assign(window, { site, judge, gradeOf, packed, unpacked }) // for tests
 }
 
-const data: unknown = JSON.parse(document.getElementById("data")!.textContent!)
+const source = document.getElementById("data")
+const data: unknown = source && JSON.parse(source.textContent!)
 const figure = document.getElementById("figure")
-if (figure) void showFigure(data as FigureData, figure)
+if (!source) showLab()
+else if (figure) void showFigure(data as FigureData, figure)
 else showPage(data as PageData)

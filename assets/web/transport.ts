@@ -15,7 +15,13 @@ export class Transport {
     private readonly goes: HTMLButtonElement
 
     /** `offered`: names of the controls, "hold", "run", "step", and "reset". */
-    constructor(private readonly texts: Texts, private readonly engine: Engine, offered: readonly string[], ended?: AbortSignal) {
+    constructor(
+        private readonly texts: Texts,
+        private readonly engine: Engine,
+        offered: readonly string[],
+        ended?: AbortSignal,
+        private readonly offers: readonly number[] = RATES,
+    ) {
         this.held = this.button("main", "", "run.hold_hint", () => this.toggleHold())
         this.run = this.button("", "run.run", "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
@@ -45,7 +51,6 @@ export class Transport {
 
     private hold(on: boolean): void {
         this.engine.act({ do: "hold", on })
-        this.engine.act({ do: "run", on: true })
     }
 
     private show(): void {
@@ -55,7 +60,7 @@ export class Transport {
         tell(held, said(texts, state.held ? `run.let${both}_go` : `run.hold${both}`))
         held.ariaPressed = String(state.held)
         tell(run, said(texts, state.running ? "run.pause" : "run.run"))
-        const chosen = RATES.indexOf(state.rate)
+        const chosen = this.offers.indexOf(state.rate)
         if (rate.selectedIndex !== chosen) rate.selectedIndex = chosen
         past.hidden = state.past === null
         goes.hidden = !state.branches
@@ -94,9 +99,9 @@ export class Transport {
     }
 
     private rates(): HTMLSelectElement {
-        const select = made("select", "", ...RATES.map(rate => made("option", "", `×${written(this.texts, rate)}`)))
+        const select = made("select", "", ...this.offers.map(rate => made("option", "", `×${written(this.texts, rate)}`)))
         select.title = select.ariaLabel = said(this.texts, "run.rate")
-        select.addEventListener("change", () => this.engine.act({ do: "rate", rate: RATES[select.selectedIndex]! }))
+        select.addEventListener("change", () => this.engine.act({ do: "rate", rate: this.offers[select.selectedIndex]! }))
         return select
     }
 }

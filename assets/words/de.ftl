@@ -1477,3 +1477,7 @@ site-control-direction = die Richtung des Festhaltens
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn
+
+# The strip below the scene
+
+strip-lost = Keine Verbindung zum Labor; neuer Versuch läuft.

@@ -1195,3 +1195,7 @@ site-control-direction = the direction of the hold
 site-control-wall = the wall
 site-control-start = the start beside the path
 site-control-path = the choice of the path
+
+# The strip below the scene
+
+strip-lost = No connection to the lab; trying again.

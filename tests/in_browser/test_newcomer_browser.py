@@ -24,9 +24,9 @@ pytestmark = pytest.mark.thorough
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
 
-PRIMARY = """() => [...document.querySelectorAll(".mantine-Button-root")]
-    .filter((each) => each.checkVisibility() && getComputedStyle(each).backgroundColor
-        === "rgb(0, 114, 178)").map((each) => each.textContent.trim())"""
+PRIMARY = """() => [...document.querySelectorAll(".mantine-Button-root, #op-strip .main")]
+    .filter((each) => each.checkVisibility() && (each.matches(".main") || getComputedStyle(each)
+        .backgroundColor === "rgb(0, 114, 178)")).map((each) => each.textContent.trim())"""
 UNDER_SCROLLBAR = """() => {
     const bars = [...document.querySelectorAll(".mantine-ScrollArea-scrollbar")]
         .filter((bar) => bar.checkVisibility()).map((bar) => bar.getBoundingClientRect())

@@ -177,9 +177,10 @@ class Tab:
         """Whether the browser has applied the camera that the lab chose for its size."""
         camera = self.client.camera
         box = self._canvas()
-        same = abs(camera.image_width / camera.image_height * box["height"] - box["width"]) < 10
-        initial = self.server.server.initial_camera.position
-        return same and bool(np.linalg.norm(camera.position - initial) > 1e-6)
+        shape = camera.image_width / camera.image_height
+        same = abs(shape * box["height"] - box["width"]) < 10
+        feed = self.view
+        return same and isinstance(feed, LabFeed) and abs(feed.page._framed - shape) < 0.02 * shape
 
     @property
     def lab(self) -> Lab:

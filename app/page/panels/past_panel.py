@@ -39,16 +39,10 @@ class PastPanel:
                 disabled=True,
                 hint=words("past.undo_hint"),
             )
-        with gui.add_folder(words("export.title"), expand_by_default=False):
-            table = gui.add_button(words("export.table"), color="gray", icon=viser.Icon.TABLE)
-            picture = gui.add_button(words("export.picture"), color="gray", icon=viser.Icon.PHOTO)
-            film = gui.add_button(words("export.film"), color="gray", icon=viser.Icon.MOVIE)
+        add_exports(gui, words, exporter)
         on_user_update(self._ago, lambda ago: post(c.LookAt(ago)))
         on_press(self._go_on, lambda: post(c.GoOn()))
         on_press(self._undo, lambda: post(c.UndoGoOn()))
-        on_press(table, exporter.csv)
-        on_press(picture, exporter.picture)
-        on_press(film, exporter.recording)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Move the slider to the displayed time, even if it was changed by other means."""
@@ -62,3 +56,14 @@ class PastPanel:
         ago = 0.0 if run.viewing is None else round(run.now - run.viewing, 1)
         if self._ago.value != ago:
             self._ago.value = ago
+
+
+def add_exports(gui: viser.GuiApi, words: Words, exporter: Exporter) -> None:
+    """Add the folder with the files of the last minute."""
+    with gui.add_folder(words("export.title"), expand_by_default=False):
+        table = gui.add_button(words("export.table"), color="gray", icon=viser.Icon.TABLE)
+        picture = gui.add_button(words("export.picture"), color="gray", icon=viser.Icon.PHOTO)
+        film = gui.add_button(words("export.film"), color="gray", icon=viser.Icon.MOVIE)
+    on_press(table, exporter.csv)
+    on_press(picture, exporter.picture)
+    on_press(film, exporter.recording)

@@ -150,6 +150,15 @@ def test_a_command_that_is_not_possible_is_told_in_the_pages_language(
         assert state["titles"] != ["Trajectory tracking", "Path following"]
 
 
+def test_a_canvas_of_another_size_is_framed_anew(server: LabServer, student: Student) -> None:
+    with Script(server, ticket_of(student)) as script:
+        script.read("frame")
+        (page,) = [view.page for view in server._views.values() if view._data._stream.is_open]
+        page._settling = 0
+        script.socket.send('{"is":"resized"}')
+        wait_for(lambda: page._settling > 0)
+
+
 def test_no_page_has_the_ticket_of_another(server: LabServer, student: Student) -> None:
     with Student(student.address) as other:
         other.open()

@@ -1,0 +1,35 @@
+"""The messages of a page's strip, lenses and buttons for time; see assets/web/lab.ts."""
+
+from __future__ import annotations
+
+import json
+
+from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.lessons.words import Words
+
+_PLAIN = (
+    *PARTS,
+    *("lens.closest", "lens.reference", "lens.straight"),
+    *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
+    *("run.press", "run.press_hint", "run.run", "run.pause", "run.run_hint", "run.rate"),
+    *("run.step", "run.reset", "key.right", "key.reset"),
+    *("past.go_on", "past.undo", "past.undo_hint"),
+    *("transport.go_on_hint", "transport.back", "transport.back_hint"),
+    "strip.lost",
+)
+_FILLED = {
+    "chart.at": ("time", "values"),
+    "lens.name": ("law",),
+    "readout.running": ("time", "speed"),
+    "readout.paused": ("time", "speed"),
+}
+"""Messages whose values the page fills in."""
+
+
+def strip_words(words: Words) -> str:
+    """Key -> text of every message, as JSON."""
+    messages = {key: words(key) for key in _PLAIN}
+    messages |= {
+        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
+    }
+    return json.dumps(messages | {"point": words("report.point")}, ensure_ascii=False)

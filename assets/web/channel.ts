@@ -1,0 +1,295 @@
+// The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
+// The messages are described in app/viser_adapter/README.md.
+
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "./engine"
+
+const PROTOCOL = "onpath-1"
+const SECONDS = 60 // of samples that are kept
+const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
+const HEAD = 2 // numbers of a row before those of the robots
+const PATIENCE = [500, 1000, 2000, 4000, 8000] // [ms], until it connects again
+const STALE = 1008 // the ticket is not valid any more
+const OTHER_VERSION = 1002
+const HANDED = 60 // [ms], at least, between two instants that one looks at
+const SETTLES = 400 // [ms], until what the server shows counts again
+
+interface FrameMessage {
+    is: "frame"
+    rows: number[][]
+    running: boolean
+    past: number | null
+    anew?: boolean
+    straight?: number[][]
+}
+
+interface PathMessage {
+    is: "path"
+    points: number[][]
+    closed: boolean
+    right: Vector
+    up: Vector
+}
+
+/** Texts of the lab, and what is set. Lists have the left robot first. */
+export interface LabState {
+    is: "state"
+    v: number
+    language: string
+    titles: string[]
+    texts: string[]
+    captions: string[]
+    clocks: boolean[]
+    rate: number
+    achieved: number
+    together: boolean
+    undo: boolean
+    own: boolean
+    presenting: boolean
+    height: number
+}
+
+interface Refusal { is: "refused"; why: string }
+
+/** A path through points at evenly spaced θ from -π to π. */
+class Path implements PathShape {
+    readonly lines: readonly (readonly Vector[])[]
+    readonly closed: boolean
+    readonly right: Vector
+    readonly up: Vector
+    private readonly points: readonly Vector[]
+
+    constructor({ points, closed, right, up }: Omit<PathMessage, "is">) {
+        this.points = points.map(point => point.map(each => each / LENGTH))
+        this.lines = [this.points]
+        this.closed = closed
+        this.right = right
+        this.up = up
+    }
+
+    /** The point at θ: a cubic through the four next points; an open path goes on along its end tangents. */
+    at(theta: number): Vector {
+        const { points, closed } = this
+        const last = points.length - 1
+        let place = ((theta + Math.PI) / (2 * Math.PI)) * last
+        if (closed) place = ((place % last) + last) % last
+        const begin = Math.min(Math.max(Math.floor(place), 0), last - 1)
+        const t = place - begin
+        const point = (i: number): Vector => {
+            if (closed) return points[((i % last) + last) % last]!
+            const inside = Math.min(Math.max(i, 0), last)
+            const [end, next] = [points[inside]!, points[inside === i ? inside : inside - Math.sign(i)]!]
+            return inside === i ? end : end.map((each, k) => 2 * each - next[k]!)
+        }
+        const [a, b, c, d] = [point(begin - 1), point(begin), point(begin + 1), point(begin + 2)]
+        if (t < 0 || t > 1) return b.map((each, k) => each + t * (c[k]! - each))
+        return b.map((each, k) => {
+            const [before, after] = [(c[k]! - a[k]!) / 2, (d[k]! - each) / 2]
+            const by = c[k]! - each
+            return each + t * (before + t * (3 * by - 2 * before - after + t * (before + after - 2 * by)))
+        })
+    }
+}
+
+/** One robot in a row. */
+class RowSide implements SideSample {
+    readonly held: boolean
+    readonly pulled: boolean
+
+    constructor(
+        private readonly engine: RemoteEngine,
+        private readonly row: readonly number[],
+        private readonly first: number, // of its numbers
+        private readonly p: number,
+        private readonly side: number,
+        readonly straight: Vector | null,
+    ) {
+        this.held = Boolean(row[1]! & (1 << side))
+        this.pulled = Boolean(row[1]! & (4 << side))
+    }
+
+    get distance(): number { return this.row[this.first]! / LENGTH }
+    get closest(): Vector { return this.engine.route.at(this.row[this.first + 1]! / ANGLE) }
+    get reference(): Vector | null {
+        return this.engine.lab?.clocks[this.side] ? this.engine.route.at(this.row[this.first + 2]! / ANGLE) : null
+    }
+    get tip(): Vector { return this.part(3, LENGTH) }
+    get force(): Vector { return this.part(3 + this.p, FORCE) }
+    private part(at: number, unit: number): Vector {
+        const begin = this.first + at
+        return this.row.slice(begin, begin + this.p).map(each => each / unit)
+    }
+}
+
+export class RemoteEngine implements Engine {
+    /** What the lab is called and set to; null until it is known. */
+    lab: LabState | null = null
+    route = new Path({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
+    /** Whether the page hears from its lab. */
+    connected = false
+    /** Called with the reason why the page must be loaded anew. */
+    outdated: () => void = () => {}
+    private samples: Sample[] = [] // the last one is the present
+    private running = false
+    private past: number | null = null
+    private looked: { at: number | null; until: number } | null = null
+    private sending = 0 // timer of an instant to be looked at
+    private socket: WebSocket | null = null
+    private ticket = ""
+    private refused = "" // a ticket that is not valid
+    private tries = 0
+    private again = 0 // [ms], when it may be tried again
+    private readonly listeners = new Set<(change: Change) => void>()
+
+    /** Whether there is something to show. */
+    get ready(): boolean { return this.lab !== null && this.samples.length > 0 }
+
+    /** Connect with a ticket, unless that is done or was in vain; called from time to time. */
+    open(ticket: string): void {
+        const now = performance.now()
+        if (!ticket || ticket === this.refused || (this.socket && ticket === this.ticket) || now < this.again) return
+        this.close()
+        this.ticket = ticket
+        const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, "").replace(/\/$/, ""), PROTOCOL)
+        this.socket = socket
+        socket.addEventListener("open", () => socket.send(ticket))
+        socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
+        socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
+    }
+
+    close(): void {
+        const { socket } = this
+        this.socket = null
+        socket?.close()
+        this.connected = false
+    }
+
+    get state(): State {
+        const { held, pulled } = this.flags
+        const looked = this.looked && performance.now() < this.looked.until ? this.looked : null
+        const past = looked ? looked.at : this.past
+        return { running: this.running && past === null, rate: this.lab?.rate ?? 1, held, pulled, past, branches: this.lab?.own ?? false }
+    }
+
+    get path(): PathShape { return this.route }
+
+    get texts(): SideText[] {
+        const { titles, texts, captions } = this.lab!
+        return titles.map((title, i) => ({ side: i as 0 | 1, title, text: texts[i]!, caption: captions[i]! }))
+    }
+
+    get present(): Sample { return this.samples[this.samples.length - 1]! }
+
+    since(time: number): readonly Sample[] {
+        return this.samples.slice(this.samples.findLastIndex(sample => sample.time <= time) + 1, -1)
+    }
+
+    on(listener: (change: Change) => void, ended?: AbortSignal): void {
+        this.listeners.add(listener)
+        ended?.addEventListener("abort", () => this.listeners.delete(listener))
+    }
+
+    act(act: Act): void {
+        if (!this.lab?.own) return
+        const side = "side" in act && act.side !== undefined ? { side: ["left", "right"][act.side] } : {}
+        if (act.do === "look") this.look(act.at)
+        else {
+            this.looked = null
+            if (act.do === "hold") this.send({ do: "Hold", on: act.on, ...side })
+            else if (act.do === "pull") this.pull(act.by, act.side ?? 1)
+            else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
+            else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
+            else this.send({ do: { step: "StepOnce", reset: "Reset", goOn: "GoOn" }[act.do] })
+        }
+    }
+
+    /** Send a command; it is lost while there is no connection. */
+    send(command: Record<string, unknown>): void {
+        if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(command))
+    }
+
+    private get flags(): { held: boolean; pulled: boolean } {
+        const sides = this.samples.length ? this.present.sides : []
+        return { held: sides.some(each => each.held), pulled: sides.some(each => each.pulled) }
+    }
+
+    /** Show an instant at once, and let the lab show it soon. */
+    private look(at: number | null): void {
+        const sample = at === null ? undefined : sampleAt(this.samples, at)
+        this.looked = { at: sample && sample !== this.present ? sample.time : null, until: performance.now() + SETTLES }
+        this.sending ||= window.setTimeout(() => {
+            this.sending = 0
+            if (!this.looked) return
+            this.looked.until = performance.now() + SETTLES
+            this.send({ do: "LookAt", ago: this.looked.at === null ? 0 : this.present.time - this.looked.at })
+            setTimeout(() => this.tell("state"), SETTLES + 1)
+        }, HANDED)
+        this.tell("state")
+    }
+
+    private pull(by: Vector | null, side: number): void {
+        if (!by) this.send({ do: "Release" })
+        else this.send({ do: "Grab", side: ["left", "right"][side], target: this.present.sides[side]!.tip.map((each, k) => each + by[k]!) })
+    }
+
+    private hear(message: FrameMessage | PathMessage | LabState | Refusal): void {
+        if (!this.connected) {
+            this.connected = true
+            this.tries = 0
+            this.tell("state")
+        }
+        if (message.is === "frame") this.frame(message)
+        else if (message.is === "path") {
+            this.route = new Path(message)
+            this.tell("path")
+        } else if (message.is === "state") {
+            this.lab = message
+            this.tell("state")
+        } else console.warn(`refused: ${message.why}`)
+    }
+
+    private frame({ rows, running, past, anew, straight }: FrameMessage): void {
+        const { samples } = this
+        const { held, pulled } = this.flags
+        let gone = 0
+        if (anew) samples.length = 0
+        while (samples.length && samples[samples.length - 1]!.time >= rows[0]![0]! / TIME) {
+            samples.pop()
+            gone++
+        }
+        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
+        for (const [i, row] of rows.entries()) samples.push(this.sample(row, straight?.[i - late] ?? null))
+        const old = samples.findIndex(sample => sample.time >= this.present.time - SECONDS)
+        if (old > 64) samples.splice(0, old)
+        const before = this.state
+        this.running = running
+        this.past = past
+        this.tell(anew || gone > 1 ? "history" : "samples")
+        const now = this.state
+        const changed = held !== now.held || pulled !== now.pulled
+        if (changed || before.running !== now.running || before.past !== now.past) this.tell("state")
+    }
+
+    private sample(row: readonly number[], straight: readonly number[] | null): Sample {
+        const size = (row.length - HEAD) / 2
+        const p = (size - 3) / 2
+        const sides = [0, 1].map(side => {
+            const rigid = straight && straight.slice(side * p, (side + 1) * p).map(each => each / LENGTH)
+            return new RowSide(this, row, HEAD + side * size, p, side, rigid)
+        })
+        return { time: row[0]! / TIME, sides }
+    }
+
+    private closed(code: number): void {
+        this.socket = null
+        this.connected = false
+        if (code === OTHER_VERSION) this.outdated()
+        if (code === STALE || code === OTHER_VERSION) this.refused = this.ticket
+        this.again = performance.now() + PATIENCE[Math.min(this.tries++, PATIENCE.length - 1)]!
+        this.tell("state")
+    }
+
+    private tell(change: Change): void {
+        if (!this.ready) return
+        for (const listener of this.listeners) listener(change)
+    }
+}

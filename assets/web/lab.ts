@@ -1,0 +1,166 @@
+// The page of the lab: viser's canvas and panel are the stage; around them stand the strip with chart, numbers and
+// buttons for time, a lens for each robot, and the robots' titles.
+
+import { RemoteEngine } from "./channel"
+import { made, tell } from "./controls"
+import { shown } from "./engine"
+import { retone } from "./ink"
+import { Lens } from "./lens"
+import { Strip } from "./strip"
+import { Transport } from "./transport"
+import { said, significant, written, type Texts } from "./words"
+
+const LOOK = 250 // [ms] between looks for what viser has put into the page
+const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
+const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
+const NUMBERS = 100 // [ms] between changes of the large numbers
+const UPRIGHT = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)")
+
+/** Our part of the page, in one language. */
+class Face {
+    private readonly ended = new AbortController()
+    private readonly strip: Strip
+    private readonly lenses: Lens[]
+    private readonly titles: HTMLElement[]
+    private readonly captions: HTMLElement[]
+    private readonly numbers: HTMLElement[]
+    private readonly readings: HTMLElement[]
+    private readonly stage: HTMLElement
+    private readonly sides: HTMLElement[]
+    private readonly element: HTMLElement
+    private readonly undo = made("button", "")
+    private readonly transport: Transport
+    private readonly lost: HTMLElement
+    private readonly clock = made("span", "clock")
+    private canvas: HTMLElement | null = null
+    private width = 0 // of the canvas, [px]
+    private height = 0
+    private resizing = 0
+    private read = 0
+
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
+        const { signal } = this.ended
+        const indices = engine.texts.map((_, i) => i)
+        this.strip = new Strip(texts, engine, signal)
+        this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
+        this.titles = indices.map(() => made("h2", "title"))
+        this.captions = indices.map(() => made("p", "caption"))
+        this.numbers = indices.map(() => made("b", "number"))
+        this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
+        this.lost = made("p", "lost")
+        this.lost.setAttribute("role", "status")
+        this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
+        for (const reading of this.readings) reading.role = "group"
+        this.sides = indices.map(i => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))
+        this.stage = made("div", "", made("h1", "op-unseen", "OnPath"), ...this.sides)
+        this.stage.id = "op-stage"
+        Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
+        this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
+        this.transport.element.append(this.undo)
+        const title = made("h2", "", said(texts, "chart.title"))
+        const head = made("div", "head", title, this.clock, this.lost, this.transport.element)
+        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element)
+        this.element.id = "op-strip"
+        this.element.ariaLabel = said(texts, "chart.title")
+        document.body.append(this.stage, this.element)
+        document.documentElement.classList.add("op-stripped")
+        engine.on(change => change !== "samples" && this.show(), signal)
+        UPRIGHT.addEventListener("change", () => this.arrange(), { signal })
+        this.arrange()
+        this.show()
+        requestAnimationFrame(now => this.frame(now))
+    }
+
+    end(): void {
+        this.ended.abort()
+        this.stage.remove()
+        this.element.remove()
+        document.documentElement.classList.remove("op-stripped", "op-large")
+    }
+
+    /** Follow viser's canvas, which changes its size, or is replaced. */
+    place(): void {
+        const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
+        const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
+        if (width !== this.width || height !== this.height) {
+            clearTimeout(this.resizing)
+            this.resizing = window.setTimeout(() => this.engine.send({ is: "resized" }), RESTS)
+        }
+        Object.assign(this, { width, height })
+        if (canvas !== this.canvas && canvas) {
+            this.canvas = canvas
+            const observer = new ResizeObserver(() => this.place())
+            observer.observe(canvas)
+            this.ended.signal.addEventListener("abort", () => observer.disconnect())
+        }
+        Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
+    }
+
+    /** Put the lenses on the stage, or into the strip of an upright window. */
+    private arrange(): void {
+        this.lenses.forEach((lens, i) => {
+            if (UPRIGHT.matches) this.readings[i]!.prepend(lens.element)
+            else this.sides[i]!.append(lens.element)
+        })
+        this.place()
+    }
+
+    private show(): void {
+        const { engine, texts, transport } = this
+        const { past } = engine.state
+        engine.texts.forEach(({ title, text, caption }, i) => {
+            tell(this.titles[i]!, title)
+            this.titles[i]!.title = text
+            tell(this.captions[i]!, past === null ? caption : "")
+            this.readings[i]!.ariaLabel = title
+            tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, title)
+        })
+        this.undo.hidden = !engine.lab!.undo
+        transport.element.hidden = !engine.lab!.own
+        tell(this.lost, engine.connected ? "" : said(texts, "strip.lost"))
+        document.documentElement.classList.toggle("op-large", engine.lab!.presenting)
+        this.read = 0
+    }
+
+    private frame(now: number): void {
+        if (this.ended.signal.aborted) return
+        const { engine, strip, lenses, texts } = this
+        strip.draw(now)
+        for (const lens of lenses) {
+            lens.scale = this.height / engine.lab!.height || lens.scale
+            lens.draw(now)
+        }
+        if (now > this.read + NUMBERS) {
+            this.read = now
+            const { time, sides } = shown(engine), { running } = engine.state
+            sides.forEach((side, i) => tell(this.numbers[i]!, written(texts, 1e3 * side.distance, 1)))
+            const clock = { time: written(texts, time, running ? 1 : 2), speed: significant(texts, engine.lab!.achieved, 2) }
+            tell(this.clock, said(texts, running ? "readout.running" : "readout.paused", clock))
+        }
+        requestAnimationFrame(next => this.frame(next))
+    }
+}
+
+/** Show our part of the page as soon as viser's has come, and as long as it wants it. */
+export function showLab(): void {
+    const engine = new RemoteEngine()
+    let face: Face | null = null
+    let words = ""
+    const look = () => {
+        const source = document.querySelector<HTMLElement>("[data-page]")?.dataset
+        if (!source) return // the page is being built
+        const wanted = source.parts ?? ""
+        if (wanted !== words) {
+            face?.end()
+            face = null
+            words = wanted
+        }
+        if (words) engine.open(source.ticket ?? "")
+        else engine.close()
+        if (words && !face && engine.ready) face = new Face(engine, { words: JSON.parse(words) as Record<string, string> })
+        face?.place()
+    }
+    setInterval(look, LOOK)
+    new MutationObserver(retone).observe(document.documentElement, { attributeFilter: ["data-mantine-color-scheme"] })
+    Object.assign(window, { onpathLab: engine }) // for tests
+}

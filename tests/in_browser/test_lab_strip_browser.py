@@ -1,0 +1,130 @@
+"""The strip of the free lab: chart, numbers, lenses, titles and handle, told by its channel."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser, expect
+
+from onpath.app.lab import commands as c
+from onpath.app.server.lab_server import LabServer
+from onpath.models.control.sides import LEFT, RIGHT
+from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.free_lab import fresh
+
+expect.set_options(timeout=WAIT * 1e3)
+WINDOWS = [(1280, 800), (1366, 768), (820, 1180), (390, 844)]
+BOXES = """() => {
+    const box = (each) => each.getBoundingClientRect().toJSON()
+    const seen = [...document.querySelectorAll("#op-strip button, #op-strip select")].filter(
+        (each) => each.offsetParent !== null)
+    return {
+        scene: box(document.querySelector("canvas[data-engine]")),
+        strip: box(document.querySelector("#op-strip")),
+        chart: box(document.querySelector("#op-strip .plot canvas")),
+        lenses: [...document.querySelectorAll(".lens canvas")].map(box),
+        buttons: seen.map(box),
+        width: document.documentElement.scrollWidth,
+    }
+}"""
+
+
+def number(tab: Tab, title: str) -> float:
+    """The large number of a robot, [mm]."""
+    return float(tab.page.get_by_role("group", name=title).inner_text().split()[0])
+
+
+def test_numbers_titles_and_captions_are_the_labs(tab: Tab) -> None:
+    lab, page = tab.lab, tab.page
+    wait_for(lambda: lab.session.time > 1.0)
+    tab.press("Hold both back")
+    wait_for(lambda: lab.session.runs[LEFT].distance > 0.02)
+    tab.press("Pause")
+    wait_for(lambda: not lab.session.running)
+    for title, side in {"Trajectory tracking": LEFT, "Path following": RIGHT}.items():
+        expect(page.get_by_role("heading", name=title)).to_be_visible()
+        distance = 1e3 * lab.session.runs[side].distance
+        wait_for(lambda title=title, mm=distance: abs(number(tab, title) - mm) < 0.06)
+    expect(page.locator("#op-stage").get_by_text("torn off")).to_be_visible()
+    expect(tab.button("Let both go")).to_have_attribute("aria-pressed", "true")
+    tab.ask(c.Hold(False), c.ChooseLaw(RIGHT, "set_point"))
+    expect(page.get_by_role("heading", name="Set point")).to_be_visible()
+
+
+def test_the_mouse_looks_back_and_the_lab_goes_along(tab: Tab) -> None:
+    lab, page = tab.lab, tab.page
+    wait_for(lambda: lab.session.time > 3.0)
+    tab.press("Pause")
+    wait_for(lambda: not lab.session.running)
+    plot = page.locator("#op-strip .plot").bounding_box()
+    assert plot is not None
+    page.mouse.click(plot["x"] + 0.15 * plot["width"], plot["y"] + plot["height"] / 2)
+    wait_for(lambda: lab.session.viewing is not None)
+    assert lab.session.viewing is not None and 0 <= lab.session.viewing < lab.session.time - 1
+    expect(tab.button("Go on from here")).to_be_visible()
+    tab.press("Back to now")
+    wait_for(lambda: lab.session.viewing is None)
+    tab.button("Go on from here").wait_for(state="hidden")
+
+
+def test_the_strip_speaks_the_language_of_the_page(tab: Tab) -> None:
+    tab.ask(c.SetLanguage("de"))
+    expect(tab.page.get_by_role("button", name="Beide festhalten")).to_be_visible()
+    expect(tab.page.get_by_role("heading", name="Abstand")).to_be_visible()
+    tab.ask(c.SetLanguage("en"))
+    expect(tab.page.get_by_role("button", name="Hold both back")).to_be_visible()
+
+
+def test_a_lesson_has_the_window_for_itself(tab: Tab) -> None:
+    strip = tab.page.locator("#op-strip")
+    expect(strip).to_be_visible()
+    tab.ask(c.OpenLesson(next(iter(tab.lab.lessons.course.lessons))))
+    expect(strip).to_have_count(0)
+    height = tab.page.viewport_size["height"]  # type: ignore[index]
+    root = "document.querySelector('#root').getBoundingClientRect().height"
+    wait_for(lambda: tab.page.evaluate(root) == height)
+    tab.ask(c.CloseLesson())
+    expect(strip).to_be_visible()
+
+
+def test_a_lost_connection_is_said_and_comes_back(tab: Tab) -> None:
+    stream: Any = tab.view._data._stream  # type: ignore[union-attr]
+    opened, loop = stream.opened, tab.server.server.get_event_loop()
+    asyncio.run_coroutine_threadsafe(stream._connection.close(1012), loop).result(10.0)
+    wait_for(lambda: stream.opened == opened + 1)
+    expect(tab.page.get_by_text("No connection to the lab")).to_have_count(0)
+    tab.press("Hold both back")
+    wait_for(lambda: tab.session.forces.held)
+
+
+@pytest.fixture(params=WINDOWS, ids=lambda size: f"{size[0]}x{size[1]}")
+def shaped(browser: Browser, server: LabServer, request: pytest.FixtureRequest) -> Iterator[Tab]:
+    width, height = request.param
+    context = fresh(browser, viewport={"width": width, "height": height})
+    yield Tab(server, context, draws=False)
+    context.close()
+
+
+def test_everything_fits_into_windows_of_all_shapes(shaped: Tab) -> None:
+    """The stage above, the strip below, all buttons inside and apart from the chart."""
+    expect(shaped.page.locator("#op-strip")).to_be_visible()
+    size = shaped.page.viewport_size
+    assert size is not None
+    wait_for(lambda: shaped.page.evaluate(BOXES)["scene"]["bottom"] <= size["height"] - 100)
+    boxes = shaped.page.evaluate(BOXES)
+    assert boxes["strip"]["top"] >= boxes["scene"]["bottom"] - 1
+    assert boxes["strip"]["bottom"] <= size["height"] + 1 and boxes["width"] <= size["width"]
+    assert boxes["scene"]["height"] > 0.5 * size["height"]
+    assert boxes["chart"]["height"] > 70 and boxes["chart"]["bottom"] <= size["height"]
+    assert len(boxes["buttons"]) >= 6
+    for button in boxes["buttons"]:
+        assert button["left"] >= 0 and button["right"] <= size["width"]
+        assert button["height"] >= 30 and button["bottom"] <= boxes["chart"]["top"] + 1
+    for lens in boxes["lenses"]:
+        assert lens["width"] > 60 and lens["left"] >= 0 and lens["right"] <= size["width"]
