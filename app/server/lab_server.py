@@ -32,6 +32,7 @@ from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
@@ -346,6 +347,7 @@ def serve(
         LessonError: a lesson has errors.
         NotKept: the database cannot be used.
     """
+    limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
