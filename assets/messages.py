@@ -22,6 +22,22 @@ def languages() -> list[str]:
     return sorted(path.stem for path in asset_path("words").glob("*.ftl"))
 
 
+def preferred(accepted: str) -> str:
+    """The language that a browser's Accept-Language header prefers; English if there is none.
+
+    See RFC 9110, 12.5.4: "de-AT, fr;q=0.8" prefers German to French. What is malformed is ignored.
+    """
+    wanted = list[tuple[float, str]]()
+    for entry in accepted.split(","):
+        tag, _, weight = entry.partition(";")
+        found = re.fullmatch(r"\s*q=(0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\s*", weight or "q=1")
+        language = tag.strip().lower().partition("-")[0]
+        if found and language in languages():
+            wanted.append((float(found[1]), language))
+    quality, language = max(wanted, key=lambda each: each[0], default=(0.0, DEFAULT))
+    return language if quality > 0.0 else DEFAULT
+
+
 @lru_cache
 def catalogue(language: str) -> Catalogue:
     """The catalogue of a language, cached because parsing takes about a tenth of a second."""
