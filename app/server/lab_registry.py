@@ -195,9 +195,7 @@ class LabRegistry:
                 self._opening.discard(code)
                 self._lock.notify_all()
 
-    def _made(
-        self, code: str, state: LabState | None = None, language: str = ""
-    ) -> RegisteredLab:
+    def _made(self, code: str, state: LabState | None = None, language: str = "") -> RegisteredLab:
         """A new lab, or a restored one. Made one at a time, to spare the simulation.
 
         Raises:
