@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from fluent.syntax.ast import Pattern, Resource
 
 DEFAULT = "en"
+DECIMAL = re.compile(r"[-+\N{MINUS SIGN}]?\d+\.\d+")
 
 
 def languages() -> list[str]:
@@ -75,9 +76,20 @@ class Catalogue:
     def text(self, key: str, arguments: Mapping[str, object]) -> str:
         """Format a message with its arguments.
 
+        An argument that is a decimal number, such as "0.5", is written with the decimal separator
+        of the language.
+
         Raises:
             KeyError: no such message, or an argument is missing.
         """
+        point = self._messages["report-point"]
+        if point != "." and arguments:
+            arguments = {
+                name: value.replace(".", str(point))
+                if isinstance(value, str) and DECIMAL.fullmatch(value)
+                else value
+                for name, value in arguments.items()
+            }
         return self._messages[identifier(key)].format_map(arguments)
 
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from onpath.app.server.lab_server import LabServer
 from onpath.assets.messages import languages, preferred
+from onpath.lessons.words import ENGLISH, Words
 from tests.support.lab import store
 from tests.support.student import Student
 
@@ -53,3 +54,9 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
         student.read(lambda: student.has_widget("Bahn"))
         lab = server.sessions.find(student.code)
         assert lab is not None and lab.scheduled.lab.words.language == "de"
+
+
+@pytest.mark.parametrize(("time", "text"), [("0.5", "0,5"), ("−12.25", "−12,25"), ("3", "3")])
+def test_numbers_in_german_texts_have_a_comma(time: str, text: str) -> None:
+    assert text in Words("de")("say.brought_back", time=time)
+    assert time in ENGLISH("say.brought_back", time=time)
