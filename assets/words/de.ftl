@@ -851,6 +851,7 @@ say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: Klicke einen an, oder drücke N für den nächsten
 say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
+say-law_interpreted = Dieses Regelgesetz wird interpretiert statt übersetzt, was etwa 30-mal so lange dauert: { $reason }.
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
@@ -1281,6 +1282,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
+error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
