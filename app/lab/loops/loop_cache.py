@@ -19,7 +19,7 @@ from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.speed_limit import prepare_speed_limit
-from onpath.models.errors import Message, said_by
+from onpath.models.errors import Message, message_of
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
@@ -174,7 +174,7 @@ class LoopCache:
             prepare_speed_limit(robot)
         except Exception as error:  # labs continue with the interpreted loop
             log.warning("%s is not compiled, it is interpreted: %s", kind.controller, error)
-            self._refused[key] = said_by(error)
+            self._refused[key] = message_of(error)
             if len(self._refused) > MOST_REFUSED:
                 del self._refused[next(iter(self._refused))]
         finally:

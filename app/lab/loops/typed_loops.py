@@ -19,7 +19,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
-from onpath.models.errors import Message, said_by
+from onpath.models.errors import Message, message_of
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
@@ -119,7 +119,7 @@ class TypedLoops:
             self._put(key, translate_loop(kernel))
         except Exception as error:
             log.warning("a typed law cannot be compiled, it is interpreted: %s", error)
-            self._interpreted[key] = said_by(error)
+            self._interpreted[key] = message_of(error)
 
     def _put(self, key: Key, made: Loop | ValueError) -> None:
         with self._lock:
