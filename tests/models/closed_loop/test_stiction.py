@@ -17,7 +17,6 @@ from onpath.models.systems.forces import Grip
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.system import MechanicalSystem, mechanical_system
 from tests.support.general_systems import belted_arm, thrusters
-from tests.support.underactuated.overhead_crane import ROBOT as CRANE
 
 STATIC, COULOMB = 0.08, 0.05  # [N m]
 Step = Callable[[Array, Array, Array], tuple[Array, Array]]
@@ -29,11 +28,10 @@ def of(entry: RobotEntry) -> tuple[MechanicalSystem, Array]:
 
 
 SYSTEMS = {
-    **{name: of(ROBOTS[name]) for name in ("five_bar", "two_link_arm", "spatial_arm")},
+    **{name: of(ROBOTS[name]) for name in ("five_bar", "two_link_arm", "rod_gantry")},
     "belted_arm": (belted_arm(), np.zeros(0)),
     "thrusters": (thrusters(3), np.zeros(0)),
     "two thrusters": (thrusters(2), np.zeros(0)),
-    "crane": of(CRANE),
 }
 
 
