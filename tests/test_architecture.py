@@ -30,7 +30,7 @@ ORDER = [
     "app.common",
     "lessons",
     "models.studies",
-    "models.web_export",
+    "models.standalone",
     "models.closed_loop",
     "models.control",
     "models.systems",

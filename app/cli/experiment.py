@@ -89,14 +89,17 @@ class ExperimentCommand:
 
 @dataclass(frozen=True)
 class ZeroDynamicsCommand:
-    """Compute exponents of the flexible link's internal dynamics for alpha and number of modes."""
+    """Compute the exponents of the zero dynamics, of a robot with fewer motors than coordinates."""
 
+    robot: str = "flexible"
+    """Name of the robot. For the flexible one, the table has alpha and the number of modes."""
     at: tuple[float, float] = (0.0, 0.0)
-    """y2 and y3 of the tip at rest, in metres."""
+    """Place of the end-point at rest in the path's plane, in metres; for the flexible robot, y2
+    and y3."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Set rho, plant, frequency or zeta, as name=value; repeat for more."""
+    """Set a parameter as name=value; repeat for more."""
     plot: Path | None = None
-    """Draw exponents and critical alpha to this .png, .svg or .pdf file."""
+    """Draw exponents and critical alpha of the flexible robot to this .png, .svg or .pdf file."""
     json: bool = False
     """Print the table as JSON."""
 
@@ -104,13 +107,32 @@ class ZeroDynamicsCommand:
         """Compute, draw and print the result."""
         from onpath.app.exports.figures_flexible import draw_zero_dynamics
         from onpath.app.exports.zero_dynamics import as_json, as_table, changed_all, study
+        from onpath.models.systems.catalogue import FLEXIBLE
 
         check_plot(self.plot)
+        if self.robot != FLEXIBLE.name:
+            self._of_robot()
+            return
         result = study(changed_all(assignments(self.set)), self.at)
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_zero_dynamics(result, path)
         print(json.dumps(as_json(result), indent=2) if self.json else as_table(result))
+
+    def _of_robot(self) -> None:
+        from onpath.app.exports.zero_dynamics import robot_json, robot_study, robot_table
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
+
+        if self.robot not in ROBOTS:
+            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        if self.plot:
+            raise ValueError("--plot: only the zero dynamics of the flexible robot are drawn")
+        result = robot_study(ROBOTS[self.robot], assignments(self.set), self.at)
+        if isinstance(result, str):
+            print(json.dumps({"robot": self.robot, "exponents_1_s": []}) if self.json else result)
+        else:
+            print(json.dumps(robot_json(result), indent=2) if self.json else robot_table(result))
 
 
 def laws_named(text: str) -> list[str]:

@@ -74,7 +74,7 @@ class FirstMinute:
         words, invitation = self._words, INVITATIONS[self._next]
         return render(
             "panel/invitation.html",
-            said=words(f"invite.{invitation.name}"),
+            text=words(f"invite.{invitation.name}"),
             button=words(f"invite.{invitation.name}_button") if invitation.key else "",
             key=invitation.key,
             end=len(INVITATIONS),

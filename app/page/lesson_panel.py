@@ -256,7 +256,7 @@ class LessonPanel:
     def _add_reasons(self, block: Prediction, run: LessonView) -> None:
         """How sure the student was, and why, if the student has said so."""
         unknown = isinstance(block, Sketch) and run.is_unknown()
-        if reasons := page.told(block, run.answer(), run.words, unknown):
+        if reasons := page.confidence(block, run.answer(), run.words, unknown):
             self._html(reasons)
 
     def _add_run(self, run: LessonView) -> None:

@@ -855,6 +855,7 @@ say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: Klicke einen an, oder drücke N für den nächsten
 say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
+say-law_interpreted = Dieses Regelgesetz wird interpretiert statt übersetzt, was etwa 30-mal so lange dauert: { $reason }.
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
@@ -942,6 +943,12 @@ machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrec
 
 machine-flexible-label = Fünfgelenk mit elastischem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
+
+machine-cart_pendulum-label = Wagen mit Pendel
+machine-cart_pendulum-text = Zwei Motoren bewegen einen Stift auf einem Wagen, keiner das Pendel, das an ihm hängt oder auf ihm steht.
+
+machine-rod_gantry-label = Portal mit Stange
+machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stange, die mit dem Stift an ihm hängt.
 
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
@@ -1102,7 +1109,21 @@ parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
 
 parameter-alpha-label = α
-parameter-alpha-help = Anteil der Durchbiegung, den der Regler sieht: 1 die Spitze, 0 das gerade Glied
+parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon
+
+parameter-rod-label = Stange
+parameter-rod-help = Masse der hängenden Stange
+
+parameter-pivot-label = Dämpfung im Gelenk
+parameter-pivot-help = Dämpfung im Drehgelenk, das keinen Motor hat
+
+parameter-pendulum-label = Pendel
+parameter-pendulum-help = ob das Pendel am Wagen hängt oder auf ihm steht
+parameter-pendulum-option-hanging = hängt
+parameter-pendulum-option-upright = steht
+
+parameter-mass-label = Masse
+parameter-mass-help = Masse des Pendels
 
 parameter-law-label = Ausgang
 parameter-law-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
@@ -1285,6 +1306,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
+error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal

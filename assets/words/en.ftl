@@ -858,6 +858,7 @@ say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo
 say-select_first = select a control point first: click one, or press N for the next
 say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
+say-law_interpreted = This law is interpreted instead of compiled, which takes about 30 times as long: { $reason }.
 say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
 say-present = Back in the present.
@@ -1003,6 +1004,7 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 ## Refusals: a law that is typed (models/control/laws)
 
 error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
+error-law_fails = { $law } cannot be used here: { $reason } ({ $file }, line { $line })
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment

@@ -112,9 +112,11 @@ def move(
         if kind.stiction:
             levels = settings["stiction"], settings["coulomb"]
             resting = friction(system, now, tau, settings["plant"], levels)
-            tau = tau + ca.vertcat(resting.torque, ca.SX(system.n - system.m, 1))
+            tau = tau + system.effort(now["q"], resting.torque, settings["plant"])
         moved = integrate(system, now, settings, tau, share * settings["dt"] / plant[0], plant[0])
-        now = moved if resting is None else resting.applied(now, moved)
+        if resting is not None:
+            moved = resting.applied(system, now, moved, settings["plant"])
+        now = moved
     return *pushes[0], now
 
 

@@ -12,7 +12,7 @@ bends; by Schur's theorem it implies that points with less arc length between th
 second condition forbids strands that run too close to each other or cross. In the plan view,
 strands of a space curve may cross if they are 2 TUBE above each other.
 
-`curve_faults.py` evaluates the expressions for the lab, and `models/web_export/edit.py` translates
+`curve_faults.py` evaluates the expressions for the lab, and `models/standalone/edit.py` translates
 them for pages without a server: same path, same verdict.
 """
 

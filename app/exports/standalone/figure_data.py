@@ -37,10 +37,10 @@ from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.paths.curves import TERMS, Curve
 from onpath.models.paths.path_checks import SAMPLES
+from onpath.models.standalone.edit import CHECKS, OUTLINE, ROW
+from onpath.models.standalone.fit import FINE, PIECE
+from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.parameters import time_step
-from onpath.models.web_export.edit import CHECKS, OUTLINE, ROW
-from onpath.models.web_export.fit import FINE, PIECE
-from onpath.models.web_export.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 
 
 def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
@@ -96,7 +96,7 @@ _EDIT = {
     "blend": BLEND,
     "nudge": NUDGE,
 }
-"""Sizes of vectors in models/web_export; and as in the lab, the halvings of a refused move, the
+"""Sizes of vectors in models/standalone; and as in the lab, the halvings of a refused move, the
 duration of a blend, [s], and the step of a key, [m]."""
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),

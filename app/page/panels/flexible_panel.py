@@ -90,7 +90,7 @@ def alpha_bar(
         alpha=f"{alpha:.2f}",
         place=f"{percent(alpha):.1f}",
         limit=f"{limit:.1f}",
-        said=text,
+        text=text,
         used=used,
         beyond=used and alpha > critical,
         words=words,

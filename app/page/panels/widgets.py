@@ -99,12 +99,12 @@ def close_once(window: Any) -> None:
 
 def note(text: str, small: bool = False) -> str:
     """A line of text between widgets, as HTML."""
-    return render("panel/note.html", said=text, small=small)
+    return render("panel/note.html", text=text, small=small)
 
 
 def refused(reason: str) -> str:
     """The reason why an input was refused, as HTML, to be shown below the button."""
-    return render("panel/refusal.html", said=reason)
+    return render("panel/refusal.html", reason=reason)
 
 
 def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:

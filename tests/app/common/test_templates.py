@@ -193,8 +193,8 @@ PLACES: dict[str, Callable[[str], str]] = {
     "choices": choices,
     "task": task,
     "message": message,
-    "note": lambda text: render("panel/note.html", said=text, small=False),
-    "refusal of a law": lambda text: render("panel/refusal.html", said=text),
+    "note": lambda text: render("panel/note.html", text=text, small=False),
+    "refusal of a law": lambda text: render("panel/refusal.html", reason=text),
     "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
     "text": lesson_html.text,
     "remark": lambda text: lesson_html.remark(text, italic=True),
@@ -277,7 +277,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
                 )
         if isinstance(block, Choice | Sketch):
             why = Answer(option=0, sure="certain", reason=0 if block.reasons else None, why="<b>")
-            yield lesson_html.told(block, why, words)
+            yield lesson_html.confidence(block, why, words)
             sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
             ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
             found = distribution(block, lesson.name, run.index, ways)

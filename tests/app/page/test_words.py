@@ -35,7 +35,7 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
-from onpath.models.errors import CodedError, Message, said_by
+from onpath.models.errors import CodedError, Message, message_of
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
@@ -405,7 +405,7 @@ def test_what_cannot_be_kept_is_told_in_german_too() -> None:
     assert isinstance(refused, OSError) and not isinstance(refused, ValueError)
     assert str(refused) == "the database reports: disk full" and refused.errno is None
     assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
-    assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
+    assert message_of(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
     whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
     assert whole.text("de").endswith(
         "nicht öffnen: dieses Labor hat ein neueres OnPath gespeichert"

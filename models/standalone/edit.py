@@ -24,8 +24,8 @@ from onpath.models.paths.path_checks import (
 )
 from onpath.models.paths.path_design import REACH
 from onpath.models.paths.projection import basis
+from onpath.models.standalone.fit import mix_function, scan_of
 from onpath.models.systems.robots import Robot, margin_of
-from onpath.models.web_export.fit import mix_function, scan_of
 
 CHECKS = (*POINT_CHECKS, "narrow")
 """The last numbers of a row of `check`; `strands` finds "crosses"."""

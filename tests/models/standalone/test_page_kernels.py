@@ -26,17 +26,17 @@ from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import TERMS, Curve, circle, ellipse, from_terms
 from onpath.models.paths.path_checks import SAMPLES
 from onpath.models.paths.path_design import REACH, presets
-from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.five_bar_parameters import FiveBarParameters
-from onpath.models.web_export.edit import CHECKS, ROW, edit_scans
-from onpath.models.web_export.fit import (
+from onpath.models.standalone.edit import CHECKS, ROW, edit_scans
+from onpath.models.standalone.fit import (
     PIECE,
     arc_scan,
     resample_scan,
     spline_function,
     table_function,
 )
-from onpath.models.web_export.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
+from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
 
 
 def scanned(

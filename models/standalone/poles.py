@@ -16,8 +16,8 @@ import numpy as np
 from onpath.models.closed_loop.wasm_loop import Scan
 from onpath.models.control.poles import LEAST_DECAY, NO_OSCILLATION
 from onpath.models.layout import Layout
+from onpath.models.standalone.fit import scan_of
 from onpath.models.systems.parameters import Parameters, look_ahead_time
-from onpath.models.web_export.fit import scan_of
 
 STEPS = 100
 """Steps of the method; a double root takes about 30."""
