@@ -105,6 +105,11 @@ class Page:
             for part in self._parts:
                 part.follow(snapshot)
 
+    @property
+    def captions(self) -> dict[str, str]:
+        """What each robot is doing, by side; see `Captions.shown`."""
+        return self._scene.captions.shown
+
     def reset_view(self) -> None:
         """Schedule a reset of the camera to its initial pose. Thread-safe."""
         self._framed = 0.0
@@ -156,7 +161,9 @@ class Page:
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
-        self._client.gui.add_html(render("panel/page.html", words=words))
+        self._client.gui.add_html(
+            render("panel/page.html", words=words, ticket=self._context.ticket)
+        )
         self._narration = Narration(
             self._client.gui, words, self._preferences, self._scene.captions
         )

@@ -41,6 +41,7 @@ class PageContext:
         seat: the lab's place in the class, or None without a class.
         dark: whether the browser asks for dark pages.
         privacy_url: the address of the site's privacy notice; empty if it has none.
+        ticket: opens the page's data channel; empty if it has none.
     """
 
     code: str
@@ -51,3 +52,4 @@ class PageContext:
     seat: ClassSeat | None = None
     dark: bool = False
     privacy_url: str = ""
+    ticket: str = ""

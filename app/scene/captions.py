@@ -7,7 +7,7 @@ from math import hypot
 
 import numpy as np
 
-from onpath.app.lab.snapshots.snapshot import RobotView, Snapshot
+from onpath.app.lab.snapshots.snapshot import PathView, RobotView, Snapshot
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
@@ -49,7 +49,7 @@ class Captions:
         if not is_held:
             self._before.pop(side, None)
         kind = "stopped" if side in snapshot.stopped else _kind(view, is_held, distance)
-        if not kind and is_at_end(view, snapshot.path.points):
+        if not kind and is_at_end(view, snapshot.path):
             kind = "at_end"
         return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
 
@@ -65,12 +65,11 @@ class Captions:
         return self._largest[side]
 
 
-def is_at_end(view: RobotView, path: np.ndarray) -> bool:
-    """Whether a robot rests at an end of an open path; `path` are samples of it, shape (n, 3)."""
-    if abs(view.speed) > STILL:
+def is_at_end(view: RobotView, path: PathView) -> bool:
+    """Whether a robot rests at an end of an open path."""
+    if abs(view.speed) > STILL or path.closed:
         return False
-    ends = path[[0, -1]]
-    return not np.array_equal(*ends) and bool(np.linalg.norm(ends - view.end, axis=1).min() < NEAR)
+    return bool(np.linalg.norm(path.points[[0, -1]] - view.end, axis=1).min() < NEAR)
 
 
 def _kind(view: RobotView, is_held: bool, distance: float) -> str:

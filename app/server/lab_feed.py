@@ -16,6 +16,7 @@ from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
 from onpath.app.page.page import Page
 from onpath.app.server.followed_lab import FollowedLab
+from onpath.app.server.page_data import EVERY, PageData
 from onpath.app.server.tab_visibility import CountingDisplay
 from onpath.app.simulation.display_rate import AT_EASE, is_turn
 
@@ -27,6 +28,7 @@ class LabFeed(CountingDisplay):
         offset: spreads the pages over the frames.
         nickname: returns the student's nickname in the class; empty if there is none.
         followed: the student's lab that a teacher's page shows instead, or None.
+        data: what the page is told through its data channel, if it has one.
     """
 
     def __init__(
@@ -35,8 +37,9 @@ class LabFeed(CountingDisplay):
         offset: int,
         nickname: Callable[[], str] = str,
         followed: FollowedLab | None = None,
+        data: PageData | None = None,
     ) -> None:
-        self.page = page
+        self.page, self._data = page, data
         self._offset, self._nickname, self._followed = offset, nickname, followed
         self._lab: Lab | None = None
         self._shown: tuple[object, ...] = ()
@@ -56,8 +59,13 @@ class LabFeed(CountingDisplay):
 
     @override
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        if not self.is_turn(lab, frame, stride) or not self.page.is_ready:
-            return
+        if self.page.is_ready and self.is_turn(lab, frame, stride):
+            self._show_motion(lab)
+        if self._data is not None and self._last is not None:
+            is_turn_of_data = is_turn(frame + self._offset, max(stride, EVERY))
+            self._data.follow(self._source(lab, 1.0)[0], self._last.path, is_turn_of_data)
+
+    def _show_motion(self, lab: Lab) -> None:
         lab, _, student = self._source(lab, 1.0)
         if self._has_news(lab):
             self._last = motion = take_motion(lab, self._last, student)
@@ -73,6 +81,8 @@ class LabFeed(CountingDisplay):
         self._last = self._whole = snapshot
         self.page.show(snapshot)
         self.page.exporter.serve(lab)
+        if self._data is not None:
+            self._data.tell(snapshot, self.page.captions)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""
@@ -99,6 +109,14 @@ class LabFeed(CountingDisplay):
     @override
     def send(self) -> None:
         self.page.send()
+        if self._data is not None:
+            self._data.send()
+
+    def close(self) -> None:
+        """Release the page's resources, and end its data channel. Thread-safe."""
+        if self._data is not None:
+            self._data.close()
+        self.page.close()
 
     @property
     @override

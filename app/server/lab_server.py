@@ -36,6 +36,7 @@ from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
+from onpath.app.server.page_data import PageData
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.warm_up import warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
@@ -47,6 +48,7 @@ from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import storage_key
 from onpath.app.viser_adapter.connections import disconnect
+from onpath.app.viser_adapter.data_channel import DataChannel
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
@@ -102,10 +104,12 @@ class LabServer:
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
         self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
+        self._channel = DataChannel()
         self.server = make_server(
             host,
             port,
             label="OnPath",
+            channel=self._channel,
             health=partial(metrics_json, self.simulation),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
@@ -166,7 +170,7 @@ class LabServer:
         self.sessions.look()
         self._store.close()
         for view in list(self._views.values()):
-            view.page.close()
+            view.close()
         exports.process.stop()
         self.server.stop()
         if self._expiry is not None:
@@ -257,6 +261,7 @@ class LabServer:
         )
         teaching = service.teaching(client, lab, reopen) if service else None
         keeps = self._records is not None and not self._records.warning
+        data = PageData(self._channel, lab)
         context = PageContext(
             code=code,
             post=lab.post,
@@ -266,14 +271,16 @@ class LabServer:
             seat=seat,
             dark=number in self._dark,
             privacy_url=self._privacy_url,
+            ticket=data.ticket,
         )
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
         first = self.simulation.call(take)
         if teaching is None:
-            return LabFeed(Page(client, first, context), number, nickname)
+            return LabFeed(Page(client, first, context), number, nickname, data=data)
         followed = service.followed(number) if service else None
-        return LabFeed(TeacherView(client, first, context, teaching), number, nickname, followed)
+        page = TeacherView(client, first, context, teaching)
+        return LabFeed(page, number, nickname, followed, data)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
         """Move a client to the session of a typed code.
@@ -306,7 +313,7 @@ class LabServer:
         self.simulation.call(lambda: None)  # until the frame that still showed the page has ended
         view = self._views.pop(client.client_id, None)
         if view is not None:
-            view.page.close()
+            view.close()
         with one_at_a_time:  # part of the page may be under construction
             clear_page(client)
         self._show(client, entry, None)
@@ -320,7 +327,7 @@ class LabServer:
         self._places.pop(client.client_id, None)
         view = self._views.pop(client.client_id, None)
         if view is not None:
-            view.page.close()
+            view.close()
         release_page(client)
         self._room.leave(client.client_id)
 

@@ -34,18 +34,20 @@ class Limits:
         messages_per_second: sustained rate; more closes the connection. viser's page sends at
             most 20 for a drag, 20 for a widget and 50 for the camera.
         message_burst: messages at once; every 4 kB of a long message counts as one more.
-        changes_per_second: sustained rate of changed widgets, and of drags; more closes the
-            connection.
+        changes_per_second: sustained rate of changed widgets, of drags, and of the commands of a
+            data channel; more closes the connection.
         change_burst: of those at once.
         max_text_length: of a text widget, [characters]; longer texts are cut.
         max_magnitude: of any number in a drag, pointer, gizmo or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
         max_connections: in total, including those that request a file.
-        max_connections_each: per address; sixty students behind one address have five each.
+        max_connections_each: per address; sixty students behind one address have five each,
+            two of which are the websockets of a page.
         max_waiting: of further connections that have not sent a complete request yet.
         max_waiting_each: of those, per address.
-        tabs_per_second_each: sustained rate of new tabs, per address.
-        tab_burst_each: new tabs at once, per address; a class that reloads all its pages has fewer.
+        tabs_per_second_each: sustained rate of new websockets, per address.
+        tab_burst_each: new websockets at once, per address; a class of sixty that reloads all its
+            pages opens 120.
         silence: time after which a browser is pinged, and time that it has to answer, [s].
         farewell: time that a browser has to acknowledge the close of its connection, [s].
     """

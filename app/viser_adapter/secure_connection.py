@@ -130,6 +130,7 @@ class SecureConnection(CountedConnection):
         self._changes = {
             kind: Allowance(limits.change_burst, limits.changes_per_second) for kind in CHANGES
         }
+        self._commands = Allowance(limits.change_burst, limits.changes_per_second)
         self._closing: asyncio.Task[None] | None = None
         self._unfinished = unfinished
         self._deadline: asyncio.TimerHandle | None = None
@@ -270,6 +271,16 @@ class SecureConnection(CountedConnection):
         end, self._end = self._end, None
         if end is not None:
             clear_frames(end.__traceback__)
+
+    async def recv_data(self) -> str | bytes:
+        """The next message of a data channel; see data_channel.py."""
+        return await super().recv()
+
+    def counts_change(self) -> bool:
+        """Count a message that may make a lab compute; if there are too many, begin to close."""
+        if not self._commands.take():
+            self._close_flood(f"{self._limits.changes_per_second:g} changes")
+        return self._closing is None
 
     @override
     async def recv(self, decode: bool | None = None) -> Any:

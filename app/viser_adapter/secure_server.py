@@ -12,7 +12,7 @@ import logging
 import socket
 import threading
 import time
-from collections.abc import Awaitable, Callable, Iterator
+from collections.abc import Awaitable, Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -25,11 +25,13 @@ from viser import _messages as wire
 from viser.infra import ClientId, WebsockClientConnection
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
+from websockets.typing import Subprotocol
 
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.addresses import not_here, place_of, redirection, without_place
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
+from onpath.app.viser_adapter.data_channel import FAMILY, SUBPROTOCOL, DataChannel
 from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
@@ -68,6 +70,7 @@ def make_server(
     health: Callable[[str], str] = well,
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
+    channel: DataChannel | None = None,
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -81,6 +84,7 @@ def make_server(
             a folder of its own.
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a place; a websocket there is answered 502.
+        channel: the data channels of the pages, if they have any.
 
     Raises:
         ValueError: a proxy is malformed, or the process may not open enough files.
@@ -105,6 +109,7 @@ def make_server(
         counts=connections,
         to_place=to_place,
         elsewhere=elsewhere,
+        channel=DataChannel() if channel is None else channel,
     ):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
@@ -213,6 +218,7 @@ def _guarded_serve(
     counts: ConnectionLimits,
     to_place: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
+    channel: DataChannel,
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes.
 
@@ -238,13 +244,14 @@ def _guarded_serve(
         options |= _options(limits)
         finish = partial(_finish, requests)
         options["process_request"], options["process_response"] = answer_request, finish
+        options["select_subprotocol"] = _chosen
         options["create_connection"] = partial(
             SecureConnection,
             limits=limits,
             connections=counts,
             unfinished=UnfinishedMessages(limits.max_unfinished_bytes),
         )
-        return genuine(_of_our_version(handler), sock=listener, **options)
+        return genuine(_dispatch(handler, channel), sock=listener, **options)
 
     with _patching:
         genuine = library.serve  # read under the lock: else it may be another thread's patch
@@ -255,13 +262,20 @@ def _guarded_serve(
             library.serve = genuine
 
 
-def _of_our_version(handler: Any) -> Callable[[SecureConnection], Awaitable[None]]:
-    """The handler for pages of this version; connections of others are closed with a reason."""
+def _chosen(_: object, offered: Sequence[Subprotocol]) -> Subprotocol | None:
+    """The subprotocol that a page is answered with: viser's or ours, in any version."""
+    return next((each for each in offered if each.startswith(("viser-v", FAMILY))), None)
+
+
+def _dispatch(handler: Any, channel: DataChannel) -> Callable[[SecureConnection], Awaitable[None]]:
+    """The handler of all websockets; those of other versions are closed with a reason."""
 
     async def handle(connection: SecureConnection) -> None:
         if connection.subprotocol == _SUBPROTOCOL:
             await handler(connection)
             connection.forget_handler()
+        elif connection.subprotocol == SUBPROTOCOL:
+            await channel.handle(connection)
         else:  # viser would print what the browser sent
             reason = "this page is of another version of the server: reload it"
             await connection.close(CloseCode.PROTOCOL_ERROR, reason)

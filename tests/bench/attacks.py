@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import random
+import re
 import sys
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import suppress
@@ -15,16 +16,20 @@ from itertools import count, cycle, product
 from math import inf
 from typing import Any
 
-from websockets.asyncio.client import ClientConnection
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
+from websockets.frames import Opcode
+from websockets.typing import Subprotocol
 
 from onpath.app.page.panels.robot_panel import label_of
+from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
 from tests.bench.hostile_messages import (
     BROKEN,
+    COMMANDS,
     DRAG,
     GARBAGE,
     HONEST,
@@ -42,6 +47,7 @@ TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
 UNFINISHED = frames(bytes(980_000))[:-1]
 TOO_LARGE = frames(bytes(1_000_001))
+TICKET = re.compile(r'data-ticket="([^"]+)"')
 PATHS = ("ellipse", "clover", "rounded square", "figure of eight", "segment", "circle")
 
 Attack = Callable[[int], Coroutine[Any, Any, None]]
@@ -56,6 +62,7 @@ class Intruder(Browser):
 
     Attributes:
         widgets: the ids of its widgets by label.
+        ticket: of its data channel, once it is known.
         socket: its connection, once it has begun.
     """
 
@@ -63,6 +70,7 @@ class Intruder(Browser):
         super().__init__(port, 0, SOURCE)
         self._misuse, self._rate = misuse, rate
         self.widgets: dict[str, str] = {}
+        self.ticket = ""
 
     async def find(self, label: str) -> str:
         """The id of the widget whose label begins so, as soon as there is one."""
@@ -82,8 +90,11 @@ class Intruder(Browser):
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
         await super()._answer(socket, message)
-        if label := message.get("props", {}).get("label"):
+        properties = message.get("props", {})
+        if label := properties.get("label"):
             self.widgets[label] = message["uuid"]
+        if found := TICKET.search(str(properties.get("content", ""))):
+            self.ticket = found[1]
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
         self.socket = socket
@@ -150,6 +161,19 @@ async def read_nothing(tab: Intruder) -> AsyncIterator[bytes]:
     tab.socket.transport.pause_reading()
     yield GREETING
     await asyncio.sleep(inf)
+
+
+async def misuse_data(tab: Intruder) -> AsyncIterator[bytes]:
+    """Send nonsense and wild commands through the data channel of the page, again and again."""
+    while not tab.ticket:
+        await asyncio.sleep(TURNED_AWAY)
+    yield GREETING
+    address, options = f"ws://127.0.0.1:{tab.port}", {"local_addr": (SOURCE, 0)}
+    async with connect(address, subprotocols=[Subprotocol(DATA)], **options) as data:
+        await data.send(random.choice([tab.ticket, tab.ticket, tab.ticket[:-1]]))
+        while True:
+            await data.send(random.choice(COMMANDS))
+            await asyncio.sleep(1 / RATE)
 
 
 async def look_on(tab: Intruder) -> AsyncIterator[bytes]:
@@ -232,6 +256,8 @@ ATTACKS: dict[str, Attack] = {
     "robots": tabs(8, pressing(("Robot…", True), *((label, True) for label in ROBOT_LABELS))),
     "all places": tabs(66, look_on),  # D10
     "nonsense": tabs(8, send_nonsense, MIXED),  # D16
+    "data channels": tabs(8, misuse_data),
+    "tickets": connections(20, [frames(b"x" * 32, opcode=Opcode.TEXT), UNFINISHED], [DATA]),
     "come and go": tabs(20, leave),  # D18
     "floods": connections(20, [100 * GREETING, TOO_LARGE]),
     "broken frames": connections(20, [GREETING + broken for broken in BROKEN.values()]),

@@ -86,3 +86,25 @@ BROKEN = {
     "no text": frames(b"\xff\xff", opcode=Opcode.TEXT),
     "a strange close": frames(b"\x00\x00bye", opcode=Opcode.CLOSE),
 }
+COMMANDS = [
+    "",
+    "[" * 100_000,
+    '{"do": "Dance"}',
+    '{"do": "Freeze", "on": true}',
+    '{"do": "Hold", "on": 1}',
+    '{"do": "Grab", "side": "left", "target": [1e9, -1e9]}',
+    '{"do": "MovePoint", "index": -1000000000, "target": [0, 0]}',
+    '{"do": "DrawPath", "stroke": [[0.1, 0.1], [0.1, 0.1]]}',
+    '{"do": "SetParameter", "name": "K1", "value": 1e9}',
+    '{"do": "TypeLaw", "side": "left", "text": "across = ((((((e1))))))"}',
+    '{"do": "ChooseRobot", "name": "flexible"}',
+    '{"do": "ChooseRobot", "name": "five_bar"}',
+    '{"do": "LookAt", "ago": 30}',
+    '{"do": "GoOn"}',
+    '{"do": "UndoGoOn"}',
+    '{"do": "Identify"}',
+    '{"do": "GoToStep", "by": 1000000000}',
+    '{"do": "SetLanguage", "language": "../de"}',
+    '{"do": "UseShared", "text": "ONPATH1-aaaa"}',
+]
+"""Messages for a data channel: some are no commands, others are commands that cost much."""

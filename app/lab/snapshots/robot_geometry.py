@@ -222,6 +222,21 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
     return ca.Function("geometry", [q, seen, table, exaggeration], ca.cse([flat])), counts
 
 
+@per_thread
+def straight_tip(robot: Robot) -> Callable[[Array], Array] | None:
+    """Where the end-point would be if no link were bent: q -> y, (n,) -> (p,).
+
+    None if no link of the robot bends.
+    """
+    q, exaggeration = ca.SX.sym("q", robot.system.n), ca.SX.sym("exaggeration")
+    if not ca.depends_on(robot.skeleton(q, exaggeration)[0], exaggeration):
+        return None
+    end = robot.skeleton(q, ca.SX(0))[0][:, -1]
+    y = ca.DM(robot.axes) @ (end - ca.DM(robot.home))
+    evaluate = Buffered(ca.Function("straight", [q], [ca.densify(y)]))
+    return lambda joints: evaluate(joints)[0].copy()
+
+
 def _poses(drawing: Drawing, counts: Counts, points: _Points) -> tuple[ca.SX, ...]:
     """One robot's `RobotView.poses`, as columns.
 

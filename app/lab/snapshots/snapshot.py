@@ -170,6 +170,11 @@ class PathView:
     selected: int | None
     refused: np.ndarray
 
+    @property
+    def closed(self) -> bool:
+        """Whether the path is closed: its ends differ by rounding at most."""
+        return bool(np.allclose(self.points[0], self.points[-1], rtol=0.0, atol=1e-9))
+
 
 @dataclass(frozen=True, slots=True)
 class PageKey:

@@ -13,6 +13,7 @@ from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene.captions import Captions, spoken
 from onpath.lessons.words import ENGLISH
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, TRACKER, do, new_lab, run
 
 
@@ -100,3 +101,13 @@ def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
     assert all("at the end" in said for said in seen(lab, captions, 6.0).values())
     do(lab, c.ChoosePath("circle"), c.SetParameter("speed", 0.0))
     assert seen(lab, captions, 6.0) == {TRACKER: "", FOLLOWER: ""}
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_closed_path_has_no_end_at_which_a_robot_could_rest(robot: str) -> None:
+    """Its first and last points may differ by rounding."""
+    lab, captions = new_lab(), Captions(ENGLISH)
+    do(lab, c.ChooseRobot(robot), c.SetParameter("speed", 0.0))
+    do(lab, c.SetStart("theta", 3.1415), c.Reset())
+    assert take_page_snapshot(lab, 1.0).path.closed
+    assert seen(lab, captions, 0.3) == {TRACKER: "", FOLLOWER: ""}

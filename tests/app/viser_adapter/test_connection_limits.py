@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import socket
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
@@ -20,6 +21,7 @@ from onpath.app.viser_adapter.message_filter import FEWEST, OWN_FILES
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import SUBPROTOCOL
 from tests.support import waiting
+from tests.support.site import CONFIGURATION
 
 WAIT = 20.0  # [s]; only ends a test that would hang
 ONE, OTHER = "127.0.0.1", "127.0.0.2"
@@ -206,6 +208,17 @@ def test_an_address_that_opens_too_many_tabs_is_refused_those_and_nothing_else()
         assert [site.websocket(ONE) for _ in range(4)] == [101, 101, 101, 429]
         assert site.ask("/index.html", ONE) == 200
         assert site.websocket(OTHER) == 101
+
+
+def test_two_websockets_a_page_fit_for_a_class_of_sixty_behind_one_address() -> None:
+    """Also when all its pages are reloaded at once, before their former connections have ended."""
+    limits, sockets = Limits(), 2 * 60
+    assert limits.max_connections_each >= 2 * sockets
+    assert limits.tab_burst_each >= 2 * sockets
+    assert limits.max_waiting_each >= sockets
+    assert limits.max_connections >= 2 * limits.max_connections_each
+    found = re.search(r"limit_conn onpath_open (\d+);", CONFIGURATION.read_text("utf-8"))
+    assert found is not None and int(found[1]) >= 2 * sockets
 
 
 def test_connections_leave_room_for_the_other_open_files() -> None:

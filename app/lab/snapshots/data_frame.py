@@ -1,0 +1,258 @@
+"""Frames of a page's data channel: what both robots did since the last frame, as JSON.
+
+The simulation thread collects references only, which takes a few microseconds; the network thread
+makes numbers and text of them. The messages are described in app/viser_adapter/README.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import lru_cache
+from math import inf
+from operator import is_
+
+import msgspec
+import numpy as np
+from msgspec import Struct
+
+from onpath.app.lab.events import LabEvent
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loop_states import Slot
+from onpath.app.lab.plot_samples import sample_layout
+from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.robot_geometry import straight_tip
+from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_vectors import log_layout
+from onpath.models.control.sides import SIDES
+from onpath.models.systems.robots import Robot
+
+MOST = 30  # samples that are kept while a page reads slowly; then they are read from the history
+EARLIER = 4000  # samples of the last minute, at most
+TIME, LENGTH, ANGLE, FORCE = 1e4, 1e5, 1e4, 1e2  # units per second, metre, radian, newton
+FIELDS = "theta", "theta_ref", "y", "force"  # of a robot, after its distance
+PULLED = len(SIDES)  # number of the first bit of the pulled sides
+ROUND = 0.02  # relative difference of radii up to which a path counts as a circle
+
+
+class Sample(Struct, frozen=True, eq=False):
+    """Both robots at one time.
+
+    Attributes:
+        time: [s].
+        flags: bits of the sides that are held, then of those that are pulled.
+        slots: of the closed loops.
+    """
+
+    time: float
+    flags: int
+    slots: tuple[Slot, ...]
+
+
+class Earlier(Struct, frozen=True, eq=False):
+    """Samples of the history, for a page that does not have them.
+
+    Attributes:
+        times: [s].
+        values: see `sample_layout`.
+        events: of the lab.
+    """
+
+    times: Array
+    values: Array
+    events: Sequence[LabEvent]
+
+
+class DataFrame(Struct, frozen=True, eq=False):
+    """What a page is told at once.
+
+    Attributes:
+        robot: of the samples.
+        anew: whether the page must forget its earlier samples.
+        earlier: samples that come before the latest, or None.
+        latest: samples since the last frame, the last of which is the present.
+        running: whether time runs.
+        past: the past instant that is shown, [s], or None.
+    """
+
+    robot: Robot
+    anew: bool
+    earlier: Earlier | None
+    latest: list[Sample]
+    running: bool
+    past: float | None
+
+
+class FrameSource:
+    """Collects what one page is to be told of the lab that it shows."""
+
+    def __init__(self) -> None:
+        self._latest = list[Sample]()  # the last one sent, and all since then
+        self.forget()
+
+    def forget(self) -> None:
+        """Tell the page everything anew."""
+        self._latest.clear()
+        self._session: Session | None = None
+        self._run, self._history = 0, None
+        self._anew, self._behind = True, False
+        self._sent: tuple[bool, float | None] = False, None
+
+    def note(self, session: Session) -> None:
+        """Note the present sample, if it is new. Call it in every frame of the simulation."""
+        latest, slots = self._latest, tuple([run.slot for run in session.runs.values()])
+        if (
+            session is not self._session
+            or session.run_number != self._run
+            or session.history is not self._history
+        ):
+            self.forget()
+            self._session, self._run, self._history = session, session.run_number, session.history
+        flags = _flags(session)
+        if latest:
+            last = latest[-1]
+            if last.flags == flags and all(map(is_, slots, last.slots)):
+                return
+            if len(latest) >= MOST:
+                del latest[1:]
+                self._behind = True
+        latest.append(Sample(session.time, flags, slots))
+
+    def take(self, lab: Lab) -> DataFrame | None:
+        """What has happened since the last frame, None if nothing; after `note`."""
+        session, latest = lab.session, self._latest
+        state = session.running and not lab.frozen, session.viewing
+        if not self._anew and len(latest) == 1 and state == self._sent:
+            return None
+        new, earlier = latest if len(latest) == 1 else latest[1:], None
+        if self._anew or self._behind:
+            since = -inf if self._anew else latest[0].time
+            earlier = _earlier(session, since)
+        frame = DataFrame(
+            robot=session.robot,
+            anew=self._anew,
+            earlier=earlier,
+            latest=new if earlier is None else [latest[-1]],
+            running=state[0],
+            past=state[1],
+        )
+        self._latest, self._sent = [latest[-1]], state
+        self._anew = self._behind = False
+        return frame
+
+
+def frame_message(frame: DataFrame) -> bytes:
+    """The message of a frame."""
+    robot, latest = frame.robot, frame.latest
+    slots = [(states, states.records[i]) for sample in latest for states, i in sample.slots]
+    numbers = [record.take(_columns(robot, states.size, len(record))) for states, record in slots]
+    rows = _units(robot) * np.concatenate(numbers).reshape(len(latest), -1)
+    heads = [[round(TIME * sample.time), sample.flags] for sample in latest]
+    lines = [[*head, *row] for head, row in zip(heads, _whole(rows), strict=True)]
+    if frame.earlier is not None:
+        lines = [line for line in _earlier_lines(robot, frame.earlier) if line < lines[0]] + lines
+    message = {"is": "frame", "rows": lines, "running": frame.running, "past": frame.past}
+    if frame.anew:
+        message["anew"] = True
+    if (straight := straight_tip(robot)) is not None:
+        q = log_layout(robot.system).slices["q"]
+        tips = np.concatenate([straight(record[states.size :][q]) for states, record in slots])
+        message["straight"] = _whole(LENGTH * tips.reshape(len(latest), -1))
+    return _encoder.encode(message)
+
+
+_encoder = msgspec.json.Encoder()
+
+
+def _whole(numbers: Array) -> list[list[int]]:
+    """Rounded numbers; 0 where one is not finite."""
+    finite = numbers if np.isfinite(numbers).all() else np.nan_to_num(numbers, posinf=0, neginf=0)
+    return np.rint(finite).astype(np.int64).tolist()
+
+
+def path_message(robot: Robot, path: PathView) -> bytes:
+    """The message of a path: its points in the output space, at evenly spaced θ from -π to π."""
+    points = robot.unplace(path.points)
+    origin, first, second = robot.frame.lift(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
+    right = (first - origin) / np.linalg.norm(first - origin)
+    up = second - origin
+    up -= up @ right * right
+    return msgspec.json.encode(
+        {
+            "is": "path",
+            "points": _whole(LENGTH * points),
+            "closed": path.closed,
+            "right": right.tolist(),
+            "up": (up / np.linalg.norm(up)).tolist(),
+            "radius": _radius(points),
+        }
+    )
+
+
+def _radius(points: Array) -> float | None:
+    """The radius of a path that is a circle, [m]; None for any other."""
+    radii = np.linalg.norm(points[1:] - points[1:].mean(axis=0), axis=1)
+    mean = float(radii.mean())
+    return round(mean, 5) if np.ptp(radii) < ROUND * mean else None
+
+
+def _flags(session: Session) -> int:
+    """`Sample.flags` of the present."""
+    held, hands = session.forces.held, session.forces.hands
+    if not held and not hands:
+        return 0
+    return sum(
+        (side in held) << i | (side in hands) << (PULLED + i) for i, side in enumerate(SIDES)
+    )
+
+
+def _earlier(session: Session, since: float) -> Earlier | None:
+    times, values = session.history.samples(since, session.time, EARLIER)
+    if not len(times):
+        return None
+    run = session.run_number
+    return Earlier(times, values, [event for event in session.events if event.run == run])
+
+
+def _flags_at(times: Array, events: Sequence[LabEvent]) -> Array:
+    """`Sample.flags` at some times, from what was noted when they changed."""
+    flags = np.zeros(len(times), dtype=int)
+    for event in events:
+        if event.name not in _FLAGS:
+            continue
+        first, on = _FLAGS[event.name]
+        bits = sum(1 << (first + SIDES.index(side)) for side in event.sides)
+        since = times >= event.time
+        flags[since] = flags[since] | bits if on else flags[since] & ~bits
+    return flags
+
+
+_FLAGS = {"hold": (0, True), "let_go": (0, False), "pull": (PULLED, True)}
+_FLAGS |= {"release": (PULLED, False)}
+
+
+def _earlier_lines(robot: Robot, earlier: Earlier) -> list[list[int]]:
+    slices = sample_layout(robot).slices
+    columns = np.concatenate([np.r_[slices[name]] for name in ("distance", *FIELDS)])
+    rows = _units(robot) * earlier.values[..., columns].reshape(len(earlier.times), -1)
+    heads = np.column_stack([TIME * earlier.times, _flags_at(earlier.times, earlier.events)])
+    return _whole(np.column_stack([heads, rows]))
+
+
+@lru_cache(maxsize=64)
+def _columns(robot: Robot, state: int, length: int) -> Array:
+    """Indices of a row's numbers in the record of a closed loop; see `LoopStates`.
+
+    Args:
+        state: size of the state.
+        length: of the record.
+    """
+    slices = log_layout(robot.system).slices
+    return np.concatenate([[length - 2], *[state + np.r_[slices[name]] for name in FIELDS]])
+
+
+@lru_cache(maxsize=16)
+def _units(robot: Robot) -> Array:
+    """Factors of a row's numbers."""
+    p = robot.system.p
+    return np.array([LENGTH, ANGLE, ANGLE, *[LENGTH] * p, *[FORCE] * p] * len(SIDES))

@@ -1,0 +1,96 @@
+"""Feeds a page's data channel: frames while something changes, and the commands that come back."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Any
+
+import msgspec
+
+from onpath.app.lab.commands.command_codec import NoCommand, command_from
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path_message
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.page.state_message import state_message
+from onpath.app.viser_adapter.data_channel import DataChannel, Message
+
+EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
+
+
+class PageData:
+    """What one page is told through its data channel.
+
+    Call everything but `close` in the simulation thread.
+
+    Args:
+        own: the lab of the page, which gets its commands.
+    """
+
+    def __init__(self, channel: DataChannel, own: Lab) -> None:
+        self._channel, self._own, self._is_own = channel, own, True
+        self._stream = channel.open(self._receive)
+        self._source, self._opened = FrameSource(), 0
+        self._path: PathView | None = None
+        self._robot: object = None
+        self._state: dict[str, Any] = {}
+
+    @property
+    def ticket(self) -> str:
+        """What the page's script must show."""
+        return self._stream.ticket
+
+    def close(self) -> None:
+        """End the ticket. Thread-safe."""
+        self._stream.close()
+
+    def follow(self, lab: Lab, path: PathView | None, is_turn: bool) -> None:
+        """Note the present sample, and hand over a frame if it is its turn."""
+        stream, self._is_own = self._stream, lab is self._own
+        if not stream.is_open:
+            return
+        if stream.opened != self._opened:
+            self._opened = stream.opened
+            self._source.forget()
+            self._path, self._state = None, {}
+        self._source.note(lab.session)
+        if not is_turn or stream.is_busy or path is None:
+            return
+        messages = list[Message]()
+        robot = lab.session.robot
+        if path is not self._path or robot is not self._robot:
+            self._path, self._robot = path, robot
+            messages.append(partial(path_message, robot, path))
+        if (frame := self._source.take(lab)) is not None:
+            messages.append(partial(frame_message, frame))
+        if messages:
+            stream.hand_over(*messages)
+
+    def tell(self, snapshot: PageSnapshot, captions: Mapping[str, str]) -> None:
+        """Hand over the state, if it has changed; see `state_message`."""
+        if not self._stream.is_open or self._stream.is_busy:
+            return
+        state = state_message(snapshot, captions)
+        if state != self._state:
+            self._state = state
+            self._stream.hand_over(partial(msgspec.json.encode, state))
+
+    def send(self) -> None:
+        """Send what has been handed over for all pages."""
+        self._channel.send()
+
+    def _receive(self, text: str) -> bytes:
+        """Post the command in a message; returns why not, if it is refused. On the event loop."""
+        try:
+            command = command_from(text)
+        except NoCommand as error:
+            return _refused(str(error))
+        if not self._is_own:
+            return _refused("this lab is only shown")
+        self._own.post(command)
+        return b""
+
+
+def _refused(why: str) -> bytes:
+    return msgspec.json.encode({"is": "refused", "why": why})
