@@ -269,6 +269,7 @@ def _structure(step: Step) -> dict[str, object]:
         "block `step`": (step.optional, step.when),
         "scene": _without_words(step.scene),
         "script": step.script,
+        "block `watch`": bool(step.watch),
         "conditions of texts (`when`)": [text.when for text in texts if text.when],
         "number of folds": sum(text.html.count("<details>") for text in texts),
         "lab links": [link.actions for text in texts for link in text.links],

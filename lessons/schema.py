@@ -180,6 +180,7 @@ class Step(msgspec.Struct, frozen=True):
         optional: whether it may be skipped; it does not count for the minutes and the end of the
             lesson.
         when: see `StepMark`.
+        watch: of a `run` step: what to look at, shown before and during the run; may be empty.
         stated: numbers in its text that a run must confirm.
     """
 
@@ -192,6 +193,7 @@ class Step(msgspec.Struct, frozen=True):
     optional: bool = False
     when: str = ""
     stated: tuple[Stated, ...] = ()
+    watch: Markup = Markup()
 
     def predictions(self) -> list[Prediction]:
         """The predictions of this step."""
