@@ -247,6 +247,8 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
         robots = f"robot is {other.front.robot!r}, and {first.front.robot!r} in {first.language}.md"
         front = read_text(file).partition("\n+++")[0]
         yield Problem(str(file), line_of(robots, front, 1), robots)
+    if first.front.symbols != other.front.symbols:
+        yield Problem(str(file), 1, f"symbols are not those of {first.language}.md")
     for ours, theirs in zip(first.steps, other.steps, strict=False):
         parts, translated = _structure(ours), _structure(theirs)
         if differs := [what for what, part in parts.items() if translated[what] != part]:

@@ -36,6 +36,7 @@ from onpath.lessons.schema import (
     StepMark,
     Text,
 )
+from onpath.lessons.symbols import symbol_faults
 from onpath.lessons.task_schema import Task
 from onpath.lessons.text_files import FileError, load_toml, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
@@ -48,7 +49,7 @@ from onpath.lessons.vocabulary.blocks import (
 from onpath.lessons.vocabulary.fences import FENCES, toml_parts
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
-NO_MARK = StepMark()
+NO_MARK, NO_WORDS = StepMark(), Markup()
 KINDS: tuple[str, ...] = get_args(StepKind)
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold(?:\s+(.*))?")
@@ -66,7 +67,7 @@ class _Draft:
     scene: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
-    watch: Markup = Markup()
+    watch: Markup = NO_WORDS
     fences: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
@@ -151,6 +152,7 @@ class _Reader:
         self._complain_all(2, _words_faults(content))
         if front is not None:
             self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
+            self._complain_all(1, symbol_faults(front.symbols))
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)

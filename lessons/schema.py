@@ -212,6 +212,7 @@ class Front(Data, frozen=True):
         goals: what the student learns, which follows "Afterwards you can:" on the first page.
         misconception: for the teacher, the false belief that the lesson targets.
         takeaway: points to remember, shown at the end of the lesson.
+        symbols: quantities that a page shows where a text names them; see `lessons.symbols`.
         minutes: an estimate in earlier files; ignored, see lessons/minutes.py.
     """
 
@@ -223,6 +224,7 @@ class Front(Data, frozen=True):
     goals: str = ""
     misconception: str = ""
     takeaway: tuple[str, ...] = ()
+    symbols: tuple[str, ...] = ()
 
 
 class Lesson(msgspec.Struct, frozen=True):

@@ -1402,6 +1402,27 @@ standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
 ## Der Kurs als statische Seiten: assets/site, app/exports/site
 
+symbol-lambda = Abstand zur Bahn, mit Vorzeichen
+symbol-xi_1 = Abstand quer zur Bahn, mit Vorzeichen
+symbol-theta = Stelle des nächsten Punktes auf der Bahn
+symbol-theta_r = Stelle des Punktes der Uhr auf der Bahn
+symbol-e = Folgefehler: vom Punkt der Uhr zur Spitze
+symbol-d = Abstand zur Bahn
+symbol-y = Lage der Spitze
+symbol-sigma = die Bahn
+symbol-N = Einheitsnormale der Bahn
+symbol-T = Einheitstangente der Bahn
+symbol-F = Kraft auf die Spitze
+symbol-q_1 = Winkel von Glied 1
+symbol-q_2 = Winkel von Glied 2
+symbol-delta = Winkel am Ellbogen
+symbol-rho = Abstand der Spitze vom Fuß
+symbol-K_1 = Feder quer zur Bahn oder zum Punkt der Uhr
+symbol-K_2 = Dämpfer, der zu K1 gehört
+symbol-K_3 = Integral: zählt den Fehler über die Zeit zusammen
+symbol-K_4 = Feder längs der Bahn
+symbol-K_5 = Dämpfer längs der Bahn: hält das gewünschte Tempo
+site-symbols = Zeichen auf dieser Seite
 site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
 site-lab = Probiere es aus
@@ -1446,6 +1467,7 @@ site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
 site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
+site-control-larger = Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens

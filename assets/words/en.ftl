@@ -1120,6 +1120,27 @@ standalone-description = A simulation that runs in this page: { $laws }
 
 ## The course as a static site: assets/site, app/exports/site
 
+symbol-lambda = signed distance to the path
+symbol-xi_1 = signed distance across the path
+symbol-theta = place of the closest point on the path
+symbol-theta_r = place of the clock's point on the path
+symbol-e = tracking error: from the clock's point to the end-point
+symbol-d = distance to the path
+symbol-y = position of the end-point
+symbol-sigma = the path
+symbol-N = unit normal of the path
+symbol-T = unit tangent of the path
+symbol-F = force on the end-point
+symbol-q_1 = angle of link 1
+symbol-q_2 = angle of link 2
+symbol-delta = angle at the elbow
+symbol-rho = distance of the end-point from the base
+symbol-K_1 = spring across the path, or to the clock's point
+symbol-K_2 = damper that belongs to K1
+symbol-K_3 = integral: it adds up the error over time
+symbol-K_4 = spring along the path
+symbol-K_5 = damper along the path: it keeps the wanted speed
+site-symbols = Symbols on this page
 site-title = OnPath: path following is not trajectory tracking
 site-intro = Two robots draw the same path. One follows a timetable, the other a curve: see what happens when they are held back. In the course you predict, try, see and understand; everything runs in this page.
 site-lab = Try it
@@ -1164,6 +1185,7 @@ site-control-robot = the choice of the robot
 site-control-laws = the choice of the law
 site-control-copy = pulling one robot alone
 site-control-flexible = output, pull plane and exaggeration of the flexible link
+site-control-larger = exaggeration of the flexible link
 site-control-identify = identification
 site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-direction = the direction of the hold

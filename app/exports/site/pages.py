@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from onpath.app.common.templates import environment, inlined, json_block, render
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
+from onpath.app.steps.step_html import live
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words, language_name
@@ -26,7 +28,7 @@ MESSAGES = (
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
     *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    "site.review",
+    *("site.review", "site.symbols"),
 )
 
 
@@ -106,6 +108,7 @@ def lesson_page(
     data = {
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
+        "symbols": {name: words(f"symbol.{name}") for name in lesson.front.symbols},
         "scorm": scorm,
         "figures": figures,
         "steps": [
@@ -116,6 +119,7 @@ def lesson_page(
     title = f"{number}. {lesson.front.title} · OnPath"
     fields = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
     fields |= {"description": lesson.front.summary, "next": following}
+    fields["live"] = partial(live, lesson)
     return _page("lesson", words, title, data, around, **fields)
 
 

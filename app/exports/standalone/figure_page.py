@@ -5,7 +5,7 @@ from __future__ import annotations
 from base64 import b64encode
 from hashlib import sha256
 
-from onpath.app.common.templates import inlined, json_block, render, styled
+from onpath.app.common.templates import inlined, json_block, part_of_page, render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.lessons.sides import law_label
@@ -26,7 +26,10 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
         title: heading above the figure; may be empty.
     """
     dark = inlined("page/dark_colours.css")
-    script, style = inlined("standalone/figure.js"), styled("standalone/figure.css", dark=dark)
+    script, style = (
+        inlined("standalone/figure.js"),
+        part_of_page("standalone/figure.css", dark=dark),
+    )
     names = " / ".join(law_label(law, words) for law in figure.laws)
     return render(
         "standalone/figure.html",
