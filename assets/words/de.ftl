@@ -1400,7 +1400,7 @@ standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschalte
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
-## Der Kurs als statische Seiten: assets/site, app/exports/site
+## Der Kurs als statische Seiten: assets/web, app/exports/site
 
 symbol-lambda = Abstand zur Bahn, mit Vorzeichen
 symbol-xi_1 = Abstand quer zur Bahn, mit Vorzeichen

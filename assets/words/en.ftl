@@ -1118,7 +1118,7 @@ standalone-no_script = This figure needs JavaScript, which is switched off here 
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
 
-## The course as a static site: assets/site, app/exports/site
+## The course as a static site: assets/web, app/exports/site
 
 symbol-lambda = signed distance to the path
 symbol-xi_1 = signed distance across the path

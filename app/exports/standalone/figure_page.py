@@ -27,7 +27,7 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     """
     dark = inlined("page/dark_colours.css")
     script, style = (
-        inlined("standalone/figure.js"),
+        inlined("web/onpath.js"),
         part_of_page("standalone/figure.css", dark=dark),
     )
     names = " / ".join(law_label(law, words) for law in figure.laws)
