@@ -65,6 +65,12 @@ export class Figure {
         this.stale = true
     }
 
+    /** Show on the robots what a symbol means; nothing if it is empty. */
+    light(symbol: string): void {
+        for (const view of this.views) view.lit = symbol
+        this.stale = true
+    }
+
     /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 

@@ -5,6 +5,7 @@ import { judged } from "./asked"
 import { said, type BlockData, type PageData, type SketchData, type StepData } from "./lesson_data"
 import { given, type Answer, type Notes } from "./notes"
 import { Board, Chart } from "./sketch"
+import type { Student } from "./student"
 
 export interface Prediction {
     /** Number of the step that asks, and of the block in it. */
@@ -27,8 +28,16 @@ export function elementOf(prediction: Prediction): HTMLElement {
     return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
 }
 
+/** The parts of a prediction that stand elsewhere on the page than its question. */
+export interface Form {
+    commit: HTMLButtonElement
+    /** Where a curve is drawn; null if there is nothing to draw. */
+    board: HTMLElement | null
+}
+
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
-export function predict(page: PageData, prediction: Prediction, notes: Notes, changed: () => void): void {
+export function predict(page: PageData, prediction: Prediction, student: Student): Form {
+    const { notes } = student
     const element = elementOf(prediction)
     const key = String(prediction.step)
     const { data } = prediction
@@ -37,14 +46,20 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
     const asked = element.querySelector<HTMLElement>(".committing")!
     element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
     let answer: Answer = {}
+    const answers = () => {
+        commit.disabled = answer.times === undefined && answer.option === undefined
+        element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
+    }
+    let drawn: HTMLElement | null = null
     commit.disabled = true
     if (data.kind === "sketch") {
         const board = new Board(page, data, () => {
             answer = board.answer
-            commit.disabled = !answer.times
+            answers()
             told.textContent = said(page, answer.times ? "lesson.drawn" : "lesson.draw_first")
         })
-        asked.before(board.element)
+        drawn = board.element
+        told.textContent = said(page, "lesson.draw_first")
         const draw = () => board.draw(given(notes.answers[key]) ? notes.answers[key] : answer, undefined)
         draw()
         addEventListener("resize", draw)
@@ -53,7 +68,7 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
             const input = event.target as HTMLInputElement
             if (input.type !== "radio") return
             answer = { option: Number(input.value) }
-            commit.disabled = false
+            answers()
         })
     const show = () => {
         const kept = notes.answers[key]
@@ -62,18 +77,17 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
         if (!given(kept)) return
         asked.hidden = true
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
-        element.querySelectorAll<HTMLElement>(".board").forEach(board => (board.parentElement!.inert = true))
+        if (drawn) drawn.inert = true
         if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
     }
     const finish = (own: Answer) => {
-        notes.answers[key] = own
+        student.predicts(prediction.step, own)
         show()
-        changed()
     }
     commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
-    element.querySelector(".leave")!.addEventListener("click", () => finish({}))
     element.addEventListener("skip", () => notes.answers[key] ?? finish({}))
     show()
+    return { commit, board: drawn }
 }
 
 /** How a prediction compares with what happened. */

@@ -7,6 +7,7 @@
 
 robot-follower = Bahnfolger
 robot-tracker = Nachläufer
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = Abstand zur Bahn
 quantity-lag = Abstand zum laufenden Punkt
@@ -109,7 +110,7 @@ lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
-lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel in der Mitte, von links nach rechts, oder mit Zahlen.
+lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel, von links nach rechts, oder mit Zahlen.
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
 lesson-drawn = Zeichne noch einmal, oder lege dich fest.
 lesson-numbers = Lieber mit Zahlen zeichnen
@@ -1447,6 +1448,8 @@ site-read_done = Gelesen.
 site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
+site-commit_short = Festlegen
+site-skip_short = Überspringen
 site-again = Die Kurven dieses Laufs sind nicht gespeichert: Lass ihn noch einmal geschehen, um sie zu sehen.
 site-no_platform = Um diese Seite wurde keine Lernplattform gefunden. Dein Fortschritt wird nur in diesem Browser gespeichert.
 site-refused = Die Lernplattform hat deinen Fortschritt nicht angenommen: { $reason }. Was nicht gespeichert ist, geht verloren, wenn du diese Seite schließt.

@@ -9,6 +9,7 @@
 
 robot-follower = Follower
 robot-tracker = Tracker
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = distance to the path
 quantity-lag = distance to the running point
@@ -111,7 +112,7 @@ lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
-lesson-draw_first = Draw with the mouse or a finger on the board in the middle, from left to right, or with numbers.
+lesson-draw_first = Draw on the board with the mouse or a finger, from left to right, or with numbers.
 lesson-committed = You have committed to your prediction. Now see what happens.
 lesson-drawn = Draw again, or commit.
 lesson-numbers = Draw with numbers instead
@@ -1165,6 +1166,8 @@ site-read_done = Read.
 site-no_progress = This file contains no progress in this course.
 site-not_kept = This browser keeps nothing for this page. Your progress lasts until you close it.
 site-skipped = You skipped the prediction. You can still make it here.
+site-commit_short = Commit
+site-skip_short = Skip
 site-again = The curves of this run are not kept: let it happen again to see them.
 site-no_platform = No learning platform was found around this page. Your progress is kept in this browser only.
 site-refused = The learning platform did not take your progress: { $reason }. What is not kept is lost when you close this page.

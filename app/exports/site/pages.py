@@ -27,7 +27,14 @@ MESSAGES = (
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
-    *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
+    *(
+        "lesson.read",
+        "site.again",
+        "site.skipped",
+        "site.skip_short",
+        "site.no_platform",
+        "site.no_room",
+    ),
     *("site.review", "site.symbols"),
 )
 

@@ -14,11 +14,12 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
+from onpath.lessons.sides import ROLES, robot_names
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.settable import specs
-from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
@@ -144,12 +145,34 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     return {
         **data,
         "log": data["log"] | places,
-        "laws": [{**law, "stops": texts} for law, texts in zip(data["laws"], stops, strict=True)],
+        "laws": [
+            {**law, "stops": texts, "title": title}
+            for law, texts, title in zip(
+                data["laws"], stops, _titles(choice, data, words), strict=True
+            )
+        ],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
         "names": choice.sliders,
         "quantities": figure.quantities,
     }
+
+
+def _titles(figure: FigureChoice, data: dict[str, Any], words: Words) -> list[str]:
+    """The laws' titles, with the name that the texts give to the robot under a new lab's law."""
+    names = robot_names(dict(zip(SIDES, figure.laws, strict=True)), words)
+    alone = {law: side for side, law in DEFAULT_LAWS.items() if figure.laws.count(law) == 1}
+    robots = {
+        law: names[ROLES[side]]
+        for law, side in alone.items()
+        if figure.laws[SIDES.index(side)] == law
+    }
+    return [
+        words("robot.under_law", robot=robots[law], law=each["title"])
+        if law in robots
+        else each["title"]
+        for law, each in zip(figure.every_law, data["laws"], strict=True)
+    ]
 
 
 def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
