@@ -285,7 +285,7 @@ export class Player {
         next.classList.toggle("main", !waits && seen)
         pager.querySelectorAll(".commit").forEach(each => each.remove())
         const form = this.forms.get(index)
-        if (form && waits) pager.append(form.commit)
+        if (form && !given(notes.answers[String(index)])) pager.append(form.commit)
         if (!this.playing) this.run()
         this.formulas()
     }
