@@ -1,7 +1,8 @@
 // The symbols in a lesson's texts: whoever points at one, or chooses it in the list, sees it on the robots.
 
 import { made } from "./controls"
-import { said, type PageData } from "./lesson_data"
+import type { PageData } from "./lesson_data"
+import { said } from "./words"
 
 const MARKED = "[data-symbol]"
 

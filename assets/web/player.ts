@@ -2,9 +2,10 @@
 
 import { made, refused } from "./controls"
 import { ask, ordered } from "./asked"
-import { said, type PageData } from "./lesson_data"
+import type { PageData } from "./lesson_data"
 import { Legend } from "./legend"
 import { given, thinned } from "./notes"
+import { said } from "./words"
 import { showOwn } from "./own"
 import { Comparison, elementOf, predict, predictionAt, type Form, type Prediction } from "./predictions"
 import type { Progress } from "./progress"
@@ -25,7 +26,7 @@ export class Player {
     private readonly pager = document.querySelector<HTMLElement>("#pager")!
     private readonly next = document.querySelector<HTMLButtonElement>("#next")!
     private readonly back = document.querySelector<HTMLButtonElement>("#back")!
-    private readonly bar = [...document.querySelectorAll<HTMLElement>("#bar li")]
+    private readonly bar = [...document.querySelectorAll<HTMLElement>("#progress li")]
     private readonly forms = new Map<number, Form>()
     private readonly legend: Legend
     private tasks: Task[] = []
@@ -90,13 +91,12 @@ export class Player {
         const { section } = this
         this.sections.forEach((each, i) => {
             each.classList.toggle("open", each === section)
-            each.classList.toggle("seen", i < this.notes.seen)
+            each.classList.toggle("visited", i < this.notes.seen)
         })
         section.prepend(this.head)
         section.append(this.pager)
         this.place()
         history.replaceState(null, "", `#${this.index + 1}`)
-        dispatchEvent(new Event("resize")) // so that what was hidden is drawn
         if (move) {
             const words = section.querySelector<HTMLElement>(".words")!
             words.focus({ preventScroll: true })
@@ -174,7 +174,7 @@ export class Player {
     private place(): void {
         const board = this.forms.get(this.index)?.board
         if (!board) return
-        if (WIDE.matches) this.section.querySelector(".strip")!.append(board)
+        if (WIDE.matches) this.section.querySelector(".beneath")!.append(board)
         else elementOf(this.prediction(this.index)!).querySelector(".committing")!.before(board)
         dispatchEvent(new Event("resize"))
     }
@@ -213,7 +213,7 @@ export class Player {
         if (!found || this.waits(found)) return null
         const comparison = new Comparison(this.page, found, this.notes)
         const box = made("div", "compared", ...comparison.elements)
-        if (found.data.kind === "sketch") section.querySelector(".strip")!.append(box)
+        if (found.data.kind === "sketch") section.querySelector(".beneath")!.append(box)
         else if (!this.happened(this.index)) return null
         else {
             box.classList.add("op-box")
@@ -272,7 +272,7 @@ export class Player {
         const where = document.querySelector("#where")!
         where.textContent = index < length ? said(page, "lesson.step", { step: String(index + 1), steps: String(length) }) : ""
         this.bar.forEach((each, i) => {
-            each.classList.toggle("seen", i < notes.seen)
+            each.classList.toggle("done", i < notes.seen)
             each.classList.toggle("now", i === index)
         })
         const found = this.prediction(index)

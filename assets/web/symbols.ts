@@ -2,7 +2,7 @@
 
 import type { Point } from "./figure_data"
 
-/** What is known of a robot in the picture, [m]. */
+/** What is known of a robot in a picture, [m]; x is to the right, y is up. */
 export interface Seen {
     tip: Point
     /** The point of the path that is closest to the end-point. */

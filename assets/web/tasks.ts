@@ -2,7 +2,8 @@
 
 import { made } from "./controls"
 import type { Verdict } from "./checks"
-import { said, type PageData, type TaskData } from "./lesson_data"
+import type { PageData, TaskData } from "./lesson_data"
+import { said } from "./words"
 import { general } from "./numbers"
 import type { Student } from "./student"
 

@@ -14,7 +14,7 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
-from onpath.lessons.sides import ROLES, robot_names
+from onpath.lessons.sides import ROLES, law_titles, robot_names
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
@@ -146,10 +146,8 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
         **data,
         "log": data["log"] | places,
         "laws": [
-            {**law, "stops": texts, "title": title}
-            for law, texts, title in zip(
-                data["laws"], stops, _titles(choice, data, words), strict=True
-            )
+            {**law, "stops": texts, **names}
+            for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
         ],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
@@ -158,20 +156,23 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     }
 
 
-def _titles(figure: FigureChoice, data: dict[str, Any], words: Words) -> list[str]:
-    """The laws' titles, with the name that the texts give to the robot under a new lab's law."""
+def _names(figure: FigureChoice, words: Words) -> list[dict[str, str]]:
+    """For each law, the name that the texts give to its robot, and a title with it; else none."""
     names = robot_names(dict(zip(SIDES, figure.laws, strict=True)), words)
-    alone = {law: side for side, law in DEFAULT_LAWS.items() if figure.laws.count(law) == 1}
-    robots = {
+    named = {
         law: names[ROLES[side]]
-        for law, side in alone.items()
-        if figure.laws[SIDES.index(side)] == law
+        for side, law in zip(SIDES, figure.laws, strict=True)
+        if law == DEFAULT_LAWS[side] and figure.laws.count(law) == 1
     }
+    titles = law_titles(figure.every_law, words)
     return [
-        words("robot.under_law", robot=robots[law], law=each["title"])
-        if law in robots
-        else each["title"]
-        for law, each in zip(figure.every_law, data["laws"], strict=True)
+        {
+            "name": named[law],
+            "title": words("robot.under_law", robot=named[law], law=titles[law]),
+        }
+        if law in named
+        else {}
+        for law in figure.every_law
     ]
 
 
