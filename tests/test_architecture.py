@@ -27,6 +27,7 @@ ORDER = [
     "app.storage",
     "app.lab",
     "app.viser_adapter",
+    "app.steps",
     "app.common",
     "lessons",
     "models.studies",

@@ -3,7 +3,7 @@
 Colours are those of the palette; a dark page replaces some of them, see
 assets/page/dark_colours.css.
 
-`Markup` is made only in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
+`Markup` is made only in `phrase`, `inlined`, `part_of_page` and `json_block` and, from a lesson's
 words, by `lessons.safe_html.safe`.
 """
 
@@ -72,8 +72,8 @@ def inlined(asset: str) -> Markup:
     return Markup(asset_path(asset).read_text("utf-8"))
 
 
-def styled(template: str, /, **values: object) -> Markup:
-    """A style template, rendered to be put into a page verbatim."""
+def part_of_page(template: str, /, **values: object) -> Markup:
+    """A template, rendered to be put into a page verbatim."""
     return Markup(render(template, **values))
 
 

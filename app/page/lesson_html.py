@@ -61,6 +61,11 @@ def remark(sentence: str, italic: bool = False) -> str:
     return render("lesson/remark.html", sentence=sentence, italic=italic)
 
 
+def watch(told: str) -> str:
+    """What to look at during a run."""
+    return render("lesson/watch.html", told=told)
+
+
 def next_act(words: Words) -> str:
     """The remark after a prediction; the page brings the button that follows it into view."""
     return render("lesson/next_act.html", message=words("lesson.committed"))

@@ -262,6 +262,8 @@ class LessonPanel:
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""
         found, truth = run.prediction(), run.truth
+        if run.step is not None and run.step.watch and not run.waits:
+            self._html(page.watch(run.step.watch))
         if run.playing:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:

@@ -14,7 +14,7 @@ from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
-from onpath.app.page.panels.flexible_panel import FlexiblePanel
+from onpath.app.page.panels.flexible_panel import Exaggeration, FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.law_panel import LawPanel
@@ -168,6 +168,7 @@ class PanelFactory:
             "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
+            "larger": lambda: Exaggeration(gui, words, post, first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
             "wall": lambda: WallPanel(gui, words, post, first),
             "start": lambda: StartPanel(gui, words, post, first=first, show=self._scene.show_start),

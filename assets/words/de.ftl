@@ -7,6 +7,7 @@
 
 robot-follower = Bahnfolger
 robot-tracker = Nachläufer
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = Abstand zur Bahn
 quantity-lag = Abstand zum laufenden Punkt
@@ -109,7 +110,7 @@ lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
-lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel in der Mitte, von links nach rechts, oder mit Zahlen.
+lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel, von links nach rechts, oder mit Zahlen.
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
 lesson-drawn = Zeichne noch einmal, oder lege dich fest.
 lesson-numbers = Lieber mit Zahlen zeichnen
@@ -1415,7 +1416,9 @@ error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 ## Eine Abbildung ohne Server
 
 standalone-path = Bahn
-standalone-plot = Abstand von der Bahn [mm] über der Zeit [s]
+standalone-hint_hold_pull = Beide Roboter festhalten oder an einer Spitze ziehen und vergleichen. Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_hold = Die Roboter festhalten und vergleichen. Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_pull = Mit der Maus oder einem Finger an einer Spitze ziehen. Wer an der Linie unten zieht, blickt zurück.
 standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
 standalone-law = Gesetz
 standalone-late = Die simulierte Zeit hinkt nach: Dieses Gerät ist zu langsam, um in Echtzeit zu zeichnen.
@@ -1426,8 +1429,52 @@ standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschalte
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
-## Der Kurs als statische Seiten: assets/site, app/exports/site
+# Das Schaubild der Abstände, die Lupe und die Knöpfe für die Zeit
 
+chart-title = Abstand von der Bahn
+chart-held = festgehalten
+chart-pulled = gezogen
+chart-centre = Mittelpunkt des Kreises
+chart-table = Als Tabelle
+chart-time = Zeit [s]
+chart-acts = was wirkt
+chart-look = Zurückblicken
+chart-look_hint = Ziehen, um über die letzte Minute zurückzublicken; mit Tasten: Pfeile, Bild auf und ab, Pos1 und Ende
+chart-at = { $time } s: { $values }
+chart-yours = Deine Vorhersage
+chart-draw = Hier zeichnen, von links nach rechts
+chart-point = Deine Vorhersage bei { $time } s
+lens-name = Die Spitze unter dem Gesetz { $law }, vergrößert
+lens-closest = nächster Bahnpunkt
+lens-reference = Sollpunkt
+lens-straight = gerades Glied
+transport-back = Zurück zu jetzt
+transport-back_hint = Zeigt wieder die Gegenwart. Taste: Ende, auf dem Griff
+transport-go_on_hint = Verwirft, was danach kam. Taste: G
+
+## Der Kurs als statische Seiten: assets/web, app/exports/site
+
+symbol-lambda = Abstand zur Bahn, mit Vorzeichen
+symbol-xi_1 = Abstand quer zur Bahn, mit Vorzeichen
+symbol-theta = Stelle des nächsten Punktes auf der Bahn
+symbol-theta_r = Stelle des Punktes der Uhr auf der Bahn
+symbol-e = Folgefehler: vom Punkt der Uhr zur Spitze
+symbol-d = Abstand zur Bahn
+symbol-y = Lage der Spitze
+symbol-sigma = die Bahn
+symbol-N = Einheitsnormale der Bahn
+symbol-T = Einheitstangente der Bahn
+symbol-F = Kraft auf die Spitze
+symbol-q_1 = Winkel von Glied 1
+symbol-q_2 = Winkel von Glied 2
+symbol-delta = Winkel am Ellbogen
+symbol-rho = Abstand der Spitze vom Fuß
+symbol-K_1 = Feder quer zur Bahn oder zum Punkt der Uhr
+symbol-K_2 = Dämpfer, der zu K1 gehört
+symbol-K_3 = Integral: zählt den Fehler über die Zeit zusammen
+symbol-K_4 = Feder längs der Bahn
+symbol-K_5 = Dämpfer längs der Bahn: hält das gewünschte Tempo
+site-symbols = Zeichen auf dieser Seite
 site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
 site-lab = Probiere es aus
@@ -1452,6 +1499,8 @@ site-read_done = Gelesen.
 site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
+site-commit_short = Festlegen
+site-skip_short = Überspringen
 site-again = Die Kurven dieses Laufs sind nicht gespeichert: Lass ihn noch einmal geschehen, um sie zu sehen.
 site-no_platform = Um diese Seite wurde keine Lernplattform gefunden. Dein Fortschritt wird nur in diesem Browser gespeichert.
 site-refused = Die Lernplattform hat deinen Fortschritt nicht angenommen: { $reason }. Was nicht gespeichert ist, geht verloren, wenn du diese Seite schließt.
@@ -1463,7 +1512,7 @@ site-done = { $done } von { $all } Schritten gesehen, { $tasks } Aufgaben gelös
 site-next_lesson = Nächste Lektion: { $title }
 site-end = Das Ende dieser Lektion
 site-features = Was diese Seiten nicht haben
-site-features_text = Diese Seiten haben keine Aufzeichnung zum Zurückblicken, keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
+site-features_text = Diese Seiten haben keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
 site-control-editor = der Bahneditor
 site-control-gains = alle Verstärkungen und der Realismus
 site-control-plots = die anderen Diagramme
@@ -1472,6 +1521,7 @@ site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
 site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
+site-control-larger = Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens

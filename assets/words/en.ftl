@@ -9,6 +9,7 @@
 
 robot-follower = Follower
 robot-tracker = Tracker
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = distance to the path
 quantity-lag = distance to the running point
@@ -111,7 +112,7 @@ lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
-lesson-draw_first = Draw with the mouse or a finger on the board in the middle, from left to right, or with numbers.
+lesson-draw_first = Draw on the board with the mouse or a finger, from left to right, or with numbers.
 lesson-committed = You have committed to your prediction. Now see what happens.
 lesson-drawn = Draw again, or commit.
 lesson-numbers = Draw with numbers instead
@@ -1113,7 +1114,9 @@ error-no_nickname = a nickname has at least one character
 ## A figure without a server
 
 standalone-path = Path
-standalone-plot = Distance to the path [mm] over time [s]
+standalone-hint_hold_pull = Hold both robots back, or pull an end-point, and compare. Drag the line below to look back.
+standalone-hint_hold = Hold the robots back, and compare. Drag the line below to look back.
+standalone-hint_pull = Pull an end-point with the mouse or a finger. Drag the line below to look back.
 standalone-scene = The robot under the law { $law }, drawn from the side
 standalone-law = Law
 standalone-late = Simulated time runs late: this device is too slow to draw in real time.
@@ -1124,8 +1127,52 @@ standalone-no_script = This figure needs JavaScript, which is switched off here 
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
 
-## The course as a static site: assets/site, app/exports/site
+# The chart of distances, the lens and the buttons for time
 
+chart-title = Distance from the path
+chart-held = held
+chart-pulled = pulled
+chart-centre = centre of the circle
+chart-table = As a table
+chart-time = time [s]
+chart-acts = what acts
+chart-look = Look back
+chart-look_hint = Drag to look back over the last minute; with keys: arrows, Page Up and Page Down, Home and End
+chart-at = { $time } s: { $values }
+chart-yours = Your prediction
+chart-draw = Draw here, from left to right
+chart-point = Your prediction at { $time } s
+lens-name = The end-point under the law { $law }, magnified
+lens-closest = closest point
+lens-reference = reference point
+lens-straight = straight link
+transport-back = Back to now
+transport-back_hint = Shows the present again. Key: End, on the handle
+transport-go_on_hint = Discards what came after. Key: G
+
+## The course as a static site: assets/web, app/exports/site
+
+symbol-lambda = signed distance to the path
+symbol-xi_1 = signed distance across the path
+symbol-theta = place of the closest point on the path
+symbol-theta_r = place of the clock's point on the path
+symbol-e = tracking error: from the clock's point to the end-point
+symbol-d = distance to the path
+symbol-y = position of the end-point
+symbol-sigma = the path
+symbol-N = unit normal of the path
+symbol-T = unit tangent of the path
+symbol-F = force on the end-point
+symbol-q_1 = angle of link 1
+symbol-q_2 = angle of link 2
+symbol-delta = angle at the elbow
+symbol-rho = distance of the end-point from the base
+symbol-K_1 = spring across the path, or to the clock's point
+symbol-K_2 = damper that belongs to K1
+symbol-K_3 = integral: it adds up the error over time
+symbol-K_4 = spring along the path
+symbol-K_5 = damper along the path: it keeps the wanted speed
+site-symbols = Symbols on this page
 site-title = OnPath: path following is not trajectory tracking
 site-intro = Two robots draw the same path. One follows a timetable, the other a curve: see what happens when they are held back. In the course you predict, try, see and understand; everything runs in this page.
 site-lab = Try it
@@ -1150,6 +1197,8 @@ site-read_done = Read.
 site-no_progress = This file contains no progress in this course.
 site-not_kept = This browser keeps nothing for this page. Your progress lasts until you close it.
 site-skipped = You skipped the prediction. You can still make it here.
+site-commit_short = Commit
+site-skip_short = Skip
 site-again = The curves of this run are not kept: let it happen again to see them.
 site-no_platform = No learning platform was found around this page. Your progress is kept in this browser only.
 site-refused = The learning platform did not take your progress: { $reason }. What is not kept is lost when you close this page.
@@ -1161,7 +1210,7 @@ site-done = { $done } of { $all } steps seen, { $tasks } tasks passed
 site-next_lesson = Next lesson: { $title }
 site-end = The end of this lesson
 site-features = What these pages do not have
-site-features_text = These pages have no history to look back on, no path editor, no law of your own, no other robot or law in the same step, no plots but that of the distance, no wall, no start beside the path, no identification, no class, no concept test and no CSV. Where a lesson uses one of these, it says so. The lab has them.
+site-features_text = These pages have no path editor, no law of your own, no other robot or law in the same step, no plots but that of the distance, no wall, no start beside the path, no identification, no class, no concept test and no CSV. Where a lesson uses one of these, it says so. The lab has them.
 site-control-editor = the path editor
 site-control-gains = all gains and realism
 site-control-plots = the other plots
@@ -1170,6 +1219,7 @@ site-control-robot = the choice of the robot
 site-control-laws = the choice of the law
 site-control-copy = pulling one robot alone
 site-control-flexible = output, pull plane and exaggeration of the flexible link
+site-control-larger = exaggeration of the flexible link
 site-control-identify = identification
 site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-direction = the direction of the hold

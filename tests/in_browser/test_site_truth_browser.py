@@ -70,7 +70,7 @@ def test_slow_motion_is_as_slow_as_the_script_says(browser: Browser, site: Path)
     gained, passed = reader.page.evaluate(FRAMES)
     assert 0 < gained < 0.25 * passed + 0.005
     reader.played(6)
-    assert reader.page.evaluate("site.stage.figure.rate") == 1
+    assert reader.page.evaluate("site.stage.figure.engine.rate") == 1
     reader.context.close()
 
 
@@ -156,7 +156,7 @@ def judging(browser: Browser) -> Iterator[Page]:
     page.set_content(
         f'{parts}<script type="application/json" id="data">{json.dumps(data)}</script>'
     )
-    page.add_script_tag(path=asset_path("site/site.js"))
+    page.add_script_tag(path=asset_path("web/onpath.js"))
     yield page
     page.close()
 

@@ -14,11 +14,12 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
+from onpath.lessons.sides import ROLES, law_titles, robot_names
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.settable import specs
-from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
@@ -144,12 +145,35 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     return {
         **data,
         "log": data["log"] | places,
-        "laws": [{**law, "stops": texts} for law, texts in zip(data["laws"], stops, strict=True)],
+        "laws": [
+            {**law, "stops": texts, **names}
+            for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
+        ],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
         "names": choice.sliders,
         "quantities": figure.quantities,
     }
+
+
+def _names(figure: FigureChoice, words: Words) -> list[dict[str, str]]:
+    """For each law, the name that the texts give to its robot, and a title with it; else none."""
+    names = robot_names(dict(zip(SIDES, figure.laws, strict=True)), words)
+    named = {
+        law: names[ROLES[side]]
+        for side, law in zip(SIDES, figure.laws, strict=True)
+        if law == DEFAULT_LAWS[side] and figure.laws.count(law) == 1
+    }
+    titles = law_titles(figure.every_law, words)
+    return [
+        {
+            "name": named[law],
+            "title": words("robot.under_law", robot=named[law], law=titles[law]),
+        }
+        if law in named
+        else {}
+        for law in figure.every_law
+    ]
 
 
 def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:

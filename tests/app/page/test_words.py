@@ -74,7 +74,7 @@ KEYS_MADE = (
     *("caption.", "invite.", "spoken."),
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
-    *("lesson.back", "lesson.again", "lesson.close", "site.control."),
+    *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )

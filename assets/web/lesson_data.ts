@@ -1,0 +1,142 @@
+// The data that Python puts into the pages: see app/exports/site.
+
+import type { FigureData, Place } from "./figure_data"
+import type { Curves } from "./notes"
+
+export type Robot = "tracker" | "follower"
+export const ROBOTS: Robot[] = ["tracker", "follower"]
+export type Setting = number | string
+
+/** One action of a script or a link; it has one of these fields besides `side`. */
+export interface Act {
+    hold?: boolean
+    pull?: [number, number]
+    release?: boolean
+    set?: Record<string, Setting>
+    write?: [number, number][]
+    path?: number
+    reset?: boolean
+    run?: boolean
+    rate?: number
+    side?: number | null
+}
+
+export interface Script {
+    until: number
+    do: [number, Act][]
+}
+
+export interface SiteFigure extends FigureData {
+    names: string[]
+    quantities: string[]
+    log: FigureData["log"] & Record<"theta_rate" | "speed" | "xi" | "xi_rate" | "u", Place>
+}
+
+export interface Window {
+    during: "always" | "held" | "pulled" | "free"
+    last: number
+    least: number
+}
+
+export type Said = Record<string, string>
+
+export interface Bound extends Window {
+    kind: "bound"
+    quantity: string
+    robot: Robot
+    stat: string
+    below: number | null
+    above: number | null
+    said: Said
+}
+
+export interface Compare extends Window {
+    kind: "compare"
+    quantity: string
+    larger: Robot
+    smaller: Robot
+    stat: string
+    ratio: number
+    said: Said
+}
+
+export interface EventCheck {
+    kind: "event"
+    event: string
+    name: string
+    times: number
+    since: { event: string; name: string }[]
+    said: Said
+}
+
+export interface Order {
+    kind: "order"
+    events: { event: string; name: string; said: string }[]
+}
+
+export interface SettingCheck {
+    kind: "setting"
+    name: string
+    equals: Setting | null
+    below: number | null
+    above: number | null
+    whole: boolean
+    said: Said
+    labels: Record<string, string>
+}
+
+export interface Only {
+    kind: "only"
+    names: string[]
+    labels: Record<string, string>
+}
+
+export type Check = Bound | Compare | EventCheck | Order | SettingCheck | Only
+
+export interface TaskData {
+    kind: "task"
+    id: string
+    best: string
+    checks?: Check[]
+}
+
+export interface SketchData {
+    kind: "sketch"
+    quantity: string
+    label: string
+    unit: string
+    robots: string[]
+    seconds: number
+    top: number
+    bottom: number
+}
+
+export type BlockData =
+    | { kind: "text"; links: (Act[] | null)[]; when?: [string, number[]] }
+    | { kind: "choice" | "quiz"; right: number }
+    | { kind: "number"; number: number; tolerance: number }
+    | { kind: "open" }
+    | SketchData
+    | TaskData
+
+export interface StepData {
+    kind: "play" | "predict" | "run" | "explain" | "task" | "quiz"
+    optional: boolean
+    running: boolean
+    script: Script | null
+    truth?: Curves // of a run that only the lab can play
+    values: Record<string, Setting> & { lengths: number[]; paths: string[] }
+    blocks: BlockData[]
+    figure: number
+}
+
+export interface PageData {
+    words: Record<string, string>
+    lesson: string
+    /** What each symbol of the lesson means. */
+    symbols: Record<string, string>
+    scorm?: "1.2" | "2004" | null
+    figures: SiteFigure[]
+    steps: StepData[]
+    lessons: Record<string, { steps: number; required: number; tasks: string[] }>
+}

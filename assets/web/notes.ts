@@ -1,0 +1,123 @@
+// A student's notes on the lessons: what was predicted, seen, answered and passed.
+
+import type { PageData } from "./lesson_data"
+import type { Progress } from "./progress"
+
+export interface Answer {
+    option?: number
+    times?: number[]
+    values?: number[]
+    sure?: string
+    reason?: number
+    why?: string
+}
+
+export interface Curves {
+    times: number[]
+    tracker: number[]
+    follower: number[]
+}
+
+/** Keys are numbers of steps, from 0; for questions, step and block, such as "3.1". */
+export interface Notes {
+    step: number
+    seen: number
+    answers: Record<string, Answer>
+    truths: Record<string, Curves>
+    played: Record<string, boolean>
+    tasks: Record<string, number>
+    quiz: Record<string, number>
+    /** First answers to quizzes and questions for numbers, after which the page shows the right ones. */
+    first: Record<string, number>
+    numbers: Record<string, number>
+    written: Record<string, string>
+}
+
+const FORMAT = "onpath-progress-1"
+const MOST_POINTS = 200
+
+export function notesOf(progress: Progress, lesson: string): Notes {
+    const none: Notes = {
+        step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {},
+    }
+    const kept = parsed(progress.get(key(lesson)) ?? "{}")
+    return isNotes(kept) ? { ...none, ...kept } : none
+}
+
+export function keep(progress: Progress, lesson: string, notes: Notes): void {
+    progress.set(key(lesson), JSON.stringify(notes))
+}
+
+/** Whether a prediction was committed; a skipped one is an empty answer. */
+export function given(answer: Answer | undefined): boolean {
+    return answer?.option !== undefined || answer?.times !== undefined
+}
+
+/** All notes of a course as a file. */
+export function exported(progress: Progress, page: PageData): string {
+    const kept = Object.keys(page.lessons).map(name => [name, notesOf(progress, name)])
+    return JSON.stringify({ format: FORMAT, lessons: Object.fromEntries(kept) })
+}
+
+/** Read the notes from a file; false if it is not one of ours. */
+export function imported(progress: Progress, page: PageData, text: string): boolean {
+    const read = parsed(text) as { format?: unknown; lessons?: unknown } | null
+    if (read?.format !== FORMAT || typeof read.lessons !== "object" || !read.lessons) return false
+    const lessons = Object.entries(read.lessons).filter(([name]) => name in page.lessons)
+    if (!lessons.every(([, notes]) => isNotes(notes))) return false
+    for (const [name, notes] of lessons) progress.set(key(name), JSON.stringify(notes))
+    return true
+}
+
+export function forget(progress: Progress, page: PageData): void {
+    for (const name of Object.keys(page.lessons)) progress.set(key(name), "{}")
+}
+
+/** A curve with fewer points; the extremes of every part are kept. */
+export function thinned({ times, tracker, follower }: Curves): Curves {
+    const parts = Math.floor(MOST_POINTS / 4)
+    const kept = new Set([0, times.length - 1])
+    for (let part = 0; times.length > MOST_POINTS && part < parts; part++) {
+        const [from, until] = [part, part + 1].map(i => Math.floor((i * times.length) / parts)) as [number, number]
+        for (const curve of [tracker, follower]) {
+            const own = curve.slice(from, until)
+            kept.add(from + own.indexOf(Math.max(...own))).add(from + own.indexOf(Math.min(...own)))
+        }
+    }
+    const places = times.length > MOST_POINTS ? [...kept].sort((a, b) => a - b) : [...times.keys()]
+    const at = (curve: number[]) => places.map(i => Math.round(1e4 * curve[i]!) / 1e4)
+    return { times: at(times), tracker: at(tracker), follower: at(follower) }
+}
+
+function key(lesson: string): string {
+    return `notes.${lesson}`
+}
+
+export function parsed(text: string): unknown {
+    try {
+        return JSON.parse(text)
+    } catch {
+        return null
+    }
+}
+
+/** Whether data have the form of notes: numbers and texts where they belong. */
+function isNotes(read: unknown): read is Partial<Notes> {
+    if (typeof read !== "object" || !read || Array.isArray(read)) return false
+    const number = (each: unknown) => typeof each === "number" && Number.isFinite(each)
+    const text = (each: unknown) => typeof each === "string" && each.length <= 1000
+    const flag = (each: unknown) => typeof each === "boolean"
+    const numbers = (each: unknown) => Array.isArray(each) && each.length <= 1000 && each.every(number)
+    const every = (of: (each: unknown) => boolean) => (each: unknown) =>
+        typeof each === "object" && each !== null && !Array.isArray(each) && Object.values(each).every(of)
+    const fields = (forms: Record<string, (each: unknown) => boolean>) => (each: unknown) =>
+        typeof each === "object" && each !== null &&
+        Object.entries(each).every(([name, value]) => Object.hasOwn(forms, name) && forms[name]!(value))
+    const place = (each: unknown) => number(each) && Number.isInteger(each) && (each as number) >= 0
+    const answer = fields({ option: place, reason: place, times: numbers, values: numbers, sure: text, why: text })
+    const curves = fields({ times: numbers, tracker: numbers, follower: numbers })
+    return fields({
+        step: place, seen: place, answers: every(answer), truths: every(curves), played: every(flag),
+        tasks: every(number), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
+    })(read)
+}

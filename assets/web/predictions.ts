@@ -1,0 +1,184 @@
+// Predictions: a choice or a curve, to which a student commits before the run.
+
+import { made } from "./controls"
+import { judged } from "./asked"
+import type { BlockData, PageData, Script, SketchData, StepData } from "./lesson_data"
+import { said } from "./words"
+import { given, type Answer, type Notes } from "./notes"
+import { Chart, type Axes, type Span } from "./chart"
+import { Drawing } from "./drawing"
+import { local } from "./numbers"
+import { radiusOf } from "./strip"
+import type { Student } from "./student"
+
+export interface Prediction {
+    /** Number of the step that asks, and of the block in it. */
+    step: number
+    block: number
+    data: SketchData | Extract<BlockData, { kind: "choice" | "quiz" }>
+}
+
+/** What a step asks, or what it shows: the prediction of the step before. */
+export function predictionAt(steps: StepData[], index: number): Prediction | null {
+    const candidates = steps[index]!.kind === "run" ? [index, index - 1] : [index]
+    for (const step of candidates)
+        for (const [block, data] of (steps[step]?.blocks ?? []).entries())
+            if (data.kind === "choice" || data.kind === "sketch")
+                return { step, block, data: data as Prediction["data"] }
+    return null
+}
+
+export function elementOf(prediction: Prediction): HTMLElement {
+    return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
+}
+
+/** The parts of a prediction that stand elsewhere on the page than its question. */
+export interface Form {
+    commit: HTMLButtonElement
+    /** Where a curve is drawn; null if there is nothing to draw. */
+    board: HTMLElement | null
+}
+
+/** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
+export function predict(page: PageData, prediction: Prediction, student: Student): Form {
+    const { notes } = student
+    const element = elementOf(prediction)
+    const key = String(prediction.step)
+    const { data } = prediction
+    const told = element.querySelector<HTMLElement>(".verdict")!
+    const commit = element.querySelector<HTMLButtonElement>(".commit")!
+    const asked = element.querySelector<HTMLElement>(".committing")!
+    element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
+    let answer: Answer = {}
+    const answers = () => {
+        commit.disabled = answer.times === undefined && answer.option === undefined
+        element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
+    }
+    let board: HTMLElement | null = null
+    let committed = () => {}
+    commit.disabled = true
+    if (data.kind === "sketch") {
+        const chart = chartOf(page, prediction, data, () => {
+            drawing.show()
+            chart.draw()
+        })
+        const seconds = local(data.seconds, 4, page.words["point"]!)
+        chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
+        chart.ghost = curveOf(notes.answers[key])
+        const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
+        hint()
+        const drawing = new Drawing(chart, () => {
+            const { times, values } = chart.ghost ?? {}
+            answer = times && values ? { times: [...times], values: [...values] } : {}
+            answers()
+            told.textContent = said(page, times ? "lesson.drawn" : "lesson.draw_first")
+            hint()
+            chart.draw()
+        })
+        board = chart.element
+        told.textContent = said(page, "lesson.draw_first")
+        committed = () => (drawing.open = false)
+    } else
+        element.addEventListener("change", event => {
+            const input = event.target as HTMLInputElement
+            if (input.type !== "radio") return
+            answer = { option: Number(input.value) }
+            answers()
+        })
+    const show = () => {
+        const kept = notes.answers[key]
+        if (!kept) return
+        told.textContent = said(page, given(kept) ? "lesson.committed" : "site.skipped")
+        if (!given(kept)) return
+        asked.hidden = true
+        element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
+        committed()
+        if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
+    }
+    const finish = (own: Answer) => {
+        student.predicts(prediction.step, own)
+        show()
+    }
+    commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
+    element.addEventListener("skip", () => notes.answers[key] ?? finish({}))
+    show()
+    return { commit, board }
+}
+
+/** How a prediction compares with what happened. */
+export class Comparison {
+    readonly elements: HTMLElement[] = []
+    private readonly chart: Chart | null = null
+    private readonly again: HTMLElement
+
+    constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
+        const { data } = prediction
+        this.again = made("p", "", said(page, "site.again"))
+        if (data.kind === "sketch") {
+            const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
+            this.elements.push(chart.element, this.again)
+        } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
+    }
+
+    /** If the truth is not kept, the page says how to see it again. */
+    draw(truth: Notes["truths"][string] | undefined): void {
+        this.again.hidden = truth !== undefined
+        const { chart, prediction } = this
+        if (!chart || prediction.data.kind !== "sketch") return
+        const { robots } = prediction.data
+        chart.ghost = curveOf(this.answer)
+        chart.lines = truth ? [
+            { name: robots[0]!, tone: "side0", dashed: false, times: truth.times, values: truth.tracker },
+            { name: robots[1]!, tone: "side1", dashed: true, times: truth.times, values: truth.follower },
+        ] : []
+        chart.draw()
+    }
+
+    private get answer(): Answer | undefined {
+        return this.notes.answers[String(this.prediction.step)]
+    }
+}
+
+/** A chart with the axes of a prediction, and when the run's script holds and pulls. */
+function chartOf(page: PageData, { step }: Prediction, data: SketchData, changed: () => void): Chart {
+    const run = page.steps[page.steps[step]!.kind === "run" ? step : step + 1]
+    const { label, unit, bottom, top, quantity, seconds } = data
+    const axes: Axes = { label, unit, bottom, top }
+    const outline = page.figures[run?.figure ?? -1]?.paths[0]?.outline ?? []
+    const radius = radiusOf(Array.from({ length: outline.length / 2 }, (_, i) => outline.slice(2 * i, 2 * i + 2)))
+    if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: said(page, "chart.centre") }
+    const chart = new Chart(page, axes, changed)
+    chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
+    chart.until = seconds
+    chart.spans = acting(run?.script ?? null)
+    return chart
+}
+
+/** When a script holds or pulls a robot; after a reset, times mean something else. */
+function acting(script: Script | null): Span[] {
+    const found: Span[] = []
+    let span: Span | null = null
+    for (const [time, act] of [...script?.do ?? []].sort((a, b) => a[0] - b[0])) {
+        if (act.reset || act.path !== undefined) break
+        const kind = act.hold ? "held" : act.pull ? "pulled" : null
+        if (span && (act.hold === false || act.release)) {
+            span.until = time
+            span = null
+        } else if (kind && !span) found.push((span = { from: time, until: script!.until, kind }))
+    }
+    return found
+}
+
+function curveOf(answer: Answer | undefined): { times: number[]; values: number[] } | null {
+    return answer?.times && answer.values ? { times: answer.times, values: answer.values } : null
+}
+
+/** How sure the student is, and why, if stated. */
+function beside(element: HTMLElement): Answer {
+    const value = (name: string) => element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(name)?.value ?? ""
+    const found: Answer = {}
+    if (value(".sure")) found.sure = value(".sure")
+    if (value(".reason")) found.reason = Number(value(".reason"))
+    if (value(".why").trim()) found.why = value(".why").trim().slice(0, 1000)
+    return found
+}

@@ -1,0 +1,194 @@
+// A simulation that records what the lessons need: events, and all quantities 60 times a second.
+
+import type { Kernels } from "./kernels"
+import { Simulation } from "./simulation"
+import type { Happening, RunRecord } from "./checks"
+import { ROBOTS, type Act, type Robot, type SiteFigure, type StepData } from "./lesson_data"
+
+const FRAME = 1 / 60 // [s]
+const MOST = 3600 // samples: the lab keeps one minute, too
+
+export class Recorded extends Simulation {
+    happenings: Happening[] = []
+    /** Called before every frame of a 60th of a second; a script acts then. False: wait here. */
+    before: (time: number) => boolean = () => true
+    private run = 0
+    private frame = 0
+    private written = new Map<number, number>()
+    private settings: Record<string, number | string> = {}
+    private times: number[] = []
+    private samples: Record<Robot, Record<string, number[]>>
+
+    constructor(override readonly data: SiteFigure, kernels: Kernels, private readonly begun: StepData["values"]) {
+        super(data, kernels)
+        this.samples = this.nothing()
+        this.setUp()
+    }
+
+    /** As when the step began. */
+    setUp(): void {
+        const { lengths, paths, ...settings } = this.begun
+        this.settings = { ...settings, length: lengths[0]!, path: paths[0]! }
+        this.written.clear()
+        this.data.sliders.forEach((slider, i) => (this.values[i] = slider.value))
+        this.path = 0
+        this.restart()
+        this.happenings = []
+    }
+
+    override advance(ticks: number): void {
+        for (let left = ticks; left > 0; ) {
+            if (this.ticks >= this.at(this.frame)) {
+                if (!this.before(this.time)) return
+                this.sample()
+                this.frame++
+            }
+            const part = Math.min(left, this.at(this.frame) - this.ticks)
+            super.advance(part)
+            left -= part
+            this.sides.forEach((side, i) => {
+                if (side.stopped && !this.isStopped(ROBOTS[i]!)) this.note("diverged", "", [ROBOTS[i]!])
+            })
+        }
+    }
+
+    override hold(on: boolean, only?: number): void {
+        if (only !== undefined) this.note(on ? "hold" : "let_go", "", [ROBOTS[only]!])
+        else if (on !== this.held) this.note(on ? "hold" : "let_go")
+        super.hold(on, only)
+    }
+
+    override pull(by: [number, number] | null, only?: number): void {
+        const pulled = this.sides.some(side => side.pulled)
+        if (only !== undefined) this.note(by ? "pull" : "release", "", [ROBOTS[only]!])
+        else if (pulled !== (by !== null)) this.note(by ? "pull" : "release")
+        super.pull(by, only)
+    }
+
+    override set(slider: number, value: number): void {
+        super.set(slider, value)
+        const name = this.data.names?.[slider]
+        if (!name || !this.happenings) return // while it is being constructed
+        this.settings[name] = value
+        this.note("set", name)
+    }
+
+    override reset(): void {
+        this.note("reset")
+        this.restart()
+    }
+
+    override choose(path: number): void {
+        const { lengths, paths } = this.begun
+        this.path = path
+        Object.assign(this.settings, { path: paths[path], length: lengths[path] })
+        this.note("path", paths[path])
+        this.restart()
+    }
+
+    /** Perform an action of a script or a link. */
+    act(act: Act): void {
+        const only = act.side ?? undefined
+        if (act.hold !== undefined) this.hold(act.hold, only)
+        else if (act.pull) this.pull(act.pull, only)
+        else if (act.release) this.pull(null)
+        else if (act.path !== undefined) this.choose(act.path)
+        else if (act.reset) this.reset()
+        else if (act.set) this.write(act.set, act.write ?? [])
+    }
+
+    record(): RunRecord {
+        const { times, happenings, run, settings } = this
+        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.different() }
+    }
+
+    private different(): string[] {
+        const given = { ...this.begun, path: this.begun.paths[0]! } as Record<string, unknown>
+        const compared = Object.keys(this.settings).filter(name => name !== "length")
+        return compared.filter(name => this.settings[name] !== given[name])
+    }
+
+    /** A quantity of both robots up to now. */
+    curve(quantity: string): { times: number[]; tracker: number[]; follower: number[] } {
+        const now = this.now()
+        const of = (robot: Robot) => [...(this.samples[robot][quantity] ?? []), now[robot][quantity] ?? 0]
+        return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }
+    }
+
+    private write(values: Record<string, number | string>, places: [number, number][]): void {
+        for (const [place, value] of places) {
+            this.written.set(place, value)
+            for (const side of this.sides) side.set(place, value)
+        }
+        for (const [name, value] of Object.entries(values)) {
+            this.settings[name] = value
+            const slider = this.data.names.indexOf(name)
+            if (slider >= 0) this.values[slider] = Number(value)
+            this.note("set", name)
+        }
+    }
+
+    /** Begin anew, with the settings as they are. */
+    private restart(): void {
+        this.run++
+        this.frame = 0
+        this.times = []
+        this.samples = this.nothing()
+        const kept = [...this.happenings]
+        super.reset() // this sets all sliders
+        this.happenings = kept
+        for (const [place, value] of this.written) for (const side of this.sides) side.set(place, value)
+        this.data.sliders.forEach(({ place }, i) => {
+            if (place >= 0) for (const side of this.sides) side.set(place, this.values[i]!)
+        })
+    }
+
+    private readonly at = (frame: number): number => Math.floor((frame * FRAME) / this.data.dt + 1e-9)
+    private note(name: string, detail = "", robots: Robot[] = ROBOTS): void {
+        this.happenings?.push({ run: this.run, time: this.time, name, detail, robots })
+    }
+
+    private isStopped(robot: Robot): boolean {
+        return this.happenings.some(each => each.name === "diverged" && each.run === this.run && each.robots.includes(robot))
+    }
+
+    private nothing(): Record<Robot, Record<string, number[]>> {
+        const empty = () => Object.fromEntries(this.data.quantities.map(name => [name, [] as number[]]))
+        return { tracker: empty(), follower: empty() }
+    }
+
+    private sample(): void {
+        const now = this.now()
+        this.times.push(this.time)
+        for (const robot of ROBOTS)
+            for (const name of this.data.quantities) this.samples[robot][name]!.push(now[robot][name]!)
+        if (this.times.length <= MOST) return
+        this.times.shift()
+        for (const robot of ROBOTS) for (const name of this.data.quantities) this.samples[robot][name]!.shift()
+    }
+
+    /** All quantities of both robots, in their units. */
+    private now(): Record<Robot, Record<string, number>> {
+        const reference = this.sides[0]!.reference()
+        const own = this.sides.map(side => {
+            const row = side.logged()
+            const of = (name: keyof SiteFigure["log"]) => row.subarray(this.data.log[name][0], this.data.log[name][0] + this.data.log[name][1])
+            const tip = side.tip()
+            const [deflection, energy] = this.data.quantities.includes("energy") ? side.measured() : [0, 0]
+            return {
+                distance: 1e3 * side.distance,
+                lag: 1e3 * Math.hypot(tip[0] - reference[0], tip[1] - reference[1]),
+                speed: 1e3 * of("speed")[0]!,
+                rate: of("theta_rate")[0]!,
+                place: of("theta")[0]!,
+                across: 1e3 * of("xi")[0]!,
+                across_rate: 1e3 * of("xi_rate")[0]!,
+                torque: Math.max(...of("u").map(Math.abs)),
+                force: Math.hypot(...of("force")),
+                deflection: 1e3 * deflection,
+                energy: 1e3 * energy,
+            }
+        })
+        return { tracker: own[0]!, follower: own[1]! }
+    }
+}

@@ -1,0 +1,145 @@
+// The live figure of a step, whose kernels are in a script that pages share.
+
+import { isTyped } from "./controls"
+import { Figure } from "./figure"
+import { Kernels } from "./kernels"
+import type { Act, Script, SiteFigure, StepData } from "./lesson_data"
+import { Recorded } from "./recorded"
+
+declare global {
+    interface Window {
+        onpathKernels: Record<string, string>
+    }
+}
+
+const NUDGE = 0.005 // [m], of a key, as in the lab
+
+/** The kernels in a script of the site. */
+export async function kernelsOf(name: string): Promise<Kernels> {
+    if (!window.onpathKernels[name]) {
+        const script = document.createElement("script")
+        script.src = `site/kernels/${name}.js`
+        await new Promise((done, failed) => {
+            script.addEventListener("load", done)
+            script.addEventListener("error", () => failed(new Error(`${script.src} was not loaded`)))
+            document.head.append(script)
+        })
+    }
+    return Kernels.from(window.onpathKernels[name]!)
+}
+
+export class Stage {
+    private readonly stop = new AbortController()
+    private pulled: [number, number] | null = null
+
+    private constructor(
+        readonly figure: Figure,
+        readonly simulation: Recorded,
+        private readonly into: HTMLElement,
+    ) {
+        if (simulation.data.controls.includes("pull")) this.keys()
+    }
+
+    /** Put a figure into the page. */
+    static async open(data: SiteFigure, values: StepData["values"], into: HTMLElement): Promise<Stage> {
+        const simulation = new Recorded(data, await kernelsOf(data.module), values)
+        const ended = new AbortController()
+        const stage = new Stage(new Figure(simulation, into, ended.signal, false), simulation, into)
+        stage.stop.signal.addEventListener("abort", () => ended.abort())
+        return stage
+    }
+
+    close(): void {
+        this.stop.abort()
+        this.into.replaceChildren()
+    }
+
+    /** Show on the robots what a symbol means; nothing if it is empty. */
+    light(symbol: string): void {
+        this.figure.light(symbol)
+    }
+
+    run(on: boolean): void {
+        this.figure.engine.act({ do: "run", on })
+    }
+
+    /** Perform a link's actions; sliders follow. */
+    act(acts: Act[]): void {
+        for (const act of acts) {
+            if (act.run !== undefined) this.run(act.run)
+            else this.simulation.act(act)
+            if (act.reset || act.path !== undefined) this.figure.changed()
+        }
+        this.sliders()
+    }
+
+    /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
+    play(script: Script, ended: (whole: boolean) => void): void {
+        const { simulation, figure } = this
+        const waiting = [...script.do].sort((a, b) => a[0] - b[0])
+        let before = 0 // simulated time before the last reset, [s]
+        simulation.setUp()
+        figure.changed()
+        this.sliders()
+        let { run } = simulation.record()
+        simulation.before = time => {
+            if (simulation.record().run !== run) {
+                this.cancel()
+                ended(false)
+                return true
+            }
+            while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
+                const [, act] = waiting.shift()!
+                if (act.rate) figure.engine.act({ do: "rate", rate: act.rate })
+                simulation.act(act)
+                if (simulation.record().run === run) continue
+                run = simulation.record().run
+                before += time
+                time = 0
+            }
+            if (before + time < script.until - 1e-9) return true
+            this.cancel()
+            this.run(false)
+            ended(true)
+            return false
+        }
+        this.run(true)
+    }
+
+    private cancel(): void {
+        this.simulation.before = () => true
+        this.figure.engine.act({ do: "rate", rate: 1 })
+    }
+
+    /** Show the values on the sliders. */
+    private sliders(): void {
+        this.into.querySelectorAll<HTMLInputElement>(".slider input").forEach((input, i) => {
+            const value = this.simulation.values[i]!
+            if (input.valueAsNumber === value) return
+            input.value = String(value)
+            input.dispatchEvent(new Event("told"))
+        })
+    }
+
+    /** The lab's keys: W, A, S, D pull a little further each time, X lets go. */
+    private keys(): void {
+        const ways: Record<string, [number, number]> = {
+            a: [-NUDGE, 0], d: [NUDGE, 0], w: [0, NUDGE], s: [0, -NUDGE],
+        }
+        const options = { capture: true, signal: this.stop.signal }
+        const own = (event: KeyboardEvent) => {
+            const key = event.key.toLowerCase()
+            return isTyped(event) || !(key in ways || key === "x") ? "" : key
+        }
+        addEventListener("keydown", event => {
+            const key = own(event)
+            if (!key) return
+            event.stopImmediatePropagation()
+            const way = ways[key]
+            this.pulled = way ? [(this.pulled?.[0] ?? 0) + way[0], (this.pulled?.[1] ?? 0) + way[1]] : null
+            this.simulation.pull(this.pulled)
+        }, options)
+        addEventListener("keyup", event => own(event) && event.stopImmediatePropagation(), options)
+        addEventListener("blur", () => (this.pulled = null), options)
+    }
+}

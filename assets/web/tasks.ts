@@ -1,0 +1,48 @@
+// The tasks of a step: how far they are done, looked at twice a second.
+
+import { made } from "./controls"
+import type { Verdict } from "./checks"
+import type { PageData, TaskData } from "./lesson_data"
+import { said } from "./words"
+import { general } from "./numbers"
+import type { Student } from "./student"
+
+export class Task {
+    private passedIn = -1 // number of the run
+    private shown = ""
+
+    constructor(
+        private readonly page: PageData,
+        private readonly element: HTMLElement,
+        private readonly data: TaskData,
+        private readonly student: Student,
+        private readonly passed: () => void,
+    ) {
+        this.show([])
+    }
+
+    follow(): void {
+        const before = this.student.notes.tasks[this.data.id]
+        const result = this.student.result(this.data)
+        if (!result) return
+        const passed = result.verdicts.every(verdict => verdict.passed)
+        if (passed || this.passedIn !== result.run) this.show(result.verdicts)
+        if (passed) this.passedIn = result.run
+        if (passed && before === undefined) this.passed()
+    }
+
+    private show(verdicts: Verdict[]): void {
+        const { page, element, data } = this
+        const best = this.student.notes.tasks[data.id]
+        const passed = best === undefined ? "" : data.best ? `: ${general(best, 3).replace(".", page.words["point"]!)}` : " "
+        const text = JSON.stringify([verdicts, passed])
+        if (text === this.shown) return
+        this.shown = text
+        const lines = verdicts.map(verdict => made("li", verdict.passed ? "right" : "", `${verdict.passed ? "✓" : "○"} ${verdict.words}`))
+        if (passed) lines.push(made("li", "right", `✓ ${said(page, "lesson.passed")}${passed.trim()}`))
+        element.querySelector(".verdicts")!.replaceChildren(...lines)
+        const why = element.querySelector<HTMLDetailsElement>(".after")
+        if (why) why.hidden = !passed
+        if (why && passed) why.open = true
+    }
+}
