@@ -18,6 +18,7 @@ from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
@@ -340,6 +341,7 @@ class RobotEntry:
         flexible_link: for a robot with parameters `law` and `alpha` and an extra "deflection"; None
             if all links are rigid.
         linkage: data for identification from a record of its motion, or None.
+        source: the chain of bodies that it is, as from a file, or None.
     """
 
     name: str
@@ -352,6 +354,7 @@ class RobotEntry:
     goes_on: tuple[str, ...] = ()
     caution: Callable[[Parameters], Message | None] = lambda _: None
     linkage: BalancedLinkage | None = None
+    source: ChainSource | None = None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""
