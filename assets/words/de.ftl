@@ -1376,6 +1376,7 @@ error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem ne
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
 error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
 error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+say-robots_of_then = Dieses Labor wurde mit Robotern aus Dateien gespeichert, die dieser Server nicht hat: { $names }. Es läuft ohne sie weiter; mit --robot und der Datei sind sie wieder da.
 say-laws_of_then = Dieses OnPath hat diese Gesetze oder Verstärkungen nicht, die mit diesem Labor gespeichert wurden: { $names }. Es läuft ohne sie weiter.
 say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
 say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen: { $reason }

@@ -1094,6 +1094,7 @@ error-database_tables_newer = its tables ({ $revision }) were made by a newer On
 error-database_newer = it has version { $version } and was made by a newer OnPath, which is needed here
 error-lab_newer = this lab was stored by a newer OnPath
 error-lab_unreadable = the stored state of this lab cannot be read
+say-robots_of_then = This lab was kept with robots from files that this server was not given: { $names }. It goes on without them; start the lab with --robot and the file to have them back.
 say-laws_of_then = This OnPath does not have these laws or gains, which were kept with this lab: { $names }. It goes on without them.
 say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }

@@ -91,7 +91,7 @@ class SpatialChainParameters(ChainParameters):
 
 def _posture_stiffness() -> float:
     return number(
-        25.0,
+        100.0,
         "1/s²",
         (0, 400, 1),
         "spring that pulls the joints home where that does not move the end-point; 0: none",
@@ -102,7 +102,7 @@ def _posture_stiffness() -> float:
 
 def _posture_damping() -> float:
     return number(
-        10.0,
+        20.0,
         "1/s",
         (0, 40, 0.5),
         "damper of the joints' motion that does not move the end-point; 0: none",

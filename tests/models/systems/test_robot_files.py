@@ -204,7 +204,7 @@ def test_without_a_posture_the_arm_falls_to_a_limit_while_its_tip_stays(tmp_path
     file = written(tmp_path, urdf("seven", SEVEN))
     entry = read_robot(file, Options(pose=POSES["seven"])).entry
     for gain in (0.0, 1.0):
-        gains = {"posture_stiffness": 25.0 * gain, "posture_damping": 10.0 * gain}
+        gains = {"posture_stiffness": 100.0 * gain, "posture_damping": 20.0 * gain}
         parameters = with_values(entry.parameters(), gains)
         robot, curve = entry.make(parameters), circle(RADIUS)
         kernel = kernel_of(robot, kind_of("path_following", parameters, curve))
