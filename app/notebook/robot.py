@@ -46,7 +46,10 @@ def robot(
         UserWarning: what is left out, such as a mesh that is not there.
 
     >>> import onpath
-    >>> arm = onpath.robot(onpath.examples() / "seven_axes.urdf", tip="tip")
+    >>> from onpath.assets import asset_path
+    >>> arm = onpath.robot(asset_path("robots/planar_arm.urdf"), tip="tip")
+    >>> arm.text
+    '3 joints, from planar_arm.urdf.'
     >>> run = onpath.simulate(arm, hold=(1, 2), duration=2)
     >>> bool(run.distance.max() < 0.01)
     True

@@ -35,6 +35,7 @@ from onpath.app.server.class_service import TEACHER_KEY, ClassService
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
+from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
@@ -359,6 +360,7 @@ def serve(
     store = LoopCache()
     if robot.source is not None:
         compile_loops(store, robot)
+        prepare_shapes(robot.source.chain)
     lab = LabServer(
         host,
         port,

@@ -942,6 +942,12 @@ machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spi
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
 
+machine-planar_arm-label = Ebener Dreigelenkarm
+machine-planar_arm-text = Drei Motoren in einer senkrechten Ebene: Einer mehr, als die Bahn braucht, hält eine Haltung.
+
+machine-seven_axes-label = Siebenachser
+machine-seven_axes-text = Sieben Motoren für eine Spitze im Raum: Vier mehr, als die Bahn braucht, halten eine Haltung.
+
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
@@ -1071,7 +1077,7 @@ parameter-error_weights-label = Fehler im Gewicht
 parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
 parameter-error_gravity-label = Fehler im Gewicht
-parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
+parameter-error_gravity-help = um so viel liegen die Gewichte im Modell des Reglers daneben
 
 parameter-error_M11-label = Fehler in M11
 parameter-error_M11-help = um so viel liegt M11, das Trägheitsmoment an Motor 1, im Modell des Reglers daneben
@@ -1094,6 +1100,12 @@ parameter-d-label = d
 parameter-d-help = Abstand dieser Ebene von der Hüfte, bei y2 = 0
 parameter-centre-label = Mitte y3
 parameter-centre-help = Höhe y3 der Mitte der Bahn
+parameter-posture_stiffness-label = Haltungsfeder
+parameter-posture_stiffness-help = Feder, die die Gelenke zur Ausgangsstellung zieht, soweit das die Spitze nicht bewegt; 0: keine
+
+parameter-posture_damping-label = Haltungsdämpfer
+parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
+
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
 

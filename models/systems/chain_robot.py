@@ -303,6 +303,7 @@ def chain_robot(source: ChainSource) -> Robot:
         frame=LevelPlane() if system.p == 3 else Plane(),
         drawing=_drawing(source),
         substeps=source.substeps,
+        chain=chain,
     )
 
 

@@ -188,6 +188,43 @@ def chain_frames(chain: Chain, q: ca.SX) -> ChainFrames:
     return frames
 
 
+def frame_poses(chain: Chain, q: ca.SX) -> tuple[ca.SX, ca.SX]:
+    """Where the frames of the bodies are, in the base's frame.
+
+    Returns:
+        Origins, (3, n), [m], and unit quaternions, scalar first, (4, n).
+    """
+    frames, turn = chain_frames(chain, q), ca.SX(ca.DM([1, 0, 0, 0]))
+    turns = list[ca.SX]()
+    for body, angle in zip(chain.bodies, ca.vertsplit(q), strict=True):
+        turn = _product(turn, ca.SX(_sparse(_quaternion(body.rotation))))
+        if not body.joint.slides:
+            about = ca.vertcat(ca.cos(angle / 2), 0, 0, ca.sin(angle / 2))
+            turn = _product(turn, about)
+        turns.append(turn)
+    return ca.densify(ca.horzcat(*frames.origins)), ca.densify(ca.horzcat(*turns))
+
+
+def _product(a: ca.SX, b: ca.SX) -> ca.SX:
+    """The product of quaternions: first the rotation b, then a."""
+    vector = a[0] * b[1:] + b[0] * a[1:] + ca.cross(a[1:], b[1:])
+    return ca.vertcat(a[0] * b[0] - ca.dot(a[1:], b[1:]), vector)
+
+
+def _quaternion(rotation: Array) -> Array:
+    """The unit quaternion of a rotation, scalar first: the eigenvector of Bar-Itzhack's matrix."""
+    k = np.zeros((4, 4))
+    k[0, 0] = np.trace(rotation)
+    k[1:, 1:] = rotation + rotation.T - np.trace(rotation) * np.eye(3)
+    k[0, 1:] = k[1:, 0] = [
+        rotation[2, 1] - rotation[1, 2],
+        rotation[0, 2] - rotation[2, 0],
+        rotation[1, 0] - rotation[0, 1],
+    ]
+    quaternion = np.linalg.eigh(k)[1][:, -1]
+    return np.where(np.abs(quaternion) < 1e-12, 0.0, quaternion)
+
+
 def tip_of(chain: Chain, frames: ChainFrames) -> ca.SX:
     """The end-point in the base's frame, (3, 1), [m]."""
     return frames.origins[-1] + frames.rotations[-1] @ _sparse(chain.tip)

@@ -18,7 +18,7 @@ from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.rigid_chain import ChainSource
+from onpath.models.systems.rigid_chain import Chain, ChainSource
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
@@ -83,6 +83,7 @@ class Robot:
         substeps: Runge-Kutta steps per tick.
         grip: the springs by which a hand, a brake and a wall act on its end-point.
         shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
+        chain: the bodies that it is made of, which are drawn; None: its bars are.
     """
 
     system: MechanicalSystem
@@ -100,6 +101,7 @@ class Robot:
     substeps: int = 1
     grip: Grip = _GRIP
     shared: Robot | None = None
+    chain: Chain | None = None
 
     @property
     def name(self) -> str:
