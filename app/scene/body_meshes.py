@@ -21,7 +21,7 @@ from onpath.models.systems.rigid_chain import Body, Chain, Shape, frame_poses
 MOST_TRIANGLES = 500_000  # of a mesh in a file
 DRAWN_TRIANGLES = 1_500  # of a body, if the mesh can be simplified
 MOST_DRAWN = 6_000  # of a body, if it cannot
-ROUND = 20  # points of a circle
+ROUND = 16  # points of a circle
 SHARP = np.radians(30.0)  # sharper edges are not smoothed
 THICKNESS = 0.045
 """Radius of a capsule, as a share of the robot's length."""
@@ -181,7 +181,8 @@ def _capsule(body: Body, end: Array, radius: float) -> Mesh:
     height = 3.5 * radius if slides else 2.4 * radius
     solids: list[Any] = [cylinder(radius if slides else 1.25 * radius, height, sections=ROUND)]
     if (length := float(np.linalg.norm(end))) > radius / 2:
-        rod: Any = capsule(height=length, radius=0.85 * radius, count=[ROUND, 8])
+        rod: Any = capsule(height=length, radius=0.85 * radius, count=[ROUND, 6])
+        rod.apply_translation([0, 0, length / 2])
         rod.apply_transform(_along(end / length))
         solids.append(rod)
     else:
@@ -199,9 +200,12 @@ def _foot(first: Array, radius: float) -> Mesh:
     plate.apply_translation([0, 0, radius / 4])
     solids, length = [plate], float(np.linalg.norm(first))
     if length > radius / 2:
-        rod: Any = capsule(height=length, radius=radius, count=[ROUND, 8])
+        rod: Any = capsule(height=length, radius=radius, count=[ROUND, 6])
+        rod.apply_translation([0, 0, length / 2])
         rod.apply_transform(_along(first / length))
-        solids.append(rod.slice_plane([0, 0, 0], [0, 0, 1], cap=False))
+        if first[2] >= 0:
+            rod.vertices[:, 2] = np.maximum(rod.vertices[:, 2], 0.0)
+        solids.append(rod)
     mesh = _joined(solids)
     assert mesh is not None
     return mesh

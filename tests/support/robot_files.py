@@ -19,7 +19,7 @@ from trimesh.util import concatenate
 from onpath.assets import asset_path
 
 Z = np.array([0.0, 0.0, 1.0])
-ROUND = 20  # points of a circle
+ROUND = 16  # points of a circle
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,8 @@ def bar(link: Link) -> Trimesh:
     """A rod with round ends from the joint to the end of the link."""
     end = np.array(link.end, dtype=float)
     length = float(np.linalg.norm(end))
-    solid = capsule(height=length, radius=link.radius, count=[ROUND, 10])
+    solid = capsule(height=length, radius=link.radius, count=[ROUND, 6])
+    solid.apply_translation([0, 0, length / 2])
     direction = end / length
     if abs(direction[2]) < 1:
         solid.apply_transform(rotation_matrix(np.pi / 2, np.cross(Z, direction)))
@@ -143,9 +144,9 @@ def foot(links: Sequence[Link]) -> Trimesh:
     """A plate on the floor and a column below the first joint."""
     first = links[0]
     height = first.at[2]
-    plate = cylinder(2.2 * first.radius, height=0.014, sections=32)
+    plate = cylinder(2.2 * first.radius, height=0.014, sections=2 * ROUND)
     plate.apply_translation([0, 0, 0.007])
-    column = cylinder(1.3 * first.radius, height=height, sections=32)
+    column = cylinder(1.3 * first.radius, height=height, sections=2 * ROUND)
     column.apply_translation([0, 0, height / 2])
     return concatenate([plate, column])
 
