@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
+    from onpath.app.notebook.robot import robot as robot
     from onpath.app.notebook.run import Run as Run
     from onpath.app.notebook.simulate import circle as circle
     from onpath.app.notebook.simulate import ellipse as ellipse
@@ -40,6 +41,7 @@ __all__ = (
     "laws",
     "parameters",
     "paths",
+    "robot",
     "robots",
     "segment",
     "simulate",
@@ -55,11 +57,11 @@ def __getattr__(name: str) -> Any:
     """Public names, imported when they are first used: `import onpath` alone is quick."""
     if name not in __all__:
         raise AttributeError(f"module 'onpath' has no attribute {name!r}")
-    if name == "figure":
-        globals()[name] = import_module("onpath.app.notebook.figure").figure
+    if name in ("figure", "robot"):
+        globals()[name] = getattr(import_module(f"onpath.app.notebook.{name}"), name)
         return globals()[name]
     module = import_module("onpath.app.notebook.simulate")
-    others = (each for each in __all__ if each != "figure")
+    others = (each for each in __all__ if each not in ("figure", "robot"))
     globals().update({each: getattr(module, each) for each in others})
     return globals()[name]
 

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import STOPPED, finite
 
@@ -28,7 +29,8 @@ class CompareCommand:
     """Compare control laws: the same robot, path, gains and obstructions for all of them."""
 
     robot: str = "five_bar"
-    """Name of the robot."""
+    """Name of the robot, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A law to compare, also one of your own in two lines: "across = …; along = …"; repeat for
     more. By default all that suit the robot."""
@@ -91,11 +93,12 @@ class CompareCommand:
         from onpath.models.systems.parameter_specs import unknown_name
         from onpath.models.systems.parameters import rise_of
 
-        if self.robot not in ROBOTS:
-            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        robot = self.file_options.name_of(self.robot)
+        if robot not in ROBOTS:
+            raise unknown_name(robot, list(ROBOTS), "robot")
         if not 0.005 <= self.radius <= 0.12:
             raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
-        entry = ROBOTS[self.robot]
+        entry = ROBOTS[robot]
         parameters = with_values(entry.parameters(), assignments(self.set))
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")

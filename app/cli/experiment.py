@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 
@@ -24,7 +25,8 @@ class ExperimentCommand:
     name: Annotated[str, tyro.conf.Positional]
     """position, obstruction or flexible (flexible link only)."""
     robot: str = ""
-    """Name of the robot; by default the paper's."""
+    """Name of the robot, or its URDF or MJCF file; by default the paper's."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
     """Laws to run: names with commas between, all, or both (trajectory_tracking and
     path_following); or a law of your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta -
@@ -60,7 +62,7 @@ class ExperimentCommand:
         from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
-        known = experiments(self.robot)
+        known = experiments(self.file_options.name_of(self.robot))
         if self.name not in known:
             raise unknown_name(self.name, list(known), what="experiment")
         check_plot(self.plot)

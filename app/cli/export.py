@@ -13,6 +13,7 @@ import tyro
 from onpath.app.cli.experiment import assignments, read_path
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,8 @@ class ExportFigure:
     file: Annotated[Path, tyro.conf.Positional]
     """The .html file to write."""
     robot: str = "five_bar"
-    """Name of the robot."""
+    """Name of the robot, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A control law; give it twice for two robots. By default tracking beside path following."""
     path: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -54,7 +56,7 @@ class ExportFigure:
             warnings.simplefilter("always", UserWarning)
             written = figure(
                 self.file,
-                robot=self.robot,
+                robot=self.file_options.name_of(self.robot),
                 laws=self.law or tuple(DEFAULT_LAWS.values()),
                 paths={_name(each): read_path(each) for each in self.path} or PATHS,
                 sliders=self.slider or None,

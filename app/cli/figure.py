@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from onpath.app.cli.experiment import assignments
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 
@@ -27,7 +28,8 @@ class FigureCommand:
     name: Annotated[str, tyro.conf.Positional]
     """2, 3, 5, 6 or 7; or rank, the rank test (11) over the workspace of a robot."""
     robot: str = ""
-    """Name of the robot, for rank; by default five_bar."""
+    """Name of the robot, or its URDF or MJCF file, for rank; by default five_bar."""
+    file_options: FileOptions = NO_OPTIONS
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter of the robot, for rank, as name=value; repeat for more."""
     plot: Path | None = None
@@ -68,7 +70,7 @@ class FigureCommand:
         from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
 
-        name = self.robot or FIVE_BAR.name
+        name = self.file_options.name_of(self.robot) or FIVE_BAR.name
         if name not in ROBOTS:
             raise unknown_name(name, list(ROBOTS), what="robot")
         entry = ROBOTS[name]

@@ -12,6 +12,8 @@ from urllib.parse import urlsplit
 
 import tyro
 
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
+
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
 
@@ -28,6 +30,9 @@ class Serve:
     """Port to listen on."""
     open: bool = False
     """Open the lab in the default browser."""
+    robot: str = "five_bar"
+    """Robot with which a lab begins: its name, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
@@ -84,13 +89,19 @@ class Serve:
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
 
+        robot = self.file_options.name_of(self.robot)
+        if robot not in ROBOTS:
+            raise unknown_name(robot, list(ROBOTS), "robot")
         try:
             serve(
                 self.host,
                 self.port,
                 self.lessons,
                 database_url(self.database),
+                robot=ROBOTS[robot],
                 open_browser=self.open and self.socket is None,
                 classrooms=self._classrooms(),
                 most_clients=self.most_clients,

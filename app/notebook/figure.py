@@ -19,13 +19,14 @@ from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import forecast_text, on_path
 from onpath.models.studies.unused import unused_text
+from onpath.models.systems.robots import RobotEntry
 
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
 
 def figure(
     file: str | Path,
-    robot: str = "five_bar",
+    robot: str | RobotEntry = "five_bar",
     laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
     paths: Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
     *,
@@ -43,7 +44,7 @@ def figure(
 
     Args:
         file: the file to write, such as "figure.html".
-        robot: one of `onpath.robots()`.
+        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
         laws: one or two of `onpath.laws()`, or laws of one's own.
         paths: paths to choose from, beginning with the first: names of `onpath.paths()`, texts or
             curves as for `onpath.simulate`, or a mapping from names to them.
@@ -85,10 +86,10 @@ def figure(
         choices = [choices]
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
-    given = by_declared_names(parameters, entry_named(robot), figure)
+    given = by_declared_names(parameters, entry := entry_named(robot), figure)
     values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
     choice = chosen(
-        robot,
+        entry.name,
         laws,
         paths=curves,
         values=values,

@@ -37,7 +37,7 @@ from onpath.models.systems.parameter_specs import Spec, unknown_name
 
 
 def simulate(
-    robot: str = "five_bar",
+    robot: str | RobotEntry = "five_bar",
     path: Curve | str = "circle",
     law: str = "path_following",
     *,
@@ -57,7 +57,7 @@ def simulate(
     """Simulate one robot under one control law, as `onpath experiment` does.
 
     Args:
-        robot: one of `onpath.robots()`.
+        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
         path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
             "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
             [m].
@@ -192,7 +192,7 @@ def _measured(design: PathDesign) -> str:
     return f"{shape}, {design.curve.length() * 1e3:.0f} mm{refused}"
 
 
-def parameters(robot: str = "five_bar") -> dict[str, str]:
+def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
     """Names of a robot's parameters with default, range and unit, or options, and description.
 
     Raises:
@@ -264,12 +264,14 @@ def through(points: ArrayLike, closed: bool = True) -> Curve:
     return curve
 
 
-def entry_named(robot: str) -> RobotEntry:
-    """The robot of this name.
+def entry_named(robot: str | RobotEntry) -> RobotEntry:
+    """The robot of this name, or the robot itself.
 
     Raises:
         ValueError: there is none; the message lists the nearest names.
     """
+    if isinstance(robot, RobotEntry):
+        return robot
     _check_name(robot, ROBOTS, "robot")
     return ROBOTS[robot]
 

@@ -135,6 +135,36 @@ class Bars:
         ]
 
 
+class Body:
+    """One moving body of all robots, as copies of its mesh.
+
+    Args:
+        number: of the body.
+        sides: of the robots.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        number: int,
+        mesh: meshes.Mesh,
+        sides: Sequence[str],
+        poses: Poses,
+    ) -> None:
+        self._rows = slice(number * len(sides), (number + 1) * len(sides))
+        tints = [palette.OF_SIDE[side] for side in sides]
+        colours = [tint.toward(palette.INK, 0.2) if number % 2 else tint for tint in tints]
+        inks = np.stack([colour.linear for colour in colours])
+        self.node = add_copies(scene, f"/bodies/{number}", mesh, poses["bodies"][self._rows], inks)
+
+    def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
+        """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
+        return [
+            (self.node, "batched_positions", poses.place("bodies", self._rows)),
+            (self.node, "batched_wxyzs", poses.place("attitudes", self._rows)),
+        ]
+
+
 class RobotNodes:
     """Nodes shared by all robots, to keep the number of messages small.
 
@@ -159,7 +189,12 @@ class RobotNodes:
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn = poses
-        self._bars = self._add_bars(scene, counts, poses)
+        bodies = [
+            Body(scene, number, mesh, list(bases), poses)
+            for number, mesh in enumerate(stage.bodies)
+        ]
+        self._bars = [] if bodies else self._add_bars(scene, counts, poses)
+        self._solids = [*(bars.node for bars in self._bars), *(body.node for body in bodies)]
         self._parts = self._add_parts(scene, poses)
         self._turns = np.tile(IDENTITY, (len(poses["turns"]), 1))
         self.grips = add_copies(
@@ -180,7 +215,7 @@ class RobotNodes:
         self._acting = False
         self._moving = NodeGroup(
             [
-                *(moving for bars in self._bars for moving in bars.properties(poses)),
+                *(moving for each in (*self._bars, *bodies) for moving in each.properties(poses)),
                 (self._parts, "batched_positions", poses.place("parts")),
                 (self.grips, "batched_positions", poses.place("tips")),
             ]
@@ -269,7 +304,7 @@ class RobotNodes:
     def hide(self, hidden: bool) -> None:
         """Hide all moving nodes except the forces, or show them again."""
         for node in (
-            *(bars.node for bars in self._bars),
+            *self._solids,
             self._parts,
             self.grips,
             self._traces,

@@ -68,6 +68,7 @@ class Stage:
         sheet: low and high corner (x, z), and y, of the sheet for a freehand stroke.
         motors: joints that are drawn as motors.
         parts: fixed parts, with colours.
+        bodies: shapes of the moving bodies; empty: bars and joints are drawn.
         tones: colours that depend on the background.
     """
 
@@ -89,6 +90,7 @@ class Stage:
     motors: tuple[int, ...]
     parts: Callable[[], list[tuple[str, Mesh, palette.Colour]]]
     tones: Tones = LIGHT
+    bodies: tuple[Mesh, ...] = ()
 
     @property
     def origins(self) -> np.ndarray:

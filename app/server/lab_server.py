@@ -37,8 +37,9 @@ from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.page_data import PageData
+from onpath.app.server.robot_shapes import prepare_shapes
 from onpath.app.server.tab_visibility import TabVisibilities
-from onpath.app.server.warm_up import warm_up
+from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
@@ -53,7 +54,7 @@ from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
-from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 log = logging.getLogger(__name__)
 DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
@@ -78,6 +79,7 @@ class LabServer:
         retention: how long labs are kept, and how many; defaults to that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
+        robot: with which a new lab begins.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -96,6 +98,7 @@ class LabServer:
         retention: Retention | None = None,
         hang_seconds: float = 0.0,
         privacy_url: str = "",
+        robot: RobotEntry = FIVE_BAR,
         **listening: Any,
     ) -> None:
         self._store, self._privacy_url = store, privacy_url
@@ -116,7 +119,7 @@ class LabServer:
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, robot))
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
@@ -127,7 +130,7 @@ class LabServer:
         self._dark = set[int]()  # clients that prefer dark pages
         self._newcomers = BuildQueue(self.server)
         self._tabs = TabVisibilities(self.server)
-        set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.parameters())))
+        set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()
@@ -339,6 +342,7 @@ def serve(
     database: str | None = None,
     open_browser: bool = False,
     classrooms: Sequence[Classroom] = (),
+    robot: RobotEntry = FIVE_BAR,
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -347,7 +351,7 @@ def serve(
         lessons: folder of the user's own lessons.
         database: URL of the database of labs; defaults to a file of the user's. If it is given, or
             if the server is behind a proxy, it must be usable; otherwise memory may replace it.
-        classrooms: see `LabServer`.
+        classrooms, robot: see `LabServer`. Loops of a robot from a file are compiled first.
         listening: further arguments of `LabServer`.
 
     Raises:
@@ -363,6 +367,9 @@ def serve(
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
+    if robot.source is not None:
+        compile_loops(store, robot)
+        prepare_shapes(robot.source.chain)
     lab = LabServer(
         host,
         port,
@@ -370,6 +377,7 @@ def serve(
         course=course,
         records=records,
         classrooms=classrooms,
+        robot=robot,
         **listening,
     )
     try:

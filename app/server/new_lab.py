@@ -8,12 +8,12 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 
 
-def new_lab(store: LoopCache, course: Course) -> Lab:
+def new_lab(store: LoopCache, course: Course, entry: RobotEntry = FIVE_BAR) -> Lab:
     """A lab whose robots all start slowly; lessons and files keep the usual speed."""
-    lab = Lab(store, course=course)
+    lab = Lab(store, entry, course)
     session = lab.session
     for name, entry in ROBOTS.items():
         session.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))

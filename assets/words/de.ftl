@@ -954,6 +954,12 @@ machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stang
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
 
+machine-planar_arm-label = Ebener Dreigelenkarm
+machine-planar_arm-text = Drei Motoren in einer senkrechten Ebene: Einer mehr, als die Bahn braucht, hält eine Haltung.
+
+machine-seven_axes-label = Siebenachser
+machine-seven_axes-text = Sieben Motoren für eine Spitze im Raum: Vier mehr, als die Bahn braucht, halten eine Haltung.
+
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
@@ -1083,7 +1089,7 @@ parameter-error_weights-label = Fehler im Gewicht
 parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
 parameter-error_gravity-label = Fehler im Gewicht
-parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
+parameter-error_gravity-help = um so viel liegen die Gewichte im Modell des Reglers daneben
 
 parameter-error_M11-label = Fehler in M11
 parameter-error_M11-help = um so viel liegt M11, das Trägheitsmoment an Motor 1, im Modell des Reglers daneben
@@ -1106,6 +1112,12 @@ parameter-d-label = d
 parameter-d-help = Abstand dieser Ebene von der Hüfte, bei y2 = 0
 parameter-centre-label = Mitte y3
 parameter-centre-help = Höhe y3 der Mitte der Bahn
+parameter-posture_stiffness-label = Haltungsfeder
+parameter-posture_stiffness-help = Feder, die die Gelenke zur Ausgangsstellung zieht, soweit das die Spitze nicht bewegt; 0: keine
+
+parameter-posture_damping-label = Haltungsdämpfer
+parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
+
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
 
@@ -1234,6 +1246,8 @@ stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist di
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
 stop-limit = der Roboter ist nahe an einer singulären Stellung oder am Ende eines Gelenkwegs: Seine Motoren können die Spitze nicht in jede Richtung bewegen
+stop-joint = das Gelenk { $joint } hat seine Grenze von { $limit } überschritten
+stop-joints = ein Gelenk hat seine Grenze überschritten
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
@@ -1244,7 +1258,7 @@ forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne
 forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der Bahn bleibt, wächst die Bewegung der Koordinaten ohne Motor, anfangs alle { $time } s auf das Zehnfache (Exponent { $rate } 1/s)
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
-cause-limit = die Motoren waren an ihrer Grenze von { $limit } N m (anheben oder langsamer fahren)
+cause-limit = die Motoren waren an ihrer Grenze von { $limit } { $unit } (anheben oder langsamer fahren)
 cause-force = eine Kraft von { $force } N wirkte auf ihn
 cause-far = er war dort, wo auf den nächsten Punkt kein Verlass ist
 cause-turned = er drehte sich in einem Regelintervall um { $turned } rad (ein schnellerer Regler hilft)
@@ -1401,6 +1415,7 @@ error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem ne
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
 error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
 error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+say-robots_of_then = Dieses Labor wurde mit Robotern aus Dateien gespeichert, die dieser Server nicht hat: { $names }. Es läuft ohne sie weiter; mit --robot und der Datei sind sie wieder da.
 say-laws_of_then = Dieses OnPath hat diese Gesetze oder Verstärkungen nicht, die mit diesem Labor gespeichert wurden: { $names }. Es läuft ohne sie weiter.
 say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
 say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen: { $reason }
@@ -1528,3 +1543,65 @@ site-control-direction = die Richtung des Festhaltens
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn
+
+## Roboter aus Dateien
+
+robot_file-at = { $file }, Zeile { $line }, { $element }: { $reason }
+robot_file-absent = { $file }: Diese Datei gibt es nicht
+robot_file-unreadable = { $file } lässt sich nicht lesen: { $reason }
+robot_file-size = { $file } ist größer als { $most }
+robot_file-elements = mehr als { $most } Elemente oder mehr als { $deepest } ineinander
+robot_file-doctype = ein Dokumenttyp wird nicht angenommen, weil er Entities definieren kann: Löschen Sie ihn
+robot_file-xml = das ist kein XML: { $reason }
+robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
+robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
+robot_file-without = { $what } fehlt
+robot_file-name = { $key } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-numbers = { $key } { $value }: erwartet { $count ->
+    [one] wird eine Zahl
+   *[other] werden { $count } Zahlen
+ }
+robot_file-large = { $key } { $value }: Die Zahl ist zu groß
+robot_file-no_link = ein Glied { $name } gibt es nicht
+robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
+robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
+robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
+robot_file-twice = den Namen gibt es schon in Zeile { $line }
+robot_file-many = mehr als { $most } davon
+robot_file-joints = mehr als { $most } Gelenke bewegen sich auf dem Weg zur Spitze: Sperren Sie einige
+robot_file-type = unbekannter Typ { $type }
+robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
+robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
+robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
+robot_file-mass = die Masse { $value } ist negativ
+robot_file-inertia = kein Körper hat diese Trägheit: Ein Trägheitsmoment um irgendeine Achse ist negativ
+robot_file-negative = { $key } ist negativ
+robot_file-limits = die untere Grenze { $low } liegt über der oberen { $high }
+robot_file-axis = eine Achse braucht eine Richtung
+robot_file-shape = eine Form braucht positive Maße unter 100 m
+robot_file-still_tip = die Spitze bewegt sich nicht: Kein Gelenk auf dem Weg zu ihr tut es
+robot_file-no_tip = ein Glied { $tip } gibt es nicht, aber { $names }
+robot_file-which_tip = welches Glied ist die Spitze? Nennen Sie eines mit --tip (in Python tip=…): { $names }
+robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }
+robot_file-pose = { $joint }: { $value } ist keine Stellung
+robot_file-pose_outside = { $joint }: { $value } liegt nicht zwischen den Grenzen { $low } und { $high }
+robot_file-armature = ein Läufer-Trägheitsmoment von { $value } kg m²: erwartet wird 0 bis { $most }
+robot_file-few_joints = { $count ->
+    [one] ein Gelenk bewegt
+   *[other] { $count } Gelenke bewegen
+ } sich auf dem Weg zur Spitze: Nötig sind mindestens { $needed }
+robot_file-no_pose = keine Stellung gefunden, in der die Spitze vor dem Fuß ist und sich in alle Richtungen bewegen kann: Geben Sie eine mit --pose an
+robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose an
+robot_file-circle = aus dieser Stellung sind Kreise bis { $circle } mm möglich, und Bahnen brauchen { $least } mm: Geben Sie eine andere mit --pose an
+robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Trägheit: Geben Sie mit --armature die Trägheit der Motoren an
+robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
+robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
+robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-same_name = { $name } heißt schon ein anderer Roboter
+robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
+robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen
+robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
+robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
+robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
+robot_file-left_out = weggelassen: { $parts }

@@ -940,6 +940,8 @@ stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
 stop-limit = the robot is close to a singular configuration or to the end of a joint's travel: its motors cannot move the end-point in every direction
+stop-joint = the joint { $joint } has passed its limit of { $limit }
+stop-joints = a joint has passed its limit
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong
@@ -950,7 +952,7 @@ forecast-no_rest = the robot cannot rest at the start: its coordinates without a
 forecast-unstable = the zero dynamics are unstable: while the output stays on the path, the motion of the coordinates without a motor grows, at first tenfold every { $time } s (exponent { $rate } 1/s)
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
-cause-limit = the motors were at their limit of { $limit } N m (raise it, or lower the speed)
+cause-limit = the motors were at their limit of { $limit } { $unit } (raise it, or lower the speed)
 cause-force = a force of { $force } N acted on it
 cause-far = it was at a place where the closest point is unreliable
 cause-turned = it turned by { $turned } rad in a control interval (a faster controller helps)
@@ -1099,6 +1101,7 @@ error-database_tables_newer = its tables ({ $revision }) were made by a newer On
 error-database_newer = it has version { $version } and was made by a newer OnPath, which is needed here
 error-lab_newer = this lab was stored by a newer OnPath
 error-lab_unreadable = the stored state of this lab cannot be read
+say-robots_of_then = This lab was kept with robots from files that this server was not given: { $names }. It goes on without them; start the lab with --robot and the file to have them back.
 say-laws_of_then = This OnPath does not have these laws or gains, which were kept with this lab: { $names }. It goes on without them.
 say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
@@ -1226,3 +1229,65 @@ site-control-direction = the direction of the hold
 site-control-wall = the wall
 site-control-start = the start beside the path
 site-control-path = the choice of the path
+
+## Robots from files
+
+robot_file-at = { $file }, line { $line }, { $element }: { $reason }
+robot_file-absent = { $file }: there is no such file
+robot_file-unreadable = { $file } cannot be read: { $reason }
+robot_file-size = { $file } is larger than { $most }
+robot_file-elements = more than { $most } elements, or more than { $deepest } within each other
+robot_file-doctype = a document type is not accepted, because it can define entities: delete it
+robot_file-xml = this is not XML: { $reason }
+robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
+robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
+robot_file-without = { $what } is missing
+robot_file-name = { $key } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-numbers = { $key } { $value }: expected { $count ->
+    [one] a number
+   *[other] { $count } numbers
+ }
+robot_file-large = { $key } { $value }: too large a number
+robot_file-no_link = there is no link { $name }
+robot_file-two_parents = the link { $name } already hangs on the joint { $other }
+robot_file-loop = the links form a loop: only trees of links can be simulated
+robot_file-apart = no joint leads here from { $name }: all links of a robot hang together
+robot_file-twice = the name already exists in line { $line }
+robot_file-many = more than { $most } of them
+robot_file-joints = more than { $most } joints move on the way to the tip: lock some
+robot_file-type = unknown type { $type }
+robot_file-free = a { $type } joint on the way to the tip: lock it
+robot_file-mimic = a joint that follows another on the way to the tip: lock it
+robot_file-outside = { $value } is outside of the limits from { $low } to { $high }
+robot_file-mass = the mass { $value } is negative
+robot_file-inertia = no body has this inertia: a moment of inertia about some axis is negative
+robot_file-negative = { $key } is negative
+robot_file-limits = the lower limit { $low } is above the upper limit { $high }
+robot_file-axis = an axis needs a direction
+robot_file-shape = a shape needs positive sizes below 100 m
+robot_file-still_tip = the tip does not move: no joint on the way to it does
+robot_file-no_tip = there is no link { $tip }: there are { $names }
+robot_file-which_tip = which link is the tip? Name one with --tip (in Python, tip=…): { $names }
+robot_file-no_joint = there is no joint { $joint }: there are { $names }
+robot_file-pose = { $joint }: { $value } is not a position
+robot_file-pose_outside = { $joint }: { $value } is not between its limits { $low } and { $high }
+robot_file-armature = an armature of { $value } kg m²: expected 0 to { $most }
+robot_file-few_joints = { $count ->
+    [one] one joint moves
+   *[other] { $count } joints move
+ } on the way to the tip: at least { $needed } are needed
+robot_file-no_pose = no pose was found in which the tip is in front of the base and can move in all directions: give one with --pose
+robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose
+robot_file-circle = from this pose, circles of up to { $circle } mm can be followed, and paths need { $least } mm: give another one with --pose
+robot_file-massless = what the joint { $joint } moves has no mass or inertia: add an armature with --armature
+robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² are enough, --armature { $armature }
+robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
+robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
+robot_file-same_name = { $name } is the name of another robot
+robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
+robot_file-still = the joint { $joint } has no travel between its limits, and stays still
+robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
+robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER)
+robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
+robot_file-refused = <{ $element }> would read other files or run code: leave it out
+robot_file-left_out = left out: { $parts }

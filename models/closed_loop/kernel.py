@@ -205,7 +205,7 @@ def _advance(
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = commanded(law, view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
-    fresh, acts, saturated = held_torque(kind, state, settings, wanted)
+    fresh, acts, saturated = held_torque(system, kind, state, settings, wanted)
     drive = driven(kind, state, settings, fresh, acts)
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
     summed = _integral(kind, law, state, settings, acts, saturated, command)
@@ -253,7 +253,8 @@ def _wanted(
         along, direction = part.command, part.direction
         base = torque(acceleration - direction * along)
         slope = torque(acceleration - direction * (along - 1)) - base
-        reduced = admissible_along(base, slope, along, settings["torque_limit"])
+        limits = view.system.torque_limits(settings["torque_limit"])
+        reduced = admissible_along(base, slope, along, limits)
         acceleration = acceleration + direction * (reduced - along)
     return torque(acceleration), memory
 

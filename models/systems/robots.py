@@ -18,6 +18,7 @@ from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.rigid_chain import Chain, ChainSource
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
@@ -82,6 +83,7 @@ class Robot:
         substeps: Runge-Kutta steps per tick.
         grip: the springs by which a hand, a brake and a wall act on its end-point.
         shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
+        chain: the bodies that it is made of, which are drawn; None: its bars are.
     """
 
     system: MechanicalSystem
@@ -99,6 +101,7 @@ class Robot:
     substeps: int = 1
     grip: Grip = _GRIP
     shared: Robot | None = None
+    chain: Chain | None = None
 
     @property
     def name(self) -> str:
@@ -340,6 +343,7 @@ class RobotEntry:
         flexible_link: for a robot with parameters `law` and `alpha` and an extra "deflection"; None
             if all links are rigid.
         linkage: data for identification from a record of its motion, or None.
+        source: the chain of bodies that it is, as from a file, or None.
     """
 
     name: str
@@ -352,6 +356,7 @@ class RobotEntry:
     goes_on: tuple[str, ...] = ()
     caution: Callable[[Parameters], Message | None] = lambda _: None
     linkage: BalancedLinkage | None = None
+    source: ChainSource | None = None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""

@@ -121,6 +121,11 @@ class LoopCache:
             if self._pool is not None and not known and self._waiting.ask(key):
                 self._pool.submit(self._compile_next)
 
+    def make(self, robot: Robot, kind: Kind) -> None:
+        """Compile a loop of a registry's law now."""
+        self._share((robot.core, kind), translate_loop(kernel_of(robot, kind)))
+        prepare_speed_limit(robot)
+
     def close(self) -> None:
         """Cancel pending compilations."""
         with self._lock:

@@ -23,6 +23,8 @@ class PoseShapes(NamedTuple):
         quaternions: orientations of the link meshes, scalar first.
         parts: positions of bearings, pen, two marker discs and further points, [m].
         tips: drawn end-point, [m].
+        bodies: origins of the frames of moving bodies, [m].
+        attitudes: their orientations, scalar first.
         lengths: of the bars, [m].
         turns: rotations of the parts about the vertical axis, scalar first.
         forces: on the end-point, [N].
@@ -32,6 +34,8 @@ class PoseShapes(NamedTuple):
     quaternions: tuple[int, ...]
     parts: tuple[int, ...]
     tips: tuple[int, ...]
+    bodies: tuple[int, ...]
+    attitudes: tuple[int, ...]
     lengths: tuple[int, ...]
     turns: tuple[int, ...]
     forces: tuple[int, ...]
@@ -39,12 +43,16 @@ class PoseShapes(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Numbers of parts of a robot; the last `strip` bars are pieces of one flexible strip."""
+    """Numbers of parts of a robot; the last `strip` bars are pieces of one flexible strip.
+
+    A robot with bodies is drawn by these instead of its bars.
+    """
 
     bars: int
     joints: int
     marks: int
     strip: int = 0
+    bodies: int = 0
 
     @property
     def links(self) -> int:
@@ -70,6 +78,8 @@ class Counts:
             quaternions=(bars, 4),
             parts=(parts, 3),
             tips=(1, 3),
+            bodies=(self.bodies, 3),
+            attitudes=(self.bodies, 4),
             lengths=(bars,),
             turns=(parts, 4),
             forces=(1, 3),
