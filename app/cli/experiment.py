@@ -54,6 +54,7 @@ class ExperimentCommand:
             experiments,
             forecast_text,
             never_held,
+            path_remark,
             run,
             summary,
         )
@@ -72,7 +73,8 @@ class ExperimentCommand:
         times = {} if self.profile is None else {"profile": self.profile}
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
-        for text in (unused_text(chosen, laws, given), forecast_text(chosen, laws)):
+        remark = path_remark(chosen.curve())
+        for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
         runs = [run(chosen, name) for name in laws]

@@ -25,7 +25,6 @@ from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.control.settable import specs, values_of
 from onpath.models.errors import CodedError
 from onpath.models.paths import curves
-from onpath.models.paths.curve_faults import own_faults
 from onpath.models.paths.curve_fit import deviation_remark, fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
@@ -96,9 +95,9 @@ def simulate(
             start.
 
     Warns:
-        UserWarning: a parameter that is given, but has no effect in this run, such as K4 with
-            task="speed"; or what is foreseen for a robot with fewer motors than coordinates, such
-            as unstable zero dynamics.
+        UserWarning: a path that crosses itself; a parameter that is given, but has no effect in
+            this run, such as K4 with task="speed"; or what is foreseen for a robot with fewer
+            motors than coordinates, such as unstable zero dynamics.
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -144,6 +143,7 @@ def simulate(
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, law))
     remarks = (
+        experiments.path_remark(chosen.curve()),
         unused_text(chosen, [law], given),
         experiments.forecast_text(chosen, [law]),
         experiments.never_held(chosen, run.trajectory),
@@ -175,21 +175,22 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the preset paths with the length of each, and why it is refused, if it is.
+    """Names of the preset paths with the length of each, and what to know about it.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
     'closed, 314 mm'
     >>> onpath.paths()["figure of eight"]
-    'closed, 429 mm, refused: the path crosses itself: at a crossing it has two directions'
+    'closed, 429 mm; the path crosses itself: at the crossing, the closest point is not unique'
     """
     return {name: _measured(design) for name, design in presets().items()}
 
 
 def _measured(design: PathDesign) -> str:
     shape = "closed" if design.curve.closed else "open"
-    refused = "".join(f", refused: {fault.reason}" for fault in own_faults(design.curve))
-    return f"{shape}, {design.curve.length() * 1e3:.0f} mm{refused}"
+    remark = experiments.path_remark(design.curve)
+    length = f"{shape}, {design.curve.length() * 1e3:.0f} mm"
+    return f"{length}; {remark}" if remark else length
 
 
 def parameters(robot: str = "five_bar") -> dict[str, str]:

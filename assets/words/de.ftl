@@ -575,6 +575,7 @@ design-path = Bahn
 design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um sie zu verbiegen.
 design-own = eine eigene Bahn
 design-refused = { $path } (wird abgelehnt)
+design-ambiguous = { $path } (kreuzt sich)
 design-draw = Freihändig zeichnen
 design-draw_hint = Zeichne dann mit der Maus oder dem Finger einen Strich um einen der Roboter. Endet er nahe an seinem Anfang, ist die Bahn geschlossen. Noch einmal drücken beendet das Zeichnen.
 design-edit = Ändern
@@ -842,6 +843,7 @@ say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurück
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam.
 say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-ambiguous = Hinweis: { $reasons }. Diese Gesetze bleiben auf dem Strang, auf dem sie sind; eines, das auf der ganzen Bahn sucht, könnte auf den anderen springen.
 say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
@@ -1197,7 +1199,7 @@ fault-outside = die Bahn verlässt den Arbeitsraum: Dorthin reicht der Arm nicht
 fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der Arm gestreckt oder gefaltet und kann sich nicht in jede Richtung bewegen
 fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt in ihrer Nähe nicht eindeutig
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
-fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
+fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung ist der nächste Bahnpunkt nicht eindeutig
 fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinander: Dazwischen ist der nächste Punkt nicht eindeutig
 
 ## Warum ein Roboter stehen geblieben ist (`fault` der Modelle)
@@ -1246,6 +1248,7 @@ error-implicit_lines =
     }
 error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: Sie läge bis zu { $apart } mm daneben
 error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen, und auf der Kommandozeile Bahnen mit einer Gleichung
+error-level_set_crosses = diese Bahn kreuzt sich selbst: An der Kreuzung hat eine Niveaumenge s(y) keinen Gradienten; folge der Bahn nach ihrem Abstand
 error-level_no_polynomial = mit der Niveaumenge lässt sich einer Bahn nur folgen, wenn ihre Gleichung ein Polynom in z1 und z2 ist; mit dem Abstand jeder Bahn mit einer Gleichung
 error-level_gradient = mit dieser Niveaumenge lässt sich der Bahn nicht folgen: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }

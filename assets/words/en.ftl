@@ -523,6 +523,7 @@ design-path = Path
 design-path_hint = Both robots follow it. Drag its points in the scene to bend it.
 design-own = a path of your own
 design-refused = { $path } (is refused)
+design-ambiguous = { $path } (crosses itself)
 design-draw = Draw freehand
 design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to cancel.
 design-edit = Edit
@@ -845,6 +846,7 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the r
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
 say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-ambiguous = Note: { $reasons }. These laws go on along the strand on which they are; one that searched the whole path might jump to the other.
 say-deviates = The path is smooth: at some places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
@@ -923,7 +925,7 @@ fault-outside = the path leaves the workspace: the arm cannot reach there
 fault-singular = the path comes too near a singular configuration: there the arm is stretched or folded and cannot move in every direction
 fault-bends = the path bends too sharply: a bend needs a radius of at least { $radius } mm, otherwise the closest point on it is not unique nearby
 fault-cusp = the path has a cusp, where it has no direction
-fault-crosses = the path crosses itself: at a crossing it has two directions
+fault-crosses = the path crosses itself: at the crossing, the closest point is not unique
 fault-narrow = two strands of the path are closer to each other than { $least } mm: between them the closest point is not unique
 
 ## Why a robot has stopped (the models' `fault`)
@@ -972,6 +974,7 @@ error-implicit_lines =
     }
 error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
 error-no_level_set = this path has no level set s(y): only circles and ellipses have one here, and on the command line paths with an equation
+error-level_set_crosses = this path crosses itself: at the crossing, a level set s(y) has no gradient; follow the path by its distance
 error-level_no_polynomial = only a polynomial of z1 and z2 is followed by its level set; any path with an equation is followed by its distance
 error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s no longer points away from it, and the tube around the path is { $tube } mm wide
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }

@@ -184,7 +184,7 @@ class Presets(Mapping[str, PathDesign]):
 def presets(radius: float = 0.05) -> Presets:
     """The predefined paths by name.
 
-    The figure of eight intersects itself, to show how a path is refused.
+    The figure of eight crosses itself: its users are warned, see models/paths/path_checks.py.
 
     Args:
         radius: of the circle, [m]; the ellipse and the rounded square scale with it.
@@ -195,7 +195,7 @@ def presets(radius: float = 0.05) -> Presets:
         ("rounded square", partial(_rounded_square, radius), 12),
         ("clover", _clover, 16),
         ("segment", partial(segment, (-0.06, -0.02), (0.06, 0.03)), 2),
-        ("figure of eight", _figure_eight, 12),
+        ("figure of eight", _figure_eight, 16),
     )
     return Presets({name: partial(_designed, name, make, count) for name, make, count in designs})
 

@@ -31,7 +31,7 @@ from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
 from onpath.models.errors import Message
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import Curve, circle
 from onpath.models.studies import schedule as schedules
 from onpath.models.studies.schedule import Schedule
@@ -152,6 +152,12 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
     if faults:
         reasons = "; ".join(str(fault.reason) for fault in faults)
         raise ValueError(f"{name}: {reasons}" if name else reasons)
+
+
+def path_remark(path: Curve) -> str:
+    """A warning of the places where the closest point on a path is not unique; empty if there are
+    none."""
+    return "; ".join(str(each.reason) for each in ambiguities(path))
 
 
 def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,8 +11,10 @@ from typing_extensions import override
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.commands.time import StepOnce
 from onpath.app.lab.lab import Command, Lab
+from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import Fault, ambiguities
 from onpath.models.paths.curve_fit import deviation_remark
 from onpath.models.paths.path_design import PathDesign, drawn
 from onpath.models.systems.parameter_specs import unknown_name
@@ -204,7 +207,7 @@ def finish(lab: Lab) -> None:
 
 
 def _end(lab: Lab, key: str) -> None:
-    """Keep an edit, and show the message of a key if it has faults."""
+    """Keep an edit. If it has faults, show the message of a key; else warn of ambiguities."""
     editor, words = lab.session.editor, lab.words
     before = editor.design
     editor.finish()
@@ -213,8 +216,13 @@ def _end(lab: Lab, key: str) -> None:
     lab.clear_message()
     lab.return_to_present()
     if editor.faults:
-        reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
-        lab.show_message(words(key, reasons=reasons), "warning")
+        lab.show_message(words(key, reasons=_reasons(words, editor.faults)), "warning")
+    elif editor.design is not before and (found := ambiguities(editor.blend.target)):
+        lab.show_message(words("say.ambiguous", reasons=_reasons(words, found)), "warning")
+
+
+def _reasons(words: Words, faults: Iterable[Fault]) -> str:
+    return "; ".join(words.sentence(fault.reason) for fault in faults)
 
 
 def _selected(lab: Lab) -> int:

@@ -22,7 +22,7 @@ from onpath.app.page.panels.widgets import (
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
 from onpath.models.control.settable import specs
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
@@ -37,8 +37,9 @@ class PathChoice:
         if isinstance(robot_of(first).frame, SlantedPlane):
             self._shown["circle"] = words("design.slanted_circle")
         self._custom = words("design.own")
-        for name in refused_presets(robot_of(first)):
-            self._shown[name] = words("design.refused", path=self._shown[name])
+        for name in presets():
+            if key := remark_on(name, robot_of(first)):
+                self._shown[name] = words(key, path=self._shown[name])
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
@@ -67,10 +68,12 @@ class PathChoice:
 
 
 @lru_cache(maxsize=64)
-def refused_presets(robot: Robot) -> frozenset[str]:
-    """Names of the presets that are refused, such as one that crosses itself."""
-    designs = presets().items()
-    return frozenset(name for name, design in designs if curve_faults(robot.margin, design.curve))
+def remark_on(preset: str, robot: Robot) -> str:
+    """Key of the words for a preset that is refused or crosses itself; empty for others."""
+    curve = presets()[preset].curve
+    if curve_faults(robot.margin, curve):
+        return "design.refused"
+    return "design.ambiguous" if ambiguities(curve) else ""
 
 
 class PathPanel:

@@ -272,7 +272,7 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experiment", "obstruction", "--path", "elipse"], "did you mean ellipse"),
         (["experiment", "obstruction", "--path", "circle 1 2"], "circle RADIUS [Z1 Z2]"),
         (["experiment", "obstruction", "--path", "@no.json"], "no.json: No such file"),
-        (["experiment", "obstruction", "--path", "figure of eight"], "crosses itself"),
+        (["experiment", "obstruction", "--path", "circle 0.3"], "leaves the workspace"),
         (["experiment", "obstruction", "--profile", "0:0, 1:99"], "between -20 and 20 rad/s"),
         (["experiment", "obstruction", "--set", "hold_direction=up"], "along, across, both"),
         (["experimnt"], "experiment"),
