@@ -1403,7 +1403,7 @@ standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschalte
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 
-## Der Kurs als statische Seiten: assets/site, app/exports/site
+## Der Kurs als statische Seiten: assets/web, app/exports/site
 
 site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.

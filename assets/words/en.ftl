@@ -1121,7 +1121,7 @@ standalone-no_script = This figure needs JavaScript, which is switched off here 
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
 
-## The course as a static site: assets/site, app/exports/site
+## The course as a static site: assets/web, app/exports/site
 
 site-title = OnPath: path following is not trajectory tracking
 site-intro = Two robots draw the same path. One follows a timetable, the other a curve: see what happens when they are held back. In the course you predict, try, see and understand; everything runs in this page.

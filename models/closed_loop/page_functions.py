@@ -36,8 +36,9 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         tip: q -> y of the actual end-point
         place: y -> its position in the picture, (2, 1)
         arrow: (y, force on it) -> the end of the arrow in the picture
-        aim: (table, θ) -> σ(θ) in the picture
-        distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m]
+        at: (table, θ) -> y of σ(θ)
+        distance: (table, grid, y, guess of θ) -> Euclidean distance to the path, [m], followed by
+            the closest point, (1 + p, 1)
         brake: (table, y, θ) -> the unit tangent at θ, (p, 1), see `brake_at`
         fault: (q, v, θ_r) -> 0, or the number of the reason why a run has stopped: its position
             in `stop_reasons`, counted from 1
@@ -59,7 +60,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         "tip": ca.Function("tip", [q], [_dense(_unplaced(robot, tip))]),
         "place": place,
         "arrow": ca.Function("arrow", [y, force], [place(y + robot.drawing.force_scale * force)]),
-        "aim": ca.Function("aim", [table, theta], [place(lift(local.sigma, False))]),
+        "at": ca.Function("at", [table, theta], [_dense(lift(local.sigma, False))]),
         "distance": _distance(kind, lift, table, y),
         "brake": ca.Function("brake", [table, y, theta], [tangent / _length(tangent)]),
         "fault": _fault(robot),
@@ -96,6 +97,18 @@ def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
     return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
 
 
+def front_of(robot: Robot) -> Array:
+    """Two directions of the output space, (2, p), that span the plane of the path.
+
+    They have length 1, are at right angles, and look most like right and up in the picture.
+    """
+    seen = view_of(robot)[0].full() @ robot.axes.T
+    home = robot.frame.lift(np.zeros(2))
+    plane = np.linalg.qr((robot.frame.lift(np.eye(2)) - home).T)[0]
+    left, _, right = np.linalg.svd(seen @ plane)
+    return left @ right @ plane.T
+
+
 def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
     """A vector of the output space in the picture."""
     return ca.densify((seen @ ca.DM(robot.axes.T)) @ vector)
@@ -115,7 +128,7 @@ def lift_of(robot: Robot, kind: Kind) -> Lift:
 
 
 def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
-    """The smaller of the distances found from the guess and from the grid."""
+    """The smaller of the distances found from the guess and from the grid, and its point."""
     grid, guess = ca.SX.sym("grid", y.numel(), GRID), ca.SX.sym("guess")
     span = 2 * np.pi / (GRID if kind.closed else GRID - 1)
     squared = ca.sum1((grid - y @ ca.DM.ones(1, GRID)) ** 2)
@@ -124,22 +137,25 @@ def _distance(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX) -> ca.Function:
         nearest = ca.if_else(squared[i] < best, -np.pi + i * span, nearest)
         best = ca.fmin(best, squared[i])
     improve = partial(_improved, kind, lift, table, y)
-    found = ca.fmin(improve(guess), improve(nearest))
+    found = [improve(guess), improve(nearest)]
     if not kind.closed:
-        for end in (-np.pi, np.pi):
-            found = ca.fmin(found, _beyond(lift, table, y, end))
-    return ca.Function("distance", [table, grid, y, guess], ca.cse([found]))
+        found += [_beyond(lift, table, y, end) for end in (-np.pi, np.pi)]
+    closest = found[0]
+    for other in found[1:]:
+        closest = ca.if_else(_length(other - y) < _length(closest - y), other, closest)
+    both = ca.vertcat(_length(closest - y), closest)
+    return ca.Function("distance", [table, grid, y, guess], ca.cse([both]))
 
 
 def _beyond(lift: Lift, table: ca.SX, y: ca.SX, end: float) -> ca.SX:
-    """Distance to the half-line by which an open curve continues beyond an end."""
+    """The closest point of the half-line by which an open curve continues beyond an end."""
     local = LocalCurve.from_values(ca.SX(end), False, table @ basis(ca.SX(end), False))
-    gap, away = y - lift(local.sigma, False), np.sign(end) * lift(local.first, True)
-    return _length(gap - ca.fmax(ca.dot(gap, away), 0) / ca.dot(away, away) * away)
+    tip, away = lift(local.sigma, False), np.sign(end) * lift(local.first, True)
+    return tip + ca.fmax(ca.dot(y - tip, away), 0) / ca.dot(away, away) * away
 
 
 def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> ca.SX:
-    """The distance at a local minimum near θ.
+    """The point at a local minimum of the distance near θ.
 
     Newton's method for (σ - y) · σ' = 0, as in `onpath.models.paths.distance`.
     """
@@ -150,7 +166,7 @@ def _improved(kind: Kind, lift: Lift, table: ca.SX, y: ca.SX, theta: ca.SX) -> c
         slope = ca.fmax(squared + ca.dot(gap, lift(local.second, True)), 0.2 * squared)
         theta = theta - ca.fmin(ca.fmax(ca.dot(gap, first) / slope, -0.1), 0.1)
     local = LocalCurve.from_values(theta, kind.closed, table @ basis(theta, kind.closed))
-    return _length(lift(local.sigma, False) - y)
+    return lift(local.sigma, False)
 
 
 def _fault(robot: Robot) -> ca.Function:

@@ -156,7 +156,7 @@ def judging(browser: Browser) -> Iterator[Page]:
     page.set_content(
         f'{parts}<script type="application/json" id="data">{json.dumps(data)}</script>'
     )
-    page.add_script_tag(path=asset_path("site/site.js"))
+    page.add_script_tag(path=asset_path("web/onpath.js"))
     yield page
     page.close()
 

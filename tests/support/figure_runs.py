@@ -1,4 +1,4 @@
-"""What a figure's page does, done by Python's own loops: the oracle of assets/standalone."""
+"""What a figure's page does, done by Python's own loops: the oracle of assets/web."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from tests.support.checkout import ROOT
 if TYPE_CHECKING:
     from playwright.sync_api import Page
 
-_MATHEMATICS = ROOT / "assets" / "standalone" / "mathematics.ts"
+_MATHEMATICS = ROOT / "assets" / "web" / "mathematics.ts"
 _RUN = """async ([module, vectors, row, ticks]) => {
     MATHEMATICS
     const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0))

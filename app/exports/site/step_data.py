@@ -51,7 +51,7 @@ class SiteStep:
     Attributes:
         number: number of the step, from 1.
         blocks: parts of the step.
-        data: data for the page's script; see assets/site/data.ts.
+        data: data for the page's script; see assets/web/lesson_data.ts.
         figure: data of the step's figure; empty if only the lab can show it.
         lacking: what only the lab has here, in words; may be empty.
         lab_only: whether its run can only be seen in the lab.

@@ -84,8 +84,8 @@ def _write_shared(folder: Path) -> None:
     shared = folder / SHARED
     (shared / "kernels").mkdir(parents=True)
     (shared / "pictures").mkdir()
-    for name in ("on.js", "site.js", "icon.svg"):
-        shutil.copy(asset_path(f"site/{name}"), shared)
+    for name in ("on.js", "onpath.js", "icon.svg"):
+        shutil.copy(asset_path(f"web/{name}"), shared)
     (shared / "site.css").write_text(site_style(), "utf-8")
 
 
@@ -225,7 +225,7 @@ def _whole_folder(folder: Path) -> Iterator[Path]:
     """
     if folder.exists() and not folder.is_dir():
         raise ValueError(f"{folder}: that is a file")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / SHARED / "site.js").exists():
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / SHARED / "on.js").exists():
         raise ValueError(f"{folder}: not empty, and no site of an earlier export")
     if not folder.parent.is_dir():
         raise ValueError(f"{folder}: no folder {folder.parent}")

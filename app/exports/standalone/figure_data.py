@@ -27,6 +27,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.page_functions import (
     GRID,
+    front_of,
     grid_of,
     page_functions,
     stop_reasons,
@@ -64,6 +65,7 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
         "sliders": [slider_data(figure, name, words) for name in figure.sliders],
         "controls": figure.controls,
+        "front": front_of(robot).tolist(),
         "box": _box(figure),
         "off": OFF,
         "returns": RETURNS,
@@ -128,9 +130,11 @@ def _places(layout: Any, names: tuple[str, ...]) -> dict[str, list[int]]:
 def _sizes(figure: FigureChoice, kernel: Kernel) -> dict[str, int]:
     system = figure.machine.system
     bars, joints = figure.machine.skeleton(system.q, ca.SX(1))
+    modes = figure.machine.extras.get("modes", ca.SX(0, 1)).numel()
     return {
         "p": system.p,
         "n": system.n,
+        "rigid": system.n - modes,
         "log": kernel.log.size,
         "bars": bars.shape[1] // 2,
         "joints": joints.shape[1],

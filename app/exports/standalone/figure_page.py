@@ -26,7 +26,7 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
         title: heading above the figure; may be empty.
     """
     dark = inlined("page/dark_colours.css")
-    script, style = inlined("standalone/figure.js"), styled("standalone/figure.css", dark=dark)
+    script, style = inlined("web/onpath.js"), styled("standalone/figure.css", dark=dark)
     names = " / ".join(law_label(law, words) for law in figure.laws)
     return render(
         "standalone/figure.html",

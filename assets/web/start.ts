@@ -1,9 +1,9 @@
 // The start page: the free lab, and the student's progress.
 
-import { refused } from "../standalone/controls"
-import { Figure } from "../standalone/figure"
-import { Simulation } from "../standalone/simulation"
-import { said, type PageData } from "./data"
+import { refused } from "./controls"
+import { Figure } from "./figure"
+import { Simulation } from "./simulation"
+import { said, type PageData } from "./lesson_data"
 import { exported, forget, imported, notesOf } from "./notes"
 import type { LocalProgress } from "./progress"
 import { kernelsOf } from "./stage"

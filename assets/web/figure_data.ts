@@ -33,7 +33,7 @@ export type SliderData = Texts<"label" | "unit" | "help"> & Numbers<"low" | "hig
 export interface FigureData extends Texts<"language" | "module"> {
     words: Record<string, string>
     dt: number
-    sizes: Numbers<"p" | "n" | "log" | "bars" | "joints">
+    sizes: Numbers<"p" | "n" | "rigid" | "log" | "bars" | "joints">
     state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
     log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used", Place>
@@ -44,6 +44,8 @@ export interface FigureData extends Texts<"language" | "module"> {
     paths: PathData[]
     sliders: SliderData[]
     controls: string[]
+    /** Directions to the right and up in the plane of the path, as in `front_of` in models. */
+    front: [number[], number[]]
     box: [number, number, number, number]
     off: number
     /** Shares above which a law counts as returning from far away, and its integral as bounded. */

@@ -1,6 +1,6 @@
 // The progress and score that a learning platform receives for a lesson. Pure functions.
 
-import type { StepData } from "./data"
+import type { StepData } from "./lesson_data"
 import { given, type Notes } from "./notes"
 import { accepted } from "./own"
 

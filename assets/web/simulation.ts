@@ -1,20 +1,20 @@
 // The simulated figure: sides on a path, time, and the reader's actions. It does not depend on a page.
 
-import { Side, MOST_TICKS } from "./side"
-import { said, type FigureData, type Point } from "./data"
+import type { Change, Sample } from "./engine"
+import { Side, MOST_TICKS, type Kept } from "./side"
+import { said, type FigureData, type Point } from "./figure_data"
 import type { Kernels } from "./kernels"
 import { Path } from "./path"
 import { Poles } from "./poles"
 
-export const SECONDS = 8 // kept in memory
+const MINUTE = 60 // [s], kept in memory
 const PERIOD = 1 / 60 // [s], between two moments, however seldom a picture is drawn
 
-/** A moment: the tips in the picture, and their distances to the path. */
-export interface Moment {
-    time: number
-    held: boolean
-    tips: Point[]
-    millimetres: number[]
+/** A sample, with what is needed to draw it, and to go on from it. */
+export interface Moment extends Sample {
+    ticks: number
+    tips: Point[] // in the picture
+    robots: Kept[]
 }
 
 export class Simulation {
@@ -28,7 +28,9 @@ export class Simulation {
     readonly values = this.data.sliders.map(slider => slider.value)
     private readonly poles = new Poles(this.data, this.kernels)
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
-    /** The last seconds of this run. */
+    /** Is told what the sides do. */
+    changed: (change: Change) => void = () => {}
+    /** The last minute of this run. */
     recent: Moment[] = [this.moment()]
 
     constructor(readonly data: FigureData, private readonly kernels: Kernels) {}
@@ -53,13 +55,19 @@ export class Simulation {
 
     /** The present moment. */
     moment(): Moment {
-        const { time, held, sides } = this
-        return { time, held, tips: sides.map(side => side.tip()), millimetres: sides.map(side => 1e3 * side.distance) }
+        const { time, ticks, sides } = this
+        return {
+            time,
+            ticks,
+            sides: sides.map(side => side.sample()),
+            tips: sides.map(side => side.tip()),
+            robots: sides.map(side => side.keep()),
+        }
     }
 
     advance(ticks: number): void {
         const { period } = this
-        this.followed.advance(ticks * this.data.dt)
+        if (this.followed.advance(ticks * this.data.dt)) this.changed("path")
         for (let left = ticks; left > 0; ) {
             const part = Math.min(left, period - (this.ticks % period))
             for (const side of this.sides) side.advance(part)
@@ -71,19 +79,33 @@ export class Simulation {
 
     private remember(): void {
         this.recent.push(this.moment())
-        while (this.recent[0]!.time < this.time - SECONDS) this.recent.shift()
+        while (this.recent[0]!.time < this.time - MINUTE) this.recent.shift()
     }
 
-    hold(on: boolean): void {
-        if (on === this.held) return
-        this.held = on
-        for (const side of this.sides) side.hold(on)
+    /** Go on from a moment; what came after it is forgotten. */
+    goOn(moment: Moment): void {
+        this.ticks = moment.ticks
+        this.held = false
+        this.sides.forEach((side, i) => side.goOn(moment.robots[i]!))
+        this.recent.splice(this.recent.indexOf(moment) + 1)
+        this.changed("history")
     }
 
-    /** Pull all tips by a vector in the picture; null: let go. */
-    pull(by: Point | null): void {
-        for (const side of this.sides) side.pull(by)
+    /** Hold back one robot, or all. */
+    hold(on: boolean, only?: number): void {
+        if (only === undefined) {
+            if (on === this.held) return
+            this.held = on
+        }
+        for (const side of this.meant(only)) side.hold(on)
     }
+
+    /** Pull the tip of one robot, or all tips, by a vector in the picture; null: let go. */
+    pull(by: Point | null, only?: number): void {
+        for (const side of this.meant(only)) side.pull(by)
+    }
+
+    private readonly meant = (only?: number): Side[] => (only === undefined ? this.sides : [this.sides[only]!])
 
     /** Begin anew, with the values of the sliders. */
     reset(): void {
@@ -93,6 +115,8 @@ export class Simulation {
         for (const side of this.sides) side.begin(this.followed)
         this.values.forEach((value, i) => this.set(i, value))
         this.recent = [this.moment()]
+        this.changed("path")
+        this.changed("history")
     }
 
     /** Begin anew on another path. */

@@ -1,9 +1,9 @@
 // A simulation that records what the lessons need: events, and all quantities 60 times a second.
 
-import type { Kernels } from "../standalone/kernels"
-import { Simulation } from "../standalone/simulation"
+import type { Kernels } from "./kernels"
+import { Simulation } from "./simulation"
 import type { Happening, RunRecord } from "./checks"
-import { ROBOTS, type Act, type Robot, type SiteFigure, type StepData } from "./data"
+import { ROBOTS, type Act, type Robot, type SiteFigure, type StepData } from "./lesson_data"
 
 const FRAME = 1 / 60 // [s]
 const MOST = 3600 // samples: the lab keeps one minute, too
@@ -52,15 +52,17 @@ export class Recorded extends Simulation {
         }
     }
 
-    override hold(on: boolean): void {
-        if (on !== this.held) this.note(on ? "hold" : "let_go")
-        super.hold(on)
+    override hold(on: boolean, only?: number): void {
+        if (only !== undefined) this.note(on ? "hold" : "let_go", "", [ROBOTS[only]!])
+        else if (on !== this.held) this.note(on ? "hold" : "let_go")
+        super.hold(on, only)
     }
 
-    override pull(by: [number, number] | null): void {
+    override pull(by: [number, number] | null, only?: number): void {
         const pulled = this.sides.some(side => side.pulled)
-        if (pulled !== (by !== null)) this.note(by ? "pull" : "release")
-        super.pull(by)
+        if (only !== undefined) this.note(by ? "pull" : "release", "", [ROBOTS[only]!])
+        else if (pulled !== (by !== null)) this.note(by ? "pull" : "release")
+        super.pull(by, only)
     }
 
     override set(slider: number, value: number): void {
@@ -86,12 +88,10 @@ export class Recorded extends Simulation {
 
     /** Perform an action of a script or a link. */
     act(act: Act): void {
-        const sides = act.side == null ? ROBOTS.map((_, i) => i) : [act.side]
-        if (act.hold !== undefined) this.holdSome(sides, act.hold)
-        else if (act.pull) {
-            for (const i of sides) this.sides[i]!.pull(act.pull)
-            this.note("pull", "", sides.map(i => ROBOTS[i]!))
-        } else if (act.release) this.pull(null)
+        const only = act.side ?? undefined
+        if (act.hold !== undefined) this.hold(act.hold, only)
+        else if (act.pull) this.pull(act.pull, only)
+        else if (act.release) this.pull(null)
         else if (act.path !== undefined) this.choose(act.path)
         else if (act.reset) this.reset()
         else if (act.set) this.write(act.set, act.write ?? [])
@@ -99,10 +99,10 @@ export class Recorded extends Simulation {
 
     record(): RunRecord {
         const { times, happenings, run, settings } = this
-        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.changed() }
+        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.different() }
     }
 
-    private changed(): string[] {
+    private different(): string[] {
         const given = { ...this.begun, path: this.begun.paths[0]! } as Record<string, unknown>
         const compared = Object.keys(this.settings).filter(name => name !== "length")
         return compared.filter(name => this.settings[name] !== given[name])
@@ -113,12 +113,6 @@ export class Recorded extends Simulation {
         const now = this.now()
         const of = (robot: Robot) => [...(this.samples[robot][quantity] ?? []), now[robot][quantity] ?? 0]
         return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }
-    }
-
-    private holdSome(sides: number[], on: boolean): void {
-        if (sides.length === this.sides.length) return this.hold(on)
-        for (const i of sides) this.sides[i]!.hold(on)
-        this.note(on ? "hold" : "let_go", "", sides.map(i => ROBOTS[i]!))
     }
 
     private write(values: Record<string, number | string>, places: [number, number][]): void {

@@ -1,8 +1,8 @@
 // The page of a lesson: one step at a time, with its figure.
 
-import { made, refused } from "../standalone/controls"
+import { made, refused } from "./controls"
 import { ask, ordered } from "./asked"
-import { said, type PageData } from "./data"
+import { said, type PageData } from "./lesson_data"
 import { gradeOf } from "./grade"
 import { given, keep, notesOf, thinned, type Notes } from "./notes"
 import { showOwn } from "./own"

@@ -1,6 +1,6 @@
 // The data that Python puts into the pages: see app/exports/site.
 
-import type { FigureData, Place } from "../standalone/data"
+import type { FigureData, Place } from "./figure_data"
 import type { Curves } from "./notes"
 
 export type Robot = "tracker" | "follower"

@@ -1,10 +1,20 @@
 // One robot under a law: its state, the forces on it, and its drawing.
 
-import type { SideData, FigureData, LawData, Point } from "./data"
+import type { SideSample, Vector } from "./engine"
+import type { SideData, FigureData, LawData, Point } from "./figure_data"
 import type { Kernels } from "./kernels"
 import type { Path } from "./path"
 
 export const MOST_TICKS = 128 // in one call of a loop
+
+/** What is kept of an instant: the row of the log that is drawn, and the state from which to go on. */
+export interface Kept {
+    row: Float64Array
+    state: Float64Array
+    law: number
+    ticks: number
+    path: Path
+}
 
 export class Side {
     held = false
@@ -23,9 +33,13 @@ export class Side {
     private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
     private readonly result = this.kernels.room(2 * this.sizes.p + 4)
     private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
+    private readonly nearest = this.kernels.room(1 + this.sizes.p) // the distance, and the closest point
+    private readonly straight = this.kernels.room(this.sizes.n + this.sizes.p) // a configuration, and its tip
     private readonly y = this.kernels.room(this.sizes.p)
     private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
     private row = this.log // the last one
+    private readonly past = this.kernels.room(this.sizes.log)
+    private looked = false // whether the row of a past instant is shown
 
     constructor(
         readonly data: SideData,
@@ -44,7 +58,7 @@ export class Side {
         kernels.numbers.set(path.data.states[this.law]!, state)
         kernels.numbers.set(path.data.settings, this.settings)
         if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
-        this.held = this.pulled = false
+        this.held = this.pulled = this.looked = false
         this.stopped = this.ticks = this.most = 0
         this.seeStart()
     }
@@ -69,6 +83,27 @@ export class Side {
             if ((this.stopped = kernels.numbers[this.result]!)) this.row -= sizes.log
             if (i % 4 === 0 || i === ticks || this.stopped) this.measure()
         }
+    }
+
+    readonly keep = (): Kept => {
+        const { law, ticks, path, kernels, state, longest } = this
+        return { row: this.logged(), state: kernels.numbers.slice(state, state + longest), law, ticks, path }
+    }
+
+    /** Draw a past instant, or the present one. */
+    show(kept: Kept | null): void {
+        this.looked = kept !== null
+        if (kept) this.kernels.numbers.set(kept.row, this.past)
+    }
+
+    /** Go on from a past instant, free, with the settings as they are. */
+    goOn({ row, state, law, ticks }: Kept): void {
+        this.kernels.numbers.set(state, this.state)
+        this.kernels.numbers.set(row, this.log)
+        Object.assign(this, { law, ticks, row: this.log, stopped: 0, looked: false })
+        this.hold(false)
+        this.pull(null)
+        this.measure()
     }
 
     /** Hold it back along the path where it is, or let it go. */
@@ -99,21 +134,40 @@ export class Side {
     /** Both ends of each bar, then joints, as x and y in the picture. */
     picture(): Float64Array {
         const { bars, joints } = this.sizes
-        this.call("picture", this.field("q"), this.points, this.points + 4 * bars)
+        this.call("picture", this.seen("q"), this.points, this.points + 4 * bars)
         return this.kernels.numbers.subarray(this.points, this.points + 4 * bars + 2 * joints)
     }
 
-    readonly tip = (): Point => this.point("place", this.field("y"))
+    readonly tip = (): Point => this.point("place", this.seen("y"))
     /** The point that the law aims at. */
-    readonly aim = (): Point => this.point("aim", this.path.table, this.field(this.does().aim))
+    readonly aim = (): Point => this.aimed(this.does().aim)
     /** The reference point, even if the law does not aim at it. */
-    readonly reference = (): Point => this.point("aim", this.path.table, this.field("theta_ref"))
+    readonly reference = (): Point => this.aimed("theta_ref")
     /** The deflection of a flexible link's tip, [m], and the energy in the link, [J]. */
     readonly measured = (): Point => this.point("measured", this.field("q"), this.field("v"))
     /** The end of the arrow of the force. */
-    readonly arrow = (): Point => this.point("arrow", this.field("y"), this.field("force"))
+    readonly arrow = (): Point => this.point("arrow", this.seen("y"), this.seen("force"))
     /** How far a bound of the law is reached, from 0 to 1. */
     readonly share = (name: "far" | "integral_used"): number => this.kernels.numbers[this.field(name)]!
+    /** What the page's parts know of the present instant. */
+    sample(): SideSample {
+        const { sizes, kernels, distance, held, pulled } = this
+        const vector = (place: number): Vector => [...kernels.numbers.subarray(place, place + sizes.p)]
+        const tip = vector(this.field("y")), force = vector(this.field("force")), closest = vector(this.nearest + 1)
+        let reference: Vector | null = null, straight: Vector | null = null
+        if (this.does().aim === "theta_ref") {
+            this.call("at", this.path.table, this.field("theta_ref"), this.y)
+            reference = vector(this.y)
+        }
+        if (sizes.rigid < sizes.n) {
+            const end = this.straight + sizes.n
+            kernels.copy(this.field("q"), this.straight, sizes.rigid)
+            this.call("tip", this.straight, end) // whose modes are zero
+            straight = vector(end)
+        }
+        return { distance, tip, closest, reference, force, straight, held, pulled }
+    }
+
     /** The last row of the log. */
     readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
     /** The row before the first tick: the row of a tick that is undone, without torque and force. */
@@ -129,9 +183,14 @@ export class Side {
 
     private measure(): void {
         const { table, grid } = this.path
-        this.call("distance", table, grid, this.field("y"), this.field("theta"), this.result)
-        this.distance = this.kernels.numbers[this.result]!
+        this.call("distance", table, grid, this.field("y"), this.field("theta"), this.nearest)
+        this.distance = this.kernels.numbers[this.nearest]!
         if (this.held) this.most = Math.max(this.most, this.distance)
+    }
+
+    private aimed(at: "theta" | "theta_ref"): Point {
+        this.call("at", this.path.table, this.seen(at), this.y)
+        return this.point("place", this.y)
     }
 
     private point(name: string, ...places: number[]): Point {
@@ -139,6 +198,8 @@ export class Side {
         return this.kernels.pair(this.result)
     }
 
+    private readonly seen = (name: keyof FigureData["log"]): number =>
+        (this.looked ? this.past : this.row) + this.figure.log[name][0]
     private readonly field = (name: keyof FigureData["log"]): number => this.row + this.figure.log[name][0]
     private readonly call = (name: string, ...places: number[]) => this.kernels.call(this.name(name), ...places)
     private readonly name = (name: string): string => `${name}.${this.path.data.kind}`

@@ -1,7 +1,7 @@
 // Questions that are answered at once: quizzes, numbers, and open questions.
 
-import { made } from "../standalone/controls"
-import { said, type BlockData, type PageData } from "./data"
+import { made } from "./controls"
+import { said, type BlockData, type PageData } from "./lesson_data"
 import type { Notes } from "./notes"
 import { accepted } from "./own"
 

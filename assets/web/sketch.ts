@@ -1,10 +1,10 @@
 // A curve that a student draws, and the truth on the same axes.
 
-import { made } from "../standalone/controls"
-import { said, type PageData, type SketchData } from "./data"
+import { made } from "./controls"
+import { said, type PageData, type SketchData } from "./lesson_data"
 import type { Answer, Curves } from "./notes"
 import { local } from "./numbers"
-import { inkOf } from "../standalone/view"
+import { inkOf } from "./view"
 
 const MARGIN = { left: 46, right: 12, top: 26, bottom: 26 }
 const POINTS = 9 // of a typed curve

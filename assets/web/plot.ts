@@ -1,9 +1,10 @@
 // The distance of all robots to the path over time.
 
-import { written, type Point } from "./data"
-import { SECONDS, type Moment, type Simulation } from "./simulation"
+import { written, type Point } from "./figure_data"
+import type { Moment, Simulation } from "./simulation"
 import { inkOf, stroke } from "./view"
 
+const SECONDS = 8
 const MARGIN = { left: 44, right: 10, top: 10, bottom: 24 }
 const DASHES = [[], [7, 4]] // colour is not the only sign
 const STEPS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] // [mm]
@@ -20,19 +21,20 @@ export class Plot {
         const { clientWidth: width, clientHeight: height } = canvas
         const ink = inkOf(canvas)
         if (!ink) return
-        const top = 1.1 * Math.max(4, ...moments.flatMap(moment => moment.millimetres))
+        moments = moments.filter(moment => moment.time >= simulation.time - SECONDS)
+        const top = 1.1 * Math.max(4, ...moments.flatMap(moment => moment.sides.map(side => 1e3 * side.distance)))
         const begin = Math.max(0, simulation.time - SECONDS)
         const x = (time: number) => MARGIN.left + ((time - begin) / SECONDS) * (width - MARGIN.left - MARGIN.right)
         const y = (value: number) => height - MARGIN.bottom - (value / top) * (height - MARGIN.top - MARGIN.bottom)
         ink.fillStyle = simulation.data.colours.held
-        moments.forEach(({ time, held }, i) => {
+        moments.forEach(({ time, sides }, i) => {
             const next = x(moments[i + 1]?.time ?? time)
-            if (held) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
+            if (sides.some(side => side.held)) ink.fillRect(x(time), y(top), next - x(time) + 0.5, y(0) - y(top))
         })
         this.axes(ink, x, y, top, begin)
         simulation.sides.forEach((side, i) => {
             ink.setLineDash(DASHES[i % DASHES.length]!)
-            const way = moments.map(({ time, millimetres }): Point => [x(time), y(millimetres[i]!)])
+            const way = moments.map(({ time, sides }): Point => [x(time), y(1e3 * sides[i]!.distance)])
             stroke(ink, way, side.data.colour, 2)
         })
         ink.setLineDash([])

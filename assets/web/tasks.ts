@@ -1,8 +1,8 @@
 // The tasks of a step, checked against its record twice a second.
 
-import { made } from "../standalone/controls"
+import { made } from "./controls"
 import { judge, statistic, type Verdict } from "./checks"
-import { said, type PageData, type TaskData } from "./data"
+import { said, type PageData, type TaskData } from "./lesson_data"
 import type { Notes } from "./notes"
 import { general } from "./numbers"
 import type { Recorded } from "./recorded"

@@ -1,9 +1,11 @@
 // A path, and its control points while readers drag them: an edit goes as far as possible, and shows
 // where the path would be refused, as in app/lab/path_editor.py.
 
-import type { FigureData, PathData, Point } from "./data"
+import type { Vector } from "./engine"
+import type { FigureData, PathData, Point } from "./figure_data"
 import type { Kernels } from "./kernels"
 
+const LINE = 600 // pieces of a line through points of the path
 const ARC = 3 // numbers of a row of arc length
 
 /** Why a curve cannot be followed: keys of messages, and places in the picture; and its length if
@@ -37,6 +39,17 @@ export class Path {
 
     /** Places of the control points in the picture. */
     readonly spots = (): Point[] => this.data.points.map((_, i) => this.spot(this.shown[0] + 2 * i))
+    /** Points of the followed curve, in the space of the end-points. */
+    line(): Vector[] {
+        const { work, kernels, figure } = this
+        const end = work + 1
+        return Array.from({ length: LINE + 1 }, (_, i) => {
+            kernels.numbers[work] = (2 * i / LINE - 1) * Math.PI
+            this.call("at", this.table, work, end)
+            return [...kernels.numbers.subarray(end, end + figure.sizes.p)]
+        })
+    }
+
     /** Move a point by a vector in the picture, from where it was before the edit. */
     drag(index: number, by: Point): void {
         const { work } = this

@@ -2,13 +2,12 @@
 
 import { caption, notes, spoken } from "./captions"
 import { Controls, isTyped, made, written } from "./controls"
-import { said, written as number, type Point } from "./data"
+import { said, written as number, type Point } from "./figure_data"
+import { LocalEngine } from "./local"
 import { Plot } from "./plot"
 import type { Simulation } from "./simulation"
 import { View } from "./view"
 
-const FRAME = 1 / 60 // [s], of a step
-const LONGEST = 0.1 // [s] that a picture may be late before simulated time falls behind
 const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
 const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
 const DARK = matchMedia("(prefers-color-scheme: dark)")
@@ -18,7 +17,7 @@ const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
 export class Figure {
-    running = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    readonly engine = new LocalEngine(this.simulation)
     private readonly data = this.simulation.data
     private readonly views = this.simulation.sides.map(side => new View(side, this.data))
     private readonly titles = this.views.map(() => made("span", ""))
@@ -30,10 +29,6 @@ export class Figure {
     private readonly axis = made("p", "axis")
     readonly controls = new Controls(this.simulation, this, this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
-    rate = 1 // of time; less in slow motion
-    private last = performance.now()
-    private due = 0
-    private lost = 0 // simulated time lost lately, [s]
     private stale = true
     private shown = 0 // simulated time in the picture, in ticks
     private kind = ""
@@ -55,7 +50,8 @@ export class Figure {
     }
 
     private readonly drag = () => [this.pending?.(), (this.pending = null)]
-    readonly step = () => this.advance(Math.round(FRAME / this.data.dt))
+    get running(): boolean { return this.engine.running }
+
     /** Something else is to be drawn and said. */
     changed(): void {
         const { simulation, data } = this
@@ -95,17 +91,8 @@ export class Figure {
 
     private frame(): void {
         if (this.ended.aborted) return
-        const now = performance.now()
-        const passed = (now - this.last) / 1e3
-        this.due += this.rate * Math.min(passed, LONGEST)
-        this.last = now
-        if (this.running && passed < 1) // otherwise the page was hidden
-            this.lost = 0.98 * this.lost + Math.max(0, passed - LONGEST)
         this.drag()
-        const ticks = Math.floor(this.due / this.data.dt)
-        this.due -= ticks * this.data.dt
-        if (this.running && ticks > 0) this.advance(ticks)
-        else if (this.simulation.followed.advance(passed)) this.stale = true
+        if (this.engine.pass(performance.now())) this.stale = true
         this.controls.show()
         if (this.stale || this.shown !== this.simulation.ticks) this.draw()
         requestAnimationFrame(() => this.frame())
@@ -126,7 +113,7 @@ export class Figure {
         this.captions.forEach((element, i) => written(element, captions[i]!))
         const now = simulation.sides.map((side, i) => `${simulation.title(i)} ${number(data, 1e3 * side.distance, 1)}`)
         written(this.axis, `${said(data, "standalone.plot")}: ${now.join(", ")}`)
-        const late = this.lost > LATE ? said(data, "standalone.late") : ""
+        const late = this.engine.lost > LATE ? said(data, "standalone.late") : ""
         const note = [notes(simulation), late].filter(Boolean).join(" ")
         written(this.note, note)
         this.say(captions, note)

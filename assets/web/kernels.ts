@@ -1,6 +1,6 @@
 // The functions of the WebAssembly module, and the memory on which they work.
 
-import type { Point } from "./data"
+import type { Point } from "./figure_data"
 import { mathematics } from "./mathematics"
 
 type Exported = (...places: number[]) => void

@@ -1,6 +1,6 @@
 // Buttons, menus and sliders of a figure.
 
-import { said, significant, type FigureData, type Point, type SliderData } from "./data"
+import { said, significant, type FigureData, type Point, type SliderData } from "./figure_data"
 import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
 
@@ -74,13 +74,13 @@ export class Controls {
     }
 
     toggleRun(on = !this.page.running): void {
-        this.page.running = on
+        this.page.engine.act({ do: "run", on })
         this.show()
     }
 
     step(): void {
-        this.toggleRun(false)
-        this.page.step()
+        this.page.engine.act({ do: "step" })
+        this.show()
     }
 
     reset(): void {

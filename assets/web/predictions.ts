@@ -1,8 +1,8 @@
 // Predictions: a choice or a curve, to which a student commits before the run.
 
-import { made } from "../standalone/controls"
+import { made } from "./controls"
 import { judged } from "./asked"
-import { said, type BlockData, type PageData, type SketchData, type StepData } from "./data"
+import { said, type BlockData, type PageData, type SketchData, type StepData } from "./lesson_data"
 import { given, type Answer, type Notes } from "./notes"
 import { Board, Chart } from "./sketch"
 

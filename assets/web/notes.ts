@@ -1,6 +1,6 @@
 // A student's notes on the lessons: what was predicted, seen, answered and passed.
 
-import type { PageData } from "./data"
+import type { PageData } from "./lesson_data"
 import type { Progress } from "./progress"
 
 export interface Answer {

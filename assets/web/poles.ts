@@ -1,6 +1,6 @@
 // What the page says about the poles of the laws, as in app/page/panels/gains_panel.py.
 
-import { said, significant, written, type FigureData } from "./data"
+import { said, significant, written, type FigureData } from "./figure_data"
 import type { Kernels } from "./kernels"
 
 export class Poles {

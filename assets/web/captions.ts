@@ -1,7 +1,7 @@
 // Captions of what each robot is doing, as in app/scene/captions.py.
 
 import type { Side } from "./side"
-import { said, written, type FigureData } from "./data"
+import { said, written, type FigureData } from "./figure_data"
 import type { Simulation } from "./simulation"
 
 function kind(side: Side, off: boolean, data: FigureData): string {

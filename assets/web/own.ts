@@ -1,6 +1,6 @@
 // Shows a student's own answers: numbers in texts, and texts for some answers only.
 
-import type { BlockData, PageData } from "./data"
+import type { BlockData, PageData } from "./lesson_data"
 import type { Notes } from "./notes"
 import { local } from "./numbers"
 

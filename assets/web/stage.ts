@@ -1,9 +1,9 @@
 // The live figure of a step, whose kernels are in a script that pages share.
 
-import { isTyped } from "../standalone/controls"
-import { Figure } from "../standalone/figure"
-import { Kernels } from "../standalone/kernels"
-import type { Act, Script, SiteFigure, StepData } from "./data"
+import { isTyped } from "./controls"
+import { Figure } from "./figure"
+import { Kernels } from "./kernels"
+import type { Act, Script, SiteFigure, StepData } from "./lesson_data"
 import { Recorded } from "./recorded"
 
 declare global {
@@ -55,7 +55,7 @@ export class Stage {
     }
 
     run(on: boolean): void {
-        this.figure.running = on
+        this.figure.engine.act({ do: "run", on })
         this.figure.controls.show()
     }
 
@@ -87,7 +87,7 @@ export class Stage {
             }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
                 const [, act] = waiting.shift()!
-                if (act.rate) figure.rate = act.rate
+                if (act.rate) figure.engine.rate = act.rate
                 simulation.act(act)
                 if (simulation.record().run === run) continue
                 run = simulation.record().run
@@ -105,7 +105,7 @@ export class Stage {
 
     private cancel(): void {
         this.simulation.before = () => true
-        this.figure.rate = 1
+        this.figure.engine.rate = 1
     }
 
     /** Show the values on the sliders. */

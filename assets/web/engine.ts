@@ -1,0 +1,96 @@
+// What the parts of a page know of the robots, whoever simulates them: WebAssembly in the page (local.ts),
+// or the server of a lab. Lengths are in metres, forces in newtons, times in seconds of the simulation.
+
+/** A point or a vector in the space of the end-points: two numbers, or three. */
+export type Vector = readonly number[]
+
+/** One robot at an instant. */
+export interface SideSample {
+    /** From the end-point to the path. */
+    distance: number
+    tip: Vector
+    /** The point of the path that is closest to the end-point. */
+    closest: Vector
+    /** The point at which the law aims by its clock; null if the law has no clock. */
+    reference: Vector | null
+    /** The force on the end-point. */
+    force: Vector
+    /** Where the end-point would be if the link did not bend; null if no link can. */
+    straight: Vector | null
+    held: boolean
+    pulled: boolean
+}
+
+export interface Sample {
+    time: number
+    sides: readonly SideSample[]
+}
+
+/** What is said of a robot: its law's name and meaning, and what it does now, if that is worth a word. */
+export interface SideText {
+    title: string
+    text: string
+    caption: string
+}
+
+/** The path, as lines through its points. */
+export interface PathShape {
+    lines: readonly (readonly Vector[])[]
+    closed: boolean
+    /** Two directions at right angles and of length 1, in which the path is seen from in front. */
+    right: Vector
+    up: Vector
+}
+
+export interface State {
+    running: boolean
+    /** Of time; 1 is as fast as reality. */
+    rate: number
+    held: boolean
+    pulled: boolean
+    /** The past instant that is shown, or null: the present. */
+    past: number | null
+    /** Whether one may go on from a past instant. */
+    branches: boolean
+}
+
+/** Something that a reader does. `side` is a robot's number; without it, both are meant. */
+export type Act =
+    | { do: "hold"; on: boolean; side?: number }
+    | { do: "pull"; by: Vector | null; side?: number } // from where the end-point was; null: let go
+    | { do: "run"; on: boolean }
+    | { do: "step" | "reset" }
+    | { do: "rate"; rate: number }
+    | { do: "look"; at: number | null }
+    | { do: "goOn" } // from the past instant that is shown; what came after it is discarded
+
+/** What has changed: there are new samples; earlier ones are no longer valid; or anything else. */
+export type Change = "samples" | "history" | "path" | "state"
+
+export interface Engine {
+    readonly state: State
+    readonly path: PathShape
+    readonly texts: readonly SideText[]
+    readonly present: Sample
+    /** The recorded samples after an instant, the oldest first: 60 a second, at most a minute; without the present. */
+    since(time: number): readonly Sample[]
+    act(act: Act): void
+    on(listener: (change: Change) => void, ended?: AbortSignal): void
+}
+
+/** The recorded sample at an instant: the last one that is not later, or the first. */
+export function sampleAt(samples: readonly Sample[], time: number): Sample | undefined {
+    let [low, high] = [0, samples.length]
+    while (low < high) {
+        const middle = (low + high) >> 1
+        if (samples[middle]!.time <= time + 1e-9) low = middle + 1
+        else high = middle
+    }
+    return samples[Math.max(low - 1, 0)]
+}
+
+/** What is shown: the present, or the past instant that is looked at. */
+export function shown(engine: Engine): Sample {
+    const { past } = engine.state
+    return (past !== null && sampleAt(engine.since(-Infinity), past)) || engine.present
+}

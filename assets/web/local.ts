@@ -1,0 +1,116 @@
+// The engine of a page without a server: a simulation in WebAssembly, and its clock.
+
+import { caption } from "./captions"
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type SideText, type State } from "./engine"
+import type { Moment, Simulation } from "./simulation"
+
+const FRAME = 1 / 60 // [s], of a step
+const LONGEST = 0.1 // [s] that a picture may be late before simulated time falls behind
+
+export class LocalEngine implements Engine {
+    running = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    rate = 1
+    /** Simulated time lost lately, [s], because pictures were late. */
+    lost = 0
+    private past: number | null = null
+    private due = 0
+    private last = performance.now()
+    private readonly listeners = new Set<(change: Change) => void>()
+    private shape: PathShape | null = null
+
+    constructor(readonly simulation: Simulation, private readonly branches = true) {
+        simulation.changed = change => {
+            if (change === "path") this.shape = null
+            if (change === "history") this.show(null)
+            this.tell(change)
+        }
+    }
+
+    get state(): State {
+        const { running, rate, past, branches, simulation } = this
+        const held = simulation.sides.some(side => side.held), pulled = simulation.sides.some(side => side.pulled)
+        return { running, rate, held, pulled, past, branches }
+    }
+
+    get path(): PathShape {
+        const { followed, data } = this.simulation
+        const [right, up] = data.front
+        return (this.shape ??= { lines: [followed.line()], closed: followed.data.closed, right, up })
+    }
+
+    get texts(): SideText[] {
+        const { sides, data } = this.simulation
+        return sides.map((side, i) => ({ title: this.simulation.title(i), text: side.does().text, caption: caption(side, data) }))
+    }
+
+    get present(): Moment { return this.simulation.moment() }
+
+    since(time: number): Moment[] {
+        const { recent } = this.simulation
+        return recent.slice(recent.findLastIndex(moment => moment.time <= time) + 1)
+    }
+
+    on(listener: (change: Change) => void, ended?: AbortSignal): void {
+        this.listeners.add(listener)
+        ended?.addEventListener("abort", () => this.listeners.delete(listener))
+    }
+
+    act(act: Act): void {
+        const { simulation } = this
+        if (act.do === "look") this.show(act.at)
+        else if (act.do === "goOn") this.goOn()
+        else {
+            this.show(null)
+            if (act.do === "hold") simulation.hold(act.on, act.side)
+            else if (act.do === "pull") simulation.pull(act.by as [number, number] | null, act.side)
+            else if (act.do === "run") this.running = act.on
+            else if (act.do === "rate") this.rate = act.rate
+            else if (act.do === "reset") simulation.reset()
+            else {
+                this.running = false
+                simulation.advance(Math.round(FRAME / simulation.data.dt))
+            }
+        }
+        this.tell("state")
+    }
+
+    /** Let the time of the page's clock pass; returns whether anything moves. */
+    pass(now: number): boolean {
+        const { simulation } = this
+        const passed = (now - this.last) / 1e3
+        this.last = now
+        const runs = this.running && this.past === null
+        if (runs && passed < 1) // otherwise the page was hidden
+            this.lost = 0.98 * this.lost + Math.max(0, passed - LONGEST)
+        this.due += this.rate * Math.min(passed, LONGEST)
+        const ticks = Math.floor(this.due / simulation.data.dt)
+        this.due -= ticks * simulation.data.dt
+        if (runs && ticks > 0) simulation.advance(ticks)
+        if (runs && ticks > 0) return true
+        const moves = simulation.followed.advance(passed)
+        if (moves) simulation.changed("path")
+        return moves
+    }
+
+    /** Show the past instant, or the present. */
+    private show(time: number | null): void {
+        const { simulation } = this
+        const moment = time === null ? undefined : sampleAt(simulation.recent, time) as Moment | undefined
+        this.past = moment?.time ?? null
+        simulation.sides.forEach((side, i) => side.show(moment?.robots[i] ?? null))
+        if (moment) this.running = false
+    }
+
+    private goOn(): void {
+        const { past, simulation, branches } = this
+        if (past === null || !branches) return
+        const moment = sampleAt(simulation.recent, past) as Moment
+        this.show(null)
+        simulation.goOn(moment)
+        this.running = true
+    }
+
+    private tell(change: Change): void {
+        for (const listener of this.listeners) listener(change)
+    }
+}

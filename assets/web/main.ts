@@ -1,0 +1,44 @@
+// One script for all pages: an exported figure (app/exports/standalone), or a page of the course (app/exports/site).
+
+import { made, refused } from "./controls"
+import { judge } from "./checks"
+import { Figure } from "./figure"
+import type { FigureData } from "./figure_data"
+import { gradeOf } from "./grade"
+import { Kernels } from "./kernels"
+import { LessonPage } from "./lesson"
+import { said, type PageData } from "./lesson_data"
+import { packed, unpacked } from "./packed"
+import { LocalProgress, type Tell } from "./progress"
+import { ScormProgress } from "./scorm"
+import { Simulation } from "./simulation"
+import { StartPage } from "./start"
+
+async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
+    place.replaceChildren() // the text for browsers without scripts
+    try {
+        const simulation = new Simulation(data, await Kernels.from(data.module))
+        // For an enclosing page, and for tests: advance(ticks), simulation.hold(true) and so on.
+        Object.assign(window, { onpath: new Figure(simulation, place) })
+    } catch (error) {
+        place.replaceChildren(refused(data, error))
+    }
+}
+
+function showPage(page: PageData): void {
+    const told = new Set<string>()
+    const tell: Tell = (key, values) => {
+        if (told.has(key)) return
+        told.add(key)
+        document.querySelector("#notice")!.append(made("p", "op-box", said(page, key, values)))
+    }
+    const local = new LocalProgress(tell)
+    const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local
+    const site = page.lesson ? new LessonPage(page, progress) : new StartPage(page, local)
+    Object.assign(window, { site, judge, gradeOf, packed, unpacked }) // for tests
+}
+
+const data: unknown = JSON.parse(document.getElementById("data")!.textContent!)
+const figure = document.getElementById("figure")
+if (figure) void showFigure(data as FigureData, figure)
+else showPage(data as PageData)
