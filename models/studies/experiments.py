@@ -16,6 +16,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.sensing import readings
 from onpath.models.closed_loop.simulation import (
     FREE,
@@ -276,8 +277,15 @@ def _off_the_ellipse(robot: Robot) -> Array:
     return robot.frame.lift(z) + y - usual.frame.lift(z)
 
 
-def run(experiment: Experiment, controller: str) -> Trajectory:
+def run(
+    experiment: Experiment,
+    controller: str,
+    loop: Callable[[Kernel], InterpretedLoop] = InterpretedLoop,
+) -> Trajectory:
     """Simulate an experiment under one control law.
+
+    Args:
+        loop: makes the closed loop.
 
     Returns:
         One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
@@ -294,7 +302,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     check_possible(robot, controller, experiment.parameters, robot.rest(start))
     scheduled = ScheduledRun(
         robot=robot,
-        kernel=kernel,
+        loop=loop(kernel),
         curve=curve,
         parameters=experiment.parameters,
         schedule=schedule,
