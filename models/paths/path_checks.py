@@ -16,10 +16,9 @@ if they are 2 TUBE above each other.
 
 A path that fails the first condition is refused. One that fails the second is followed, with a
 warning: no law searches the whole path. A law has a clock, or it starts each search for the closest
-point at the last one, so that it stays on its strand; what it stabilises is then not a set of states
-x, but one of (x, θ). Only `models/studies/crossing.py` searches the whole path, and shows how that
-fails. A path with `across` = level_set is an ellipse or has a gradient in its tube, so that it does
-not cross itself.
+point at the last one and so stays on its strand; what it stabilises is then not a set of states x,
+but one of (x, θ). Only `models/studies/crossing.py` searches the whole path, and shows how that
+fails. A level set has no gradient at a crossing, so `check_level_set` refuses such a path.
 
 `curve_faults.py` evaluates the expressions for the lab, and `models/web_export/edit.py` translates
 them for pages without a server: same path, same verdict.
