@@ -29,6 +29,7 @@ ORDER = [
     "app.viser_adapter",
     "app.common",
     "lessons",
+    "models.path_files",
     "models.studies",
     "models.web_export",
     "models.closed_loop",

@@ -24,8 +24,9 @@ from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.control.settable import specs, values_of
 from onpath.models.errors import CodedError
+from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
+from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
-from onpath.models.paths.curve_fit import deviation_remark, fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
@@ -248,21 +249,36 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
     return through(np.stack(ends), closed=False)
 
 
-def through(points: ArrayLike, closed: bool = True) -> Curve:
+def through(
+    points: ArrayLike, closed: bool = True, *, corners: str = SMOOTH, radius: float = RADIUS
+) -> Curve:
     """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
 
-    It rounds corners and swings out between points that are far apart: its `deviation` is its
-    largest distance from the straight lines between the points, [m]; beyond 4 mm there is a
-    warning.
+    It swings out between points that are far apart: its `deviation` is its largest distance from
+    the straight lines between the points, [m]; beyond 4 mm there is a warning.
+
+    Args:
+        points: shape (n, 2), [m].
+        closed: whether the last point is joined to the first.
+        corners: "smooth" for a spline through the points, or "round" for straight lines between
+            them, with arcs in the place of corners.
+        radius: of these arcs, [m].
 
     Raises:
         ValueError: too few points, non-finite numbers, or all points coincide.
+
+    Warns:
+        UserWarning: a large deviation; and the smallest radius of a path with rounded corners.
+
+    >>> import onpath
+    >>> onpath.through([[0.05, 0], [0, 0.05], [-0.05, 0], [0, -0.05]], corners="round", radius=0.03)
+    <closed path, 258 mm long, 87 x 87 mm>
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
-    curve = fitted(given, closed)
-    if remark := deviation_remark(curve):
+    read = path_through(given, Placing(corners=corners, radius=radius, closed=closed))
+    for remark in read.remarks:
         warnings.warn(str(remark), stacklevel=2)
-    return curve
+    return read.curve
 
 
 def entry_named(robot: str) -> RobotEntry:

@@ -1350,6 +1350,41 @@ error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes is
 error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
 
+## Bahnen aus Dateien (models/path_files)
+
+say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
+say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
+error-file_size = die Datei ist größer als { $most } MB
+error-file_empty = die Datei ist leer
+error-file_no_text = die Datei ist kein Text
+error-file_described = die Datei beschreibt eine Bahn mit Worten; dazu gibt es keine Optionen
+error-file_points = Zeile { $line }: mehr als { $most } Punkte
+error-file_corners = die Linie hat { $count } Ecken; höchstens { $most } werden abgerundet
+error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
+error-file_part = part { $part }: die Datei hat { $count } Linien
+error-file_option = { $name }: { $value } ist nicht möglich
+error-file_radius = ein Radius gehört zu corners=round
+error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
+error-file_takes_long = das Lesen der Datei hat zu lange gedauert
+error-file_failed = die Datei konnte nicht gelesen werden
+error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
+error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, I, J, R, F und N
+error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
+error-gcode_both = Zeile { $line }: { $text } widersprechen einander
+error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
+error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
+error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
+error-gcode_arc_ends = Zeile { $line }: die Enden des Bogens sind { $first } mm und { $last } mm von seinem Mittelpunkt entfernt
+error-gcode_radius = Zeile { $line }: kein Bogen mit dem Radius { $radius } mm hat diese Enden
+error-svg_not_installed = Zeichnungen brauchen svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = die Datei ist keine SVG-Zeichnung
+error-svg_no_xml = Zeile { $line }, Spalte { $column }: kein XML ({ $reason })
+error-svg_doctype = Zeile { $line }: DOCTYPE und Entitäten werden nicht gelesen; lösche sie
+error-svg_large = Zeile { $line }: die Zeichnung hat mehr als { $most } Elemente, oder { $deepest } ineinander
+error-svg_shape = Zeile { $line }: { $tag } ist hier nicht lesbar ({ $reason })
+
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren
 
 error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.

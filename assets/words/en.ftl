@@ -1068,6 +1068,41 @@ error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
 
+## Paths from files (models/path_files)
+
+say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-rounded = The tightest bend of the path has a radius of { $radius } mm.
+say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
+error-file_size = the file is larger than { $most } MB
+error-file_empty = the file is empty
+error-file_no_text = the file is not a text
+error-file_described = the file describes a path in words, which takes no options
+error-file_points = line { $line }: more than { $most } points
+error-file_corners = the line has { $count } corners; at most { $most } are rounded
+error-file_no_line = the file has no line that could be a path
+error-file_part = part { $part }: the file has { $count } lines
+error-file_option = { $name }: { $value } is not possible
+error-file_radius = a radius is for corners=round
+error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
+error-file_takes_long = reading the file took too long
+error-file_failed = the file could not be read
+error-points_columns = line { $line }: { $count } columns, of which none are called x and y
+error-points_units = line { $line }: x and y have different units
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
+error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
+error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
+error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
+error-gcode_arc_ends = line { $line }: the arc's ends are { $first } mm and { $last } mm away from its centre
+error-gcode_radius = line { $line }: no arc with the radius { $radius } mm has these ends
+error-svg_not_installed = drawings need svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = the file is not an SVG drawing
+error-svg_no_xml = line { $line }, column { $column }: not XML ({ $reason })
+error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete them
+error-svg_large = line { $line }: the drawing has more than { $most } elements, or { $deepest } in each other
+error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
+
 ## Refusals: share codes and session codes
 
 error-share_too_long = This text is much too long: a share code has a few hundred characters.

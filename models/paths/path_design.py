@@ -15,7 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_blend import aligned
 from onpath.models.paths.curve_fit import (
-    closed_along,
+    along,
     closed_through,
     control_points,
     from_stroke,
@@ -140,7 +140,7 @@ def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
     angle = np.linspace(-np.pi, np.pi, 4096, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
     radius = half / (np.abs(c) ** power + np.abs(s) ** power) ** (1 / power)
-    return closed_along(radius[:, None] * np.column_stack([c, s]))
+    return along(radius[:, None] * np.column_stack([c, s]), closed=True)
 
 
 def _clover() -> Curve:

@@ -673,7 +673,9 @@ def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.sampled_from("move add remove preset undo redo eight far".split())))
+@given(
+    st.lists(st.sampled_from(["move", "add", "remove", "preset", "undo", "redo", "eight", "far"]))
+)
 def test_undo_and_redo_walk_the_line_of_edits(actions: list[str]) -> None:
     lab = new_lab()
     line, at = [lab.session.editor.design], 0
