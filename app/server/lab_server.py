@@ -19,6 +19,7 @@ from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
+from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
@@ -46,6 +47,7 @@ from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import storage_key
 from onpath.app.viser_adapter.connections import disconnect
+from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
@@ -108,6 +110,7 @@ class LabServer:
             health=partial(metrics_json, self.simulation),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
+            limits=Limits(max_upload_bytes=2 * path_upload.MOST_BYTES),
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
@@ -167,6 +170,7 @@ class LabServer:
         for view in list(self._views.values()):
             view.page.close()
         exports.process.stop()
+        path_upload.process.stop()
         self.server.stop()
         if self._expiry is not None:
             self._expiry.stop()

@@ -6,7 +6,7 @@ A `PathDesign` is immutable; every edit returns a new one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -131,8 +131,18 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
     rightwards = before if before and not before.closed else segment((-0.1, 0.0), (0.1, 0.0))
     curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
-    curve = with_deviation(curve, stroke)
-    return PathDesign("drawn", curve, control_points(curve, 10 if closed else 6))
+    return _with_points(with_deviation(curve, stroke))
+
+
+def from_curve(curve: Curve) -> PathDesign:
+    """A design from any plane curve, with its parameter aligned as in `drawn`."""
+    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
+    turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
+    return _with_points(replace(turned, given=curve.given, deviation=curve.deviation))
+
+
+def _with_points(curve: Curve) -> PathDesign:
+    return PathDesign("drawn", curve, control_points(curve, 10 if curve.closed else 6))
 
 
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:

@@ -51,6 +51,9 @@ WILD = st.one_of(
 INDICES = st.one_of(st.none(), st.integers(-3, 30))
 
 
+EIGHT = presets()["figure of eight"].curve
+
+
 def points(most: int) -> st.SearchStrategy[np.ndarray]:
     """Arrays of points, mostly of the right shape."""
     size = st.sampled_from([2, 2, 2, 2, 3, 0])
@@ -166,6 +169,18 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.AddPoint: st.builds(c.AddPoint),
     c.RemovePoint: st.builds(c.RemovePoint),
     c.DrawPath: st.builds(c.DrawPath, st.one_of(points(6), circles(), circles())),
+    c.FollowCurve: st.builds(
+        c.FollowCurve,
+        st.booleans(),
+        st.one_of(
+            points(3), st.sampled_from([EIGHT.terms(), 9 * EIGHT.terms(), 0.1 * EIGHT.terms()])
+        ),
+        st.one_of(st.none(), points(6)),
+        WILD,
+        st.one_of(st.none(), st.just(EIGHT.terms()), points(3)),
+        WILD,
+        st.text(),
+    ),
     c.Undo: st.builds(c.Undo),
     c.Redo: st.builds(c.Redo),
     c.Share: st.builds(c.Share),
