@@ -24,7 +24,8 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 
 MOST_BYTES = 1_000_000
-SECONDS = 15.0  # for one file, in a process that may have to start
+STARTING = 60.0  # [s] for the process to start
+SECONDS = 15.0  # for one file
 process = ExportProcess()
 _queue = ThreadPoolExecutor(1, "path files")
 """Passes one file at a time to the process, on behalf of all tabs."""
@@ -70,6 +71,10 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
     )
 
 
+def started() -> None:
+    """Do nothing: the process has started, and imported what it needs."""
+
+
 class PathReader:
     """Reads the files of one tab, one at a time.
 
@@ -94,6 +99,7 @@ class PathReader:
 
         def work() -> None:
             try:
+                process.call(STARTING, started)
                 found = process.call(SECONDS, read_upload, upload, self._language)
                 if isinstance(found, FollowCurve):
                     follow(found)

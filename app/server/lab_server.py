@@ -52,6 +52,7 @@ from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
+from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
@@ -77,6 +78,7 @@ class LabServer:
         retention: how long labs are kept, and how many; defaults to that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
+        path: the path of new labs; see `new_lab`.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -95,6 +97,7 @@ class LabServer:
         retention: Retention | None = None,
         hang_seconds: float = 0.0,
         privacy_url: str = "",
+        path: PathDesign | None = None,
         **listening: Any,
     ) -> None:
         self._store, self._privacy_url = store, privacy_url
@@ -114,7 +117,7 @@ class LabServer:
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, path))
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:

@@ -129,6 +129,14 @@ def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Seque
 
 
 def cells_of(line: str, separator: str, number: int) -> list[str]:
+    """The cells of a line.
+
+    Args:
+        number: of the line, for the message.
+
+    Raises:
+        CodedError: a quotation mark is out of place.
+    """
     reader = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
     try:
         return [cell.strip() for cell in next(reader, list[str]())]

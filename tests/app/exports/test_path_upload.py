@@ -63,7 +63,10 @@ def stopped() -> Iterator[None]:
     path_upload.process.stop()
 
 
-def answer(content: bytes, name: str, placing: Placing = Placing(fit=0.1)) -> Any:
+SIZED = Placing(fit=0.1)
+
+
+def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
     """The command, or the reason of the refusal."""
     found, done = list[Any](), threading.Event()
 
