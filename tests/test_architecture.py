@@ -30,6 +30,7 @@ ORDER = [
     "app.steps",
     "app.common",
     "lessons",
+    "models.path_files",
     "models.studies",
     "models.standalone",
     "models.closed_loop",

@@ -6,16 +6,14 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
+from onpath.app.cli.path_option import read_path
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
-
-if TYPE_CHECKING:
-    from onpath.models.paths.curves import Curve
 
 
 @dataclass(frozen=True)
@@ -35,7 +33,8 @@ class ExperimentCommand:
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
     --set across=level_set by the expression), or JSON with points; in metres. Or @FILE with such a
-    text."""
+    text, points (CSV), a drawing (SVG) or G-code, and perhaps options: "@logo.svg fit=0.1
+    centre=0,0.01 corners=round radius=0.01 nearest"; also scale=, unit=mm, part=2, open, closed."""
     profile: str | None = None
     """Wanted speed over time, linear between points, as 0:0,1:6.28,4:6.28 in s and rad/s."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -56,6 +55,7 @@ class ExperimentCommand:
             experiments,
             forecast_text,
             never_held,
+            path_remark,
             run,
             summary,
         )
@@ -70,11 +70,12 @@ class ExperimentCommand:
             check_writable(self.csv)
         chosen = known[self.name]
         if self.path is not None:
-            chosen = chosen.along(read_path(self.path), self.path)
+            chosen = chosen.along(read_path(self.path, chosen.robot()), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
-        for text in (unused_text(chosen, laws, given), forecast_text(chosen, laws)):
+        remark = path_remark(chosen.curve())
+        for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
         runs = [run(chosen, name) for name in laws]
@@ -156,37 +157,6 @@ def laws_named(text: str) -> list[str]:
         if name not in LAWS:
             raise unknown_name(name, [*LAWS, "all", "both"], "law")
     return names
-
-
-def read_path(text: str) -> Curve:
-    """The path that `--path` describes, or the file that it names; a remark goes to stderr.
-
-    Raises:
-        ValueError: the text is not a path, or the file cannot be read.
-    """
-    from onpath.models.paths.curve_fit import deviation_remark
-    from onpath.models.studies.path_text import curve_from_text
-
-    curve = _path_in(Path(text[1:])) if text.startswith("@") else curve_from_text(text)
-    if remark := deviation_remark(curve):
-        print(f"onpath: {remark}", file=sys.stderr)
-    return curve
-
-
-def _path_in(file: Path) -> Curve:
-    from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_table
-
-    try:
-        with file.open(encoding="utf-8-sig") as opened:
-            text = opened.read(LONGEST_TEXT + 1)
-    except (OSError, UnicodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not a text"
-        raise ValueError(f"--path @{file}: {reason}") from None
-    try:
-        return curve_from_text(text)
-    except ValueError as error:
-        hint = "this is a table of points: in Python, onpath.through(points) makes a path of them"
-        raise ValueError(f"--path @{file}: {hint if is_table(text) else error}") from None
 
 
 def assignments(pairs: tuple[str, ...]) -> dict[str, str]:

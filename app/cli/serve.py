@@ -16,6 +16,8 @@ from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
+    from onpath.models.paths.path_design import PathDesign
+    from onpath.models.systems.catalogue import RobotEntry
 
 SHORTEST_HANG = 1.0  # [s]
 
@@ -49,6 +51,8 @@ class Serve:
     privacy_url: str = ""
     """Address of your privacy notice, https://example.org/privacy, shown where a nickname is asked
     for."""
+    path: str | None = None
+    """The path of new labs, or @FILE with options, as for onpath experiment."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -108,6 +112,7 @@ class Serve:
                 retention=Retention(self.keep_days, self.most_labs),
                 hang_seconds=self.hang_seconds,
                 privacy_url=self.privacy_url,
+                path=self._path(ROBOTS[robot]),
                 allowed_origins=self.origin,
                 trusted_proxies=self.trusted_proxy,
                 unix_socket=self.socket,
@@ -116,6 +121,23 @@ class Serve:
             print(f"onpath: {error}", file=sys.stderr)
             return 1
         return None
+
+    def _path(self, entry: RobotEntry) -> PathDesign | None:
+        """The path of new labs; None: the usual one."""
+        from onpath.app.cli.path_option import path_name, read_path
+        from onpath.models.paths.path_design import from_curve, presets
+        from onpath.models.studies.experiments import check_path, path_remark
+
+        if self.path is None:
+            return None
+        if self.path in presets():
+            return presets()[self.path]
+        robot = entry.make(entry.parameters())
+        curve = read_path(self.path, robot)
+        check_path(robot, curve, f"--path {path_name(self.path)}")
+        if remark := path_remark(curve):
+            print(f"onpath: {remark}", file=sys.stderr)
+        return from_curve(curve)
 
     def _classrooms(self) -> list[Classroom]:
         """Open the classes, if any are wanted, and print how to join them."""

@@ -15,9 +15,10 @@ from onpath.app.notebook.arguments import curve_of
 from onpath.app.notebook.simulate import by_declared_names, entry_named
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
-from onpath.models.studies.experiments import forecast_text, on_path
+from onpath.models.studies.experiments import forecast_text, on_path, path_remark
 from onpath.models.studies.unused import unused_text
 from onpath.models.systems.robots import RobotEntry
 
@@ -99,7 +100,8 @@ def figure(
     )
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
     laws = choice.every_law
-    for text in (unused_text(first, laws, given), forecast_text(first, laws)):
+    remarks = [path_remark(raised(each, choice.parameters)) for each in curves.values()]
+    for text in (*remarks, unused_text(first, laws, given), forecast_text(first, laws)):
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:

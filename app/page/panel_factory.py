@@ -8,6 +8,7 @@ from typing import Protocol
 import viser
 
 from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.build_queue import one_at_a_time
@@ -89,6 +90,7 @@ class PanelFactory:
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
         self._scene, self._context = scene, context
+        self._files = PathReader(words.language)
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
@@ -194,7 +196,13 @@ class PanelFactory:
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=expanded):
             return PathPanel(
-                self._gui, self._words, self._post, first=first, draw=draw, show_zone=shade
+                self._gui,
+                self._words,
+                self._post,
+                first=first,
+                draw=draw,
+                show_zone=shade,
+                files=self._files,
             )
 
     def _flexible(self, first: PageSnapshot) -> Part | None:

@@ -19,6 +19,7 @@ from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
+from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
@@ -50,10 +51,12 @@ from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import storage_key
 from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.data_channel import DataChannel
+from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
+from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 log = logging.getLogger(__name__)
@@ -80,6 +83,7 @@ class LabServer:
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
         robot: with which a new lab begins.
+        path: the path of new labs; see `new_lab`.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -99,6 +103,7 @@ class LabServer:
         hang_seconds: float = 0.0,
         privacy_url: str = "",
         robot: RobotEntry = FIVE_BAR,
+        path: PathDesign | None = None,
         **listening: Any,
     ) -> None:
         self._store, self._privacy_url = store, privacy_url
@@ -116,10 +121,11 @@ class LabServer:
             health=partial(metrics_json, self.simulation),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
+            limits=Limits(max_upload_bytes=2 * path_upload.MOST_BYTES),
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, robot))
+        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, robot, path))
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
@@ -175,6 +181,7 @@ class LabServer:
         for view in list(self._views.values()):
             view.close()
         exports.process.stop()
+        path_upload.process.stop()
         self.server.stop()
         if self._expiry is not None:
             self._expiry.stop()

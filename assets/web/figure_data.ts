@@ -22,6 +22,7 @@ export interface LawData extends Texts<"title" | "text"> {
 
 export interface PathData extends Texts<"label" | "kind" | "fit"> {
     closed: boolean
+    doubts: string[]
     points: Point[]
     table: number[]
     grid: number[]

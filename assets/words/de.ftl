@@ -579,8 +579,17 @@ design-path = Bahn
 design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um sie zu verbiegen.
 design-own = eine eigene Bahn
 design-refused = { $path } (wird abgelehnt)
+design-ambiguous = { $path } (kreuzt sich)
 design-draw = Freihändig zeichnen
 design-draw_hint = Zeichne dann mit der Maus oder dem Finger einen Strich um einen der Roboter. Endet er nahe an seinem Anfang, ist die Bahn geschlossen. Noch einmal drücken beendet das Zeichnen.
+design-files = Aus einer Datei
+design-size = Größe [mm]
+design-size_hint = Die längere Seite der Bahn; 0 lässt die Längen, wie sie in der Datei sind
+design-radius = Radius der Ecken [mm]
+design-radius_hint = Bögen mit diesem Radius ersetzen die Ecken; 0: eine glatte Kurve in ihrer Nähe
+design-upload = Datei wählen
+design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB. Von mehreren Linien wird die längste genommen.
+design-reading = Die Datei wird gelesen.
 design-edit = Ändern
 design-undo = Rückgängig
 design-redo = Wiederholen
@@ -847,6 +856,7 @@ say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurück
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam.
 say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-ambiguous = Hinweis: { $reasons }. Diese Gesetze bleiben auf dem Strang, auf dem sie sind; eines, das auf der ganzen Bahn sucht, könnte auf den anderen springen.
 say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
@@ -1235,7 +1245,7 @@ fault-outside = die Bahn verlässt den Arbeitsraum: Dorthin reicht der Arm nicht
 fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der Arm gestreckt oder gefaltet und kann sich nicht in jede Richtung bewegen
 fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt in ihrer Nähe nicht eindeutig
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
-fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
+fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung ist der nächste Bahnpunkt nicht eindeutig
 fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinander: Dazwischen ist der nächste Punkt nicht eindeutig
 
 ## Warum ein Roboter stehen geblieben ist (`fault` der Modelle)
@@ -1286,6 +1296,7 @@ error-implicit_lines =
     }
 error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: Sie läge bis zu { $apart } mm daneben
 error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen, und auf der Kommandozeile Bahnen mit einer Gleichung
+error-level_set_crosses = diese Bahn kreuzt sich selbst: An der Kreuzung hat eine Niveaumenge s(y) keinen Gradienten; folge der Bahn nach ihrem Abstand
 error-level_no_polynomial = mit der Niveaumenge lässt sich einer Bahn nur folgen, wenn ihre Gleichung ein Polynom in z1 und z2 ist; mit dem Abstand jeder Bahn mit einer Gleichung
 error-level_gradient = mit dieser Niveaumenge lässt sich der Bahn nicht folgen: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
@@ -1387,6 +1398,41 @@ error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $r
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
 error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
+
+## Bahnen aus Dateien (models/path_files)
+
+say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
+say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
+error-file_size = die Datei ist größer als { $most } MB
+error-file_empty = die Datei ist leer
+error-file_no_text = die Datei ist kein Text
+error-file_described = die Datei beschreibt eine Bahn mit Worten; dazu gibt es keine Optionen
+error-file_points = Zeile { $line }: mehr als { $most } Punkte
+error-file_corners = die Linie hat { $count } Ecken; höchstens { $most } werden abgerundet
+error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
+error-file_part = part { $part }: die Datei hat { $count } Linien
+error-file_option = { $name }: { $value } ist nicht möglich
+error-file_radius = ein Radius gehört zu corners=round
+error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
+error-file_takes_long = das Lesen der Datei hat zu lange gedauert
+error-file_failed = die Datei konnte nicht gelesen werden
+error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
+error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, I, J, R, F und N
+error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
+error-gcode_both = Zeile { $line }: { $text } widersprechen einander
+error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
+error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
+error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
+error-gcode_arc_ends = Zeile { $line }: die Enden des Bogens sind { $first } mm und { $last } mm von seinem Mittelpunkt entfernt
+error-gcode_radius = Zeile { $line }: kein Bogen mit dem Radius { $radius } mm hat diese Enden
+error-svg_not_installed = Zeichnungen brauchen svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = die Datei ist keine SVG-Zeichnung
+error-svg_no_xml = Zeile { $line }, Spalte { $column }: kein XML ({ $reason })
+error-svg_doctype = Zeile { $line }: DOCTYPE und Entitäten werden nicht gelesen; lösche sie
+error-svg_large = Zeile { $line }: die Zeichnung hat mehr als { $most } Elemente, oder { $deepest } ineinander
+error-svg_shape = Zeile { $line }: { $tag } ist hier nicht lesbar ({ $reason })
 
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren
 

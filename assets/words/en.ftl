@@ -527,8 +527,17 @@ design-path = Path
 design-path_hint = Both robots follow it. Drag its points in the scene to bend it.
 design-own = a path of your own
 design-refused = { $path } (is refused)
+design-ambiguous = { $path } (crosses itself)
 design-draw = Draw freehand
 design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to cancel.
+design-files = From a file
+design-size = Size [mm]
+design-size_hint = The larger side of the path; 0 leaves the lengths as they are in the file
+design-radius = Corners’ radius [mm]
+design-radius_hint = Arcs of this radius take the place of corners; 0: a smooth curve near them
+design-upload = Choose a file
+design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB. Of several lines, the longest is taken.
+design-reading = The file is being read.
 design-edit = Edit
 design-undo = Undo
 design-redo = Redo
@@ -850,6 +859,7 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the r
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
 say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-ambiguous = Note: { $reasons }. These laws go on along the strand on which they are; one that searched the whole path might jump to the other.
 say-deviates = The path is smooth: at some places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
@@ -929,7 +939,7 @@ fault-outside = the path leaves the workspace: the arm cannot reach there
 fault-singular = the path comes too near a singular configuration: there the arm is stretched or folded and cannot move in every direction
 fault-bends = the path bends too sharply: a bend needs a radius of at least { $radius } mm, otherwise the closest point on it is not unique nearby
 fault-cusp = the path has a cusp, where it has no direction
-fault-crosses = the path crosses itself: at a crossing it has two directions
+fault-crosses = the path crosses itself: at the crossing, the closest point is not unique
 fault-narrow = two strands of the path are closer to each other than { $least } mm: between them the closest point is not unique
 
 ## Why a robot has stopped (the models' `fault`)
@@ -980,6 +990,7 @@ error-implicit_lines =
     }
 error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
 error-no_level_set = this path has no level set s(y): only circles and ellipses have one here, and on the command line paths with an equation
+error-level_set_crosses = this path crosses itself: at the crossing, a level set s(y) has no gradient; follow the path by its distance
 error-level_no_polynomial = only a polynomial of z1 and z2 is followed by its level set; any path with an equation is followed by its distance
 error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s no longer points away from it, and the tube around the path is { $tube } mm wide
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
@@ -1073,6 +1084,41 @@ error-record_of_another_robot = not a record of the robot { $robot }: { $reason 
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
+
+## Paths from files (models/path_files)
+
+say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-rounded = The tightest bend of the path has a radius of { $radius } mm.
+say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
+error-file_size = the file is larger than { $most } MB
+error-file_empty = the file is empty
+error-file_no_text = the file is not a text
+error-file_described = the file describes a path in words, which takes no options
+error-file_points = line { $line }: more than { $most } points
+error-file_corners = the line has { $count } corners; at most { $most } are rounded
+error-file_no_line = the file has no line that could be a path
+error-file_part = part { $part }: the file has { $count } lines
+error-file_option = { $name }: { $value } is not possible
+error-file_radius = a radius is for corners=round
+error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
+error-file_takes_long = reading the file took too long
+error-file_failed = the file could not be read
+error-points_columns = line { $line }: { $count } columns, of which none are called x and y
+error-points_units = line { $line }: x and y have different units
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
+error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
+error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
+error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
+error-gcode_arc_ends = line { $line }: the arc's ends are { $first } mm and { $last } mm away from its centre
+error-gcode_radius = line { $line }: no arc with the radius { $radius } mm has these ends
+error-svg_not_installed = drawings need svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = the file is not an SVG drawing
+error-svg_no_xml = line { $line }, column { $column }: not XML ({ $reason })
+error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete them
+error-svg_large = line { $line }: the drawing has more than { $most } elements, or { $deepest } in each other
+error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
 
 ## Refusals: share codes and session codes
 

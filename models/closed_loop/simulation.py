@@ -19,6 +19,7 @@ from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.space_curves import saddle
@@ -72,6 +73,8 @@ def check_level_set(parameters: Parameters, curve: Curve) -> None:
         return
     if not has_level_set(curve):
         raise CodedError("error.no_level_set")
+    if any(each.check == "crosses" for each in ambiguities(curve)):
+        raise CodedError("error.level_set_crosses")
     if curve.equation is not None:
         check_level(curve)
 

@@ -172,6 +172,7 @@ class PathView:
         control_points: shape (k, 3); empty when the curve has none.
         selected: index of the selected control point, or None.
         refused: positions of the errors of the last refused edit, shape (n, 3); usually empty.
+        given: the line of a file or a stroke, if the path is far from it, shape (n, 3), else empty.
     """
 
     version: int | bytes
@@ -179,6 +180,7 @@ class PathView:
     control_points: np.ndarray
     selected: int | None
     refused: np.ndarray
+    given: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
     @property
     def closed(self) -> bool:

@@ -146,7 +146,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--robot", "five"], "five_bar"),
         (["--law", "path_folowing"], "path_following"),
         (["--law", "set_point"] * 3, "one or two"),
-        (["--path", "circle", "--path", "figure of eight"], "path 'figure of eight': "),
+        (["--path", "circle", "--path", "circle 0.3"], "path 'circle 0.3': "),
         (["--path", "circle 0,05"], "write 0.05 instead of 0,05"),
         (["--path", "@missing.txt"], "--path @missing.txt: No such file"),
         (["--set", "K1=nothing"], "K1"),

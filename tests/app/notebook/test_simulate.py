@@ -133,7 +133,6 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         ({"robot": "fivebar"}, "did you mean five_bar"),
         ({"robot": ["five_bar"]}, "did you mean five_bar"),
         ({"path": "elipse"}, "did you mean ellipse"),
-        ({"path": "figure of eight"}, "crosses itself"),
         ({"path": onpath.circle(0.3)}, "leaves the workspace"),
         ({"path": onpath.circle(0.005)}, "bends too sharply"),
         ({"law": "folowing"}, "path_following"),

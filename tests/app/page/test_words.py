@@ -36,7 +36,7 @@ from onpath.models.control.poles import channels
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.errors import CodedError, Message, message_of
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
@@ -437,7 +437,8 @@ def reasons() -> Iterator[Message]:
     """Why runs stop and paths are refused."""
     robot = RIGID_FIVE_BAR
     for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
-        yield from (fault.reason for fault in curve_faults(robot.margin, curve))
+        faults = curve_faults(robot.margin, curve) + ambiguities(curve)
+        yield from (fault.reason for fault in faults)
     v = np.zeros((1, 2))
     for q, rates in ((v * np.nan, v), (v, v + 1e4)):
         found = robot.fault(q, rates, FiveBarParameters())
@@ -534,8 +535,8 @@ def test_numbers_are_written_plainly_in_every_language() -> None:
 def test_a_german_lab_speaks_german() -> None:
     lab = Lab(store(), FLEXIBLE)
     do(lab, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
-    assert lab.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
-    do(lab, c.Undo())
+    assert lab.message.startswith("Hinweis: die Bahn kreuzt sich selbst")
+    do(lab, c.Undo(), c.Undo())
     assert lab.message == "es gibt nichts rückgängig zu machen"
     do(lab, c.RemovePoint())
     assert lab.message.startswith("wähle erst einen Kontrollpunkt")

@@ -21,7 +21,7 @@ from onpath.models.control.settable import changed
 from onpath.models.errors import CodedError, Message
 from onpath.models.evaluated import evaluated
 from onpath.models.paths.curve_blend import blend
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curve_fit import closed_through, open_through
 from onpath.models.paths.curves import TERMS, Curve, circle, ellipse, from_terms
 from onpath.models.paths.path_checks import SAMPLES
@@ -134,7 +134,12 @@ def lab_checks(name: str) -> Checks:
     """What the lab finds wrong with it, for the same robot."""
     entry = ROBOTS[name]
     margin = entry.make(entry.parameters()).margin
-    return lambda curve: {fault.check: fault.points for fault in curve_faults(margin, curve)}
+
+    def found(curve: Curve) -> dict[str, Array]:
+        faults = curve_faults(margin, curve) + ambiguities(curve)
+        return {fault.check: fault.points for fault in faults}
+
+    return found
 
 
 LINE = presets()["segment"].curve
