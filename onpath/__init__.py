@@ -21,9 +21,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
-    from onpath.app.notebook.robot import robot as robot
     from onpath.app.notebook.path_files import check_path as check_path
     from onpath.app.notebook.path_files import path_from as path_from
+    from onpath.app.notebook.robot import robot as robot
     from onpath.app.notebook.run import Run as Run
     from onpath.app.notebook.simulate import circle as circle
     from onpath.app.notebook.simulate import ellipse as ellipse

@@ -17,7 +17,6 @@ from onpath.app.classroom.admission import (
     Admission,
     class_code_of,
     cleaned,
-    new_class_code,
     new_pass,
     not_among,
 )
@@ -97,23 +96,20 @@ class Classroom:
 
     Attributes:
         clock: monotonic time, [s].
-        code: the class code that students type to join.
         key: the teacher's key, in the stored form of `app.common.access_codes`.
-        has_address: whether the class has an address, which contains its code; see
-            `class_with_address`.
+        code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
     """
 
     clock: Callable[[], float] = time.monotonic
-    code: str = ""
     key: str = field(default_factory=new_code, repr=False)
-    has_address: bool = False
+    code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _door: Admission = field(init=False)
 
     def __post_init__(self) -> None:
-        self.code = self.code or new_class_code()
+        self.code = class_code_of(self.key)
         self._door = Admission(self.clock)
 
     def restore(self, state: ClassState) -> None:
@@ -227,22 +223,12 @@ class Classroom:
             self.state = replace(self.state, orders=replace(self.orders, pace=pace))
 
     def end(self) -> int:
-        """End the class: remove all members, and return their number.
-
-        The next class has a new code, unless this one has an address.
-        """
+        """End the class: remove all members, and return their number. Code and key stay."""
         with self._lock:
             old = self.state
             orders = replace(old.orders, frozen=False, push=None, pace=None)
             self.state = replace(old, members={}, orders=orders)
-            if not self.has_address:
-                self.code = new_class_code()
             return len(old.members)
-
-
-def class_with_address(key: str, clock: Callable[[], float] = time.monotonic) -> Classroom:
-    """The class of a teacher's key; every process with this key gives it the same code."""
-    return Classroom(clock=clock, code=class_code_of(key), key=key, has_address=True)
 
 
 def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:

@@ -10,8 +10,8 @@ from typing import Annotated
 
 import tyro
 
-from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.cli.path_option import read_path
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 

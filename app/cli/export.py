@@ -13,8 +13,8 @@ import tyro
 from onpath.app.cli.experiment import assignments
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
-from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.cli.path_option import path_name, read_path
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 
 @dataclass(frozen=True)

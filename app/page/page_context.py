@@ -15,10 +15,10 @@ class ClassSeat:
 
     Attributes:
         join: joins with the class code and a nickname; raises ValueError with a message. Returns
-            the address of the class if its pages are elsewhere.
+            the address of the class if its page is elsewhere, where a nickname is asked for.
         leave: leaves the class but stays in the lab.
         teach: opens the teacher's page, given the key; see `join`.
-        code: the class code, if the page's address has it.
+        code: the class code, if the page's address has it; else a student types it.
     """
 
     join: Callable[[str, str], str]

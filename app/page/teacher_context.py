@@ -39,6 +39,8 @@ class TeacherContext:
     """The context of one teacher's page.
 
     Attributes:
+        address: where students join the class.
+        is_local: whether only this machine can open it.
         progress: the teacher's own progress through the lessons.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
@@ -49,6 +51,8 @@ class TeacherContext:
 
     classroom: Classroom
     chosen: TeacherChoices
+    address: str
+    is_local: bool
     progress: Callable[[], Progress]
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]

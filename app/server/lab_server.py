@@ -6,7 +6,7 @@ import logging
 import signal
 import time
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -39,6 +39,7 @@ from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.page_data import PageData
 from onpath.app.server.robot_shapes import prepare_shapes
+from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
@@ -48,7 +49,7 @@ from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import storage_key
+from onpath.app.viser_adapter.addresses import class_address, storage_key
 from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.data_channel import DataChannel
 from onpath.app.viser_adapter.message_filter import Limits
@@ -60,9 +61,10 @@ from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 log = logging.getLogger(__name__)
+SITE_KEY = "site"  # where the browser has opened the site; see assets/page/address.js
 DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
 STORAGE_KEY = "onpath_sessions"
-ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
+ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False, SITE_KEY: False}  # see `Arrivals`
 MOST_CLIENTS = 64
 ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
@@ -77,7 +79,7 @@ class LabServer:
         store: compiles and keeps the loops.
         course: the lessons; the built-in ones if None.
         records: where labs are stored; None stores nothing.
-        classrooms: the classes that students may join: one, or several with addresses.
+        classrooms: the classes that students may join.
         most_clients: maximum number of clients; others wait. A teacher is always admitted.
         retention: how long labs are kept, and how many; defaults to that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
@@ -108,6 +110,7 @@ class LabServer:
     ) -> None:
         self._store, self._privacy_url = store, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
+        self._origins: Sequence[str] = listening.get("allowed_origins", ())
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
@@ -134,6 +137,7 @@ class LabServer:
         self._places = dict[int, str]()
         self._views = dict[int, LabFeed]()
         self._dark = set[int]()  # clients that prefer dark pages
+        self._seen = dict[int, str]()  # where clients have opened the site
         self._newcomers = BuildQueue(self.server)
         self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
@@ -169,6 +173,15 @@ class LabServer:
         shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
         shown = f"[{shown}]" if ":" in shown else shown
         return f"http://{shown}:{self.server.get_port()}"
+
+    @property
+    def site(self) -> str:
+        """The address at which other devices open the lab, as far as the server knows."""
+        if self._origins:
+            return self._origins[0]
+        if self._socket is not None:
+            return ""
+        return reachable_site(self.server.get_host(), self.server.get_port())
 
     def stop(self) -> None:
         """Stop the server and all its threads."""
@@ -226,6 +239,7 @@ class LabServer:
             return
         if kept[DARK_KEY] == "yes":
             self._dark.add(number)
+        self._seen[number] = kept[SITE_KEY]
         teaches = service is not None and service.teaches(number)
         enter = partial(self._entered, client, kept[STORAGE_KEY], arrival.language)
         self._room.admit(client, enter, arrival.address, always=teaches)
@@ -269,7 +283,8 @@ class LabServer:
             if service
             else self._classes.seat_elsewhere(place, code)
         )
-        teaching = service.teaching(client, lab, reopen) if service else None
+        site = site_for_students(self._seen.get(number, ""), self.site)
+        teaching = service.teaching(client, lab, reopen, site) if service else None
         keeps = self._records is not None and not self._records.warning
         data = PageData(self._channel, lab)
         context = PageContext(
@@ -331,6 +346,7 @@ class LabServer:
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._tabs.forget(client.client_id)
         self._dark.discard(client.client_id)
+        self._seen.pop(client.client_id, None)
         self.sessions.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
             service.gone(client.client_id)
@@ -350,6 +366,7 @@ def serve(
     open_browser: bool = False,
     classrooms: Sequence[Classroom] = (),
     robot: RobotEntry = FIVE_BAR,
+    ready: Callable[[str], None] = lambda _: None,
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -359,6 +376,7 @@ def serve(
         database: URL of the database of labs; defaults to a file of the user's. If it is given, or
             if the server is behind a proxy, it must be usable; otherwise memory may replace it.
         classrooms, robot: see `LabServer`. Loops of a robot from a file are compiled first.
+        ready: called when browsers may come, with the address at which other devices open the lab.
         listening: further arguments of `LabServer`.
 
     Raises:
@@ -392,8 +410,10 @@ def serve(
             signal.signal(number, _end)
         warm_up(store, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
+        ready(lab.site)
         if open_browser:
-            webbrowser.open(lab.address)
+            first = class_address(classrooms[0].code) if classrooms else ""
+            webbrowser.open(f"{lab.address}{first}")
         while True:  # a signal may go to another thread and then does not wake this one
             time.sleep(LOOK)
     except KeyboardInterrupt:

@@ -271,7 +271,7 @@ class-stored = Dein Labor speichert, und deine Lehrkraft sieht unter deinem Spit
 class-privacy = Datenschutzerklärung
 class-join = Der Klasse beitreten
 class-leave = Die Klasse verlassen
-class-elsewhere = Diese Klasse hat eine eigene Seite: Öffne sie
+class-elsewhere = Die Seite dieser Klasse öffnen
 class-member = Du bist als { $name } in der Klasse. Die Lehrkraft sieht, wo du in den Lektionen bist, und dein Labor.
 class-teacher = Lehrkraft…
 class-key = Schlüssel der Lehrkraft
@@ -338,7 +338,7 @@ class-ended = Die Klasse ist zu Ende. { $count ->
         [0] Niemand war dabei.
         [one] 1 Person war dabei.
        *[other] { $count } Personen waren dabei.
-    } Die nächste Klasse hat einen neuen Code.
+    } Adresse und Code bleiben dieselben.
 class-forget = Die Klasse und ihre Labore löschen
 class-forget_sure = Die Labore aller Personen dieser Klasse löschen, mit allem, was davon gespeichert ist, und die Klasse beenden? Das lässt sich nicht rückgängig machen. Offene Seiten beginnen mit einem neuen Labor.
 class-forgotten =
@@ -1470,7 +1470,7 @@ say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen
 
 error-too_many_codes = zu viele falsche Codes: Warte eine Minute
 error-not_the_key = das ist nicht der Schlüssel der Lehrkraft
-error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand
+error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand; vergleiche auch die Adresse dieser Seite
 error-class_full = diese Klasse ist voll
 error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 

@@ -273,7 +273,7 @@ class-stored = Your lab stores, and your teacher sees under your nickname: your 
 class-privacy = Privacy notice
 class-join = Join the class
 class-leave = Leave the class
-class-elsewhere = This class has a page of its own: open it
+class-elsewhere = Open the page of this class
 class-member = You are in the class as { $name }. The teacher sees where you are in the lessons, and your lab.
 class-teacher = Teacher…
 class-key = Teacher's key
@@ -340,7 +340,7 @@ class-ended = The class is over. { $count ->
         [0] Nobody was in it.
         [one] 1 student was in it.
        *[other] { $count } students were in it.
-    } The next class has a new code.
+    } Its address and code stay the same.
 class-forget = Delete the class and its labs
 class-forget_sure = Delete the labs of all students of this class, with everything that is stored of them, and end the class? It cannot be undone. Open pages start again with a new lab.
 class-forgotten =
@@ -1156,7 +1156,7 @@ say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
 
 error-too_many_codes = too many wrong codes: wait a minute
 error-not_the_key = this is not the teacher's key
-error-not_the_class_code = this is not the class code on the projector
+error-not_the_class_code = this is not the class code on the projector; compare the address of this page, too
 error-class_full = this class is full
 error-no_nickname = a nickname has at least one character
 

@@ -19,6 +19,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.addresses import class_address
 from tests.support.axe import violations
 from tests.support.browser import THREE_FRAMES, Tab, wait_for
 
@@ -55,7 +56,7 @@ def tabs(browser: Browser) -> Iterator[Class]:
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})
-        made.append(Tab(server, context, draws=False))
+        made.append(Tab(server, context, draws=False, path=class_address(room.code)))
         made[-1].ask(c.SetRunning(False))
     yield Class(room, made[0], made[1:])
     assert [tab.errors for tab in made] == [[], [], []]
@@ -90,13 +91,12 @@ UNCORRECTED_CODE = ["off", "off", "false"]
 
 def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     for student, name in zip(tabs.students, ("Ada", HOSTILE), strict=True):
-        fill(student, "Class code", tabs.room.code.upper())
         fill(student, "Nickname", name)
         student.press("Join the class")
         student.page.get_by_text("You are in the class as").wait_for()
     teacher = tabs.teacher
     teacher.open("Teacher…")
-    for label in ("Class code", "Nickname", "Teacher's key"):
+    for label in ("Nickname", "Teacher's key"):
         assert teacher.field(label).get_attribute("aria-required") == "true"
         left = [teacher.field(label).get_attribute(name) for name in UNCORRECTED]
         assert left == (UNCORRECTED_CODE if label != "Nickname" else [None] * len(UNCORRECTED))
