@@ -31,8 +31,8 @@ Parts = list[tuple[str, meshes.Mesh, palette.Colour]]
 
 
 @lru_cache(maxsize=64)
-def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
-    """The stage of a robot, with the colours of a light or of a dark scene."""
+def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
+    """The stage of a robot, with the colours of a light or of a dark scene; see `Stage.plain`."""
     drawing = robot.drawing
     low, high = (np.array(corner) for corner in drawing.box or _box(robot))
     floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02)
@@ -62,6 +62,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
         motors=drawing.motors,
         parts=lambda: _parts(drawing, floor, tones),
         tones=tones,
+        plain=plain,
     )
 
 

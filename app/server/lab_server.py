@@ -54,8 +54,14 @@ from onpath.models.systems.catalogue import FIVE_BAR
 
 log = logging.getLogger(__name__)
 DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
+QUALITY_KEY = "quality"  # whether it draws in software; see assets/page/quality.js
 STORAGE_KEY = "onpath_sessions"
-ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
+ASKED = {  # see `Arrivals`
+    STORAGE_KEY: True,
+    TEACHER_KEY: True,
+    DARK_KEY: False,
+    QUALITY_KEY: False,
+}
 MOST_CLIENTS = 64
 ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
@@ -119,7 +125,7 @@ class LabServer:
         self._classes = ClassDirectory(classrooms, self._class_service)
         self._places = dict[int, str]()
         self._views = dict[int, LabFeed]()
-        self._dark = set[int]()  # clients that prefer dark pages
+        self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
         self._newcomers = BuildQueue(self.server)
         self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.parameters())))
@@ -209,8 +215,7 @@ class LabServer:
             disconnect(self.server, {number})
             self._disconnected(client)
             return
-        if kept[DARK_KEY] == "yes":
-            self._dark.add(number)
+        self._looks[number] = kept[DARK_KEY] == "yes", kept[QUALITY_KEY] == "plain"
         teaches = service is not None and service.teaches(number)
         enter = partial(self._entered, client, kept[STORAGE_KEY])
         self._room.admit(client, enter, arrival.address, always=teaches)
@@ -256,6 +261,7 @@ class LabServer:
         )
         teaching = service.teaching(client, lab, reopen) if service else None
         keeps = self._records is not None and not self._records.warning
+        dark, plain = self._looks.get(number, (False, False))
         context = PageContext(
             code=code,
             post=lab.post,
@@ -263,7 +269,8 @@ class LabServer:
             keep_days=self._retention.days if keeps else 0,
             enter=partial(self._enter, client),
             seat=seat,
-            dark=number in self._dark,
+            dark=dark,
+            plain=plain,
             privacy_url=self._privacy_url,
         )
         nickname = partial(service.nickname, code) if service else str
@@ -312,7 +319,7 @@ class LabServer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._tabs.forget(client.client_id)
-        self._dark.discard(client.client_id)
+        self._looks.pop(client.client_id, None)
         self.sessions.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
             service.gone(client.client_id)
