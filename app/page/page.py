@@ -147,7 +147,8 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        stage = stage_of(robot, DARK if self._context.dark else LIGHT)
+        tones = DARK if self._context.dark else LIGHT
+        stage = stage_of(robot, tones, self._context.plain)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
         self._scene.build(first)
         one_at_a_time.rest()

@@ -22,8 +22,8 @@ from onpath.app.scene.meshes import FLOOR_DEPTH, LINK_THICKNESS, PARTS, RAIL, WA
 from onpath.assets import asset_path
 
 SHARP = np.radians(30.0)  # sharper edges are not smoothed
-ROUND = 32  # points of a full circle
-SMALL_ROUND = 24  # points of the circle of a small part, of which there are many
+ROUND = 24  # points of a full circle
+SMALL_ROUND = 16  # points of the circle of a small part, of which there are many
 TOWARDS_VIEWER = rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0])  # turns the axis z to -y
 
 Profile = Sequence[tuple[float, float]]

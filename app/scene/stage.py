@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
+from onpath.app.scene.ground import FADING, KEY_LIGHT, RADIUS, painted_ground
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.app.scene.tones import LIGHT, Tones
 from onpath.app.viser_adapter.frame_channel import update_node
+from onpath.app.viser_adapter.images import add_png
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
@@ -25,8 +27,8 @@ if TYPE_CHECKING:
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.8
 """Aspect ratio below which the panel covers a window's lower part; see assets/page/portrait.js."""
-GROUND = 1.6
-"""Radius of the visible ground, up to the horizon [m]."""
+DOWN = np.array([0.0, 1.0, 0.0, 0.0])
+"""Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
 TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
 """Lines above a robot: offset below the title's position, and height, [m]."""
@@ -70,6 +72,7 @@ class Stage:
         parts: fixed parts, with colours.
         bodies: shapes of the moving bodies; empty: bars and joints are drawn.
         tones: colours that depend on the background.
+        plain: whether the scene is built for browsers that draw in software: with a painted shadow.
     """
 
     bases: dict[str, np.ndarray]
@@ -91,6 +94,7 @@ class Stage:
     parts: Callable[[], list[tuple[str, Mesh, palette.Colour]]]
     tones: Tones = LIGHT
     bodies: tuple[Mesh, ...] = ()
+    plain: bool = False
 
     @property
     def origins(self) -> np.ndarray:
@@ -177,15 +181,26 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
 
 
 def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHandle]:
-    """Add floor, lights and the robots' bases to a client's scene; returns the bases."""
-    _add_lights(scene)
+    """Add ground, lights and the robots' bases to a client's scene; returns the bases."""
+    _add_lights(scene, casts_shadow=not stage.plain)
+    if stage.plain:
+        _add_painted_ground(scene, stage)
+    else:
+        _add_ground(scene, stage)
+    return [
+        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+        for part, mesh, colour in stage.parts()
+    ]
+
+
+def _add_ground(scene: viser.SceneApi, stage: Stage) -> None:
     scene.add_grid(
         "/stage/floor",
         plane="xy",
         infinite_grid=True,
         fade_from="origin",
-        fade_distance=GROUND,
-        fade_strength=1.6,
+        fade_distance=RADIUS,
+        fade_strength=FADING,
         cell_size=0.05,
         section_size=0.2,
         cell_color=stage.tones.cells.rgb,
@@ -195,13 +210,17 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHa
         shadow_opacity=0.5,
         position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],
     )
-    return [
-        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
-        for part, mesh, colour in stage.parts()
-    ]
 
 
-def _add_lights(scene: viser.SceneApi) -> None:
+def _add_painted_ground(scene: viser.SceneApi, stage: Stage) -> None:
+    solids = tuple(mesh for _, mesh, _ in stage.parts())
+    origins = tuple(map(tuple, stage.origins.tolist()))
+    picture = painted_ground(solids, origins, stage.floor, stage.tones.floor)
+    middle = stage.origins.mean(0) + [0.0, 0.0, stage.floor]
+    add_png(scene, "/stage/floor", picture, (2 * RADIUS, 2 * RADIUS), middle, DOWN)
+
+
+def _add_lights(scene: viser.SceneApi, casts_shadow: bool) -> None:
     """A studio: one light that casts shadows, from the left above, a soft one, one from behind."""
     scene.configure_environment_map(None)
     scene.configure_default_lights(enabled=False)
@@ -209,7 +228,7 @@ def _add_lights(scene: viser.SceneApi) -> None:
         "/stage/sky", sky_color=(255, 255, 255), ground_color=(205, 200, 196), intensity=2.2
     )
     scene.add_light_directional(
-        "/stage/key", intensity=2.9, position=(-0.9, -0.7, 1.25), cast_shadow=True
+        "/stage/key", intensity=2.9, position=KEY_LIGHT, cast_shadow=casts_shadow
     )
     scene.add_light_directional("/stage/rim", intensity=0.8, position=(0.6, 0.8, 0.5))
 

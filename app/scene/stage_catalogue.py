@@ -32,8 +32,8 @@ Parts = list[tuple[str, meshes.Mesh, palette.Colour]]
 
 
 @lru_cache(maxsize=64)
-def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
-    """The stage of a robot, with the colours of a light or of a dark scene."""
+def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
+    """The stage of a robot, with the colours of a light or of a dark scene; see `Stage.plain`."""
     drawing = robot.drawing
     low, high = (np.array(corner) for corner in drawing.box or _box(robot))
     shapes = None if robot.chain is None else body_meshes(robot.chain)
@@ -65,6 +65,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
         parts=lambda: _parts(drawing, floor, tones, shapes),
         tones=tones,
         bodies=() if shapes is None else shapes.moving,
+        plain=plain,
     )
 
 

@@ -63,8 +63,15 @@ from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 log = logging.getLogger(__name__)
 SITE_KEY = "site"  # where the browser has opened the site; see assets/page/address.js
 DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
+QUALITY_KEY = "quality"  # whether it draws in software; see assets/page/quality.js
 STORAGE_KEY = "onpath_sessions"
-ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False, SITE_KEY: False}  # see `Arrivals`
+ASKED = {  # see `Arrivals`
+    STORAGE_KEY: True,
+    TEACHER_KEY: True,
+    DARK_KEY: False,
+    QUALITY_KEY: False,
+    SITE_KEY: False,
+}
 MOST_CLIENTS = 64
 ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
@@ -136,8 +143,8 @@ class LabServer:
         self._classes = ClassDirectory(classrooms, self._class_service)
         self._places = dict[int, str]()
         self._views = dict[int, LabFeed]()
-        self._dark = set[int]()  # clients that prefer dark pages
         self._seen = dict[int, str]()  # where clients have opened the site
+        self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
         self._newcomers = BuildQueue(self.server)
         self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
@@ -237,9 +244,8 @@ class LabServer:
             disconnect(self.server, {number})
             self._disconnected(client)
             return
-        if kept[DARK_KEY] == "yes":
-            self._dark.add(number)
         self._seen[number] = kept[SITE_KEY]
+        self._looks[number] = kept[DARK_KEY] == "yes", kept[QUALITY_KEY] == "plain"
         teaches = service is not None and service.teaches(number)
         enter = partial(self._entered, client, kept[STORAGE_KEY], arrival.language)
         self._room.admit(client, enter, arrival.address, always=teaches)
@@ -287,6 +293,7 @@ class LabServer:
         teaching = service.teaching(client, lab, reopen, site) if service else None
         keeps = self._records is not None and not self._records.warning
         data = PageData(self._channel, lab)
+        dark, plain = self._looks.get(number, (False, False))
         context = PageContext(
             code=code,
             post=lab.post,
@@ -294,7 +301,8 @@ class LabServer:
             keep_days=self._retention.days if keeps else 0,
             enter=partial(self._enter, client),
             seat=seat,
-            dark=number in self._dark,
+            dark=dark,
+            plain=plain,
             privacy_url=self._privacy_url,
             ticket=data.ticket,
         )
@@ -347,6 +355,7 @@ class LabServer:
         self._tabs.forget(client.client_id)
         self._dark.discard(client.client_id)
         self._seen.pop(client.client_id, None)
+        self._looks.pop(client.client_id, None)
         self.sessions.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
             service.gone(client.client_id)
