@@ -353,7 +353,6 @@ class LabServer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._tabs.forget(client.client_id)
-        self._dark.discard(client.client_id)
         self._seen.pop(client.client_id, None)
         self._looks.pop(client.client_id, None)
         self.sessions.leave(client.client_id)
