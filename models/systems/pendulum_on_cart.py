@@ -37,6 +37,11 @@ RAIL, TRAVEL = 0.5, 0.15  # [m]; length, and travel of the pen to either side
 ASIDE = 0.06  # of the cart's middle: the pivot on the left, the pen on the right, [m]
 HOME = (0.27, 0.0, -0.2)  # the pen at y = 0; the origin is the rail's left end, [m]
 SIDES = {"hanging": 1.0, "upright": -1.0}
+DRAWING = Drawing(
+    motors=(1,),
+    box=((-0.07, -0.03, -0.37), (RAIL + 0.05, 0.03, LENGTH + 0.13)),
+    angles=(Angle("φ", bar=2, after=3, near=0.0),),
+)
 NAMES = ("right", "pen", "moment", "inertia", "pivot")
 
 
@@ -117,7 +122,7 @@ def cart(pendulum: str) -> Robot:
         home=HOME,
         reach=0.6,
         regularity=ca.fmin(1, 4 * (1 - ca.mmax(ca.fabs(system.q[:2])) / TRAVEL)),
-        drawing=Drawing(motors=(1,), angles=(Angle("φ", bar=2, after=3, near=0.0),)),
+        drawing=DRAWING,
     )
 
 
