@@ -19,14 +19,14 @@ Source: eqs. (1)-(3), (10).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing
-from onpath.models.systems.parameter_specs import choice, number, wanted_speed
+from onpath.models.systems.parameter_specs import choice, number, unknown_payload, wanted_speed
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
@@ -68,6 +68,7 @@ class CartParameters(Parameters):
         group="robot",
         label="Pivot damping",
     )
+    payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 
 @lru_cache(maxsize=1)
@@ -99,10 +100,14 @@ def cart(pendulum: str) -> Robot:
 
     def plant(parameters: Parameters) -> Array:
         own = own_parameters(CartParameters, parameters)
-        values = {"right": CART + PEN + own.mass, "pen": PEN, "pivot": own.pivot}
+        pen = PEN + own.payload
+        values = {"right": CART + pen + own.mass, "pen": pen, "pivot": own.pivot}
         values["moment"] = side * own.mass * LENGTH / 2
         values["inertia"] = own.mass * LENGTH**2 / 3
         return system.parameter_vector(values)
+
+    def model(parameters: Parameters) -> Array:
+        return plant(replace(own_parameters(CartParameters, parameters), payload=0.0))
 
     def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Rail, cart, pendulum and the pen's slide; joints: pivot, and the slide on the cart."""
@@ -116,7 +121,7 @@ def cart(pendulum: str) -> Robot:
     return Robot(
         system=system,
         plant=plant,
-        model=plant,
+        model=model,
         inverse=lambda y: ca.vertcat(y, 0),
         skeleton=skeleton,
         home=HOME,
