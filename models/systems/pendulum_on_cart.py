@@ -19,14 +19,14 @@ Source: eqs. (1)-(3), (10).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing
-from onpath.models.systems.parameter_specs import choice, number, wanted_speed
+from onpath.models.systems.parameter_specs import choice, number, unknown_payload, wanted_speed
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
@@ -37,6 +37,11 @@ RAIL, TRAVEL = 0.5, 0.15  # [m]; length, and travel of the pen to either side
 ASIDE = 0.06  # of the cart's middle: the pivot on the left, the pen on the right, [m]
 HOME = (0.27, 0.0, -0.2)  # the pen at y = 0; the origin is the rail's left end, [m]
 SIDES = {"hanging": 1.0, "upright": -1.0}
+DRAWING = Drawing(
+    motors=(1,),
+    box=((-0.07, -0.03, -0.37), (RAIL + 0.05, 0.03, LENGTH + 0.13)),
+    angles=(Angle("φ", bar=2, after=3, near=0.0),),
+)
 NAMES = ("right", "pen", "moment", "inertia", "pivot")
 
 
@@ -63,6 +68,7 @@ class CartParameters(Parameters):
         group="robot",
         label="Pivot damping",
     )
+    payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 
 @lru_cache(maxsize=1)
@@ -94,10 +100,14 @@ def cart(pendulum: str) -> Robot:
 
     def plant(parameters: Parameters) -> Array:
         own = own_parameters(CartParameters, parameters)
-        values = {"right": CART + PEN + own.mass, "pen": PEN, "pivot": own.pivot}
+        pen = PEN + own.payload
+        values = {"right": CART + pen + own.mass, "pen": pen, "pivot": own.pivot}
         values["moment"] = side * own.mass * LENGTH / 2
         values["inertia"] = own.mass * LENGTH**2 / 3
         return system.parameter_vector(values)
+
+    def model(parameters: Parameters) -> Array:
+        return plant(replace(own_parameters(CartParameters, parameters), payload=0.0))
 
     def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Rail, cart, pendulum and the pen's slide; joints: pivot, and the slide on the cart."""
@@ -111,13 +121,13 @@ def cart(pendulum: str) -> Robot:
     return Robot(
         system=system,
         plant=plant,
-        model=plant,
+        model=model,
         inverse=lambda y: ca.vertcat(y, 0),
         skeleton=skeleton,
         home=HOME,
         reach=0.6,
         regularity=ca.fmin(1, 4 * (1 - ca.mmax(ca.fabs(system.q[:2])) / TRAVEL)),
-        drawing=Drawing(motors=(1,), angles=(Angle("φ", bar=2, after=3, near=0.0),)),
+        drawing=DRAWING,
     )
 
 

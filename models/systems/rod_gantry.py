@@ -26,6 +26,7 @@ import casadi as ca
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing, Length
+from onpath.models.systems.forces import Grip, SpringLimits
 from onpath.models.systems.parameter_specs import number, unknown_payload, wanted_speed
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
@@ -37,6 +38,9 @@ ROD = 0.2  # l, [m]
 PERCUSSION = 2 * ROD / 3  # L, [m]
 RAIL, TRAVEL = 0.42, 0.15  # [m]; length, and travel of the carriage to either side
 HOME = (0.21, 0.0, -0.32)  # the pen at y = 0; the origin is the rail's left end, [m]
+_SOFT = SpringLimits(stiffness=500.0, damping=10.0, largest=3.0)
+GRIP = Grip(hand=SpringLimits(stiffness=100.0, damping=2.0, largest=1.0), hold=_SOFT, wall=_SOFT)
+"""The rod weighs 3 N: a hand of 15 N would throw it around its pivot."""
 NAMES = ("right", "up", "moment", "inertia", "pivot", "alpha")
 
 
@@ -46,7 +50,7 @@ class RodGantryParameters(Parameters):
 
     speed: float = wanted_speed(2.0, (-10, 10, 0.1))
     alpha: float = number(
-        0.9,
+        0.5,
         "",
         (-1, 1.5, 0.01),
         "share of the swing that the controller sees: 1 the pen, 0 the carriage",
@@ -54,10 +58,10 @@ class RodGantryParameters(Parameters):
         label="α",
     )
     rod: float = number(
-        0.1, "kg", (0.02, 0.5, 0.01), "mass of the hanging rod", group="robot", label="Rod"
+        0.3, "kg", (0.05, 0.5, 0.01), "mass of the hanging rod", group="robot", label="Rod"
     )
     pivot: float = number(
-        0.001,
+        0.005,
         "N m s",
         (0, 0.02, 0.001),
         "damping of the pivot, which has no motor",
@@ -123,8 +127,10 @@ def rod_gantry() -> Robot:
         home=HOME,
         reach=0.62,
         regularity=ca.fmin(1, 4 * (1 - ca.mmax(ca.fabs(q[:2])) / TRAVEL)),
+        grip=GRIP,
         drawing=Drawing(
             motors=(0,),
+            box=((-0.07, -0.03, -0.56), (RAIL + 0.05, 0.03, 0.15)),
             angles=(Angle("φ", bar=3, after=2, near=0.0),),
             lengths=(Length("L", 6, 7, right=True),),
         ),
