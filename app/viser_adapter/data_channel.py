@@ -45,6 +45,7 @@ class PageStream:
     def __init__(self, channel: DataChannel, receive: Callable[[str], bytes]) -> None:
         self._channel, self._receive = channel, receive
         self._connection: SecureConnection | None = None
+        self._ending: asyncio.Task[None] | None = None  # else it might be collected
         self.ticket = secrets.token_urlsafe(TICKET)
         self.opened, self.is_busy = 0, False
 
@@ -70,10 +71,9 @@ class PageStream:
         before, self._connection = self._connection, connection
         self.is_busy = False
         self.opened += 1
-        ending = None
         if before is not None:
             closing = before.close(CloseCode.GOING_AWAY, "this page has opened another connection")
-            ending = connection.loop.create_task(closing)
+            self._ending = connection.loop.create_task(closing)
         try:
             while True:
                 text = await connection.recv_data()
@@ -85,8 +85,6 @@ class PageStream:
         finally:
             if self._connection is connection:
                 self._connection = None
-            if ending is not None:
-                await ending
 
     def write(self, messages: Sequence[Message]) -> None:
         """Send messages, or wait until less is unsent."""
@@ -106,11 +104,12 @@ class PageStream:
             connection.protocol.send_text(message())
         connection.send_data()
 
-    async def end(self) -> None:
-        """Close the connection, if there is one."""
+    def end(self) -> None:
+        """Begin to close the connection, if there is one."""
         connection, self._connection = self._connection, None
         if connection is not None:
-            await connection.close(CloseCode.GOING_AWAY, "this page has ended")
+            closing = connection.close(CloseCode.GOING_AWAY, "this page has ended")
+            self._ending = connection.loop.create_task(closing)
 
 
 class DataChannel:
@@ -142,7 +141,7 @@ class DataChannel:
         self._streams.pop(stream.ticket, None)
         if self._loop is not None:
             with suppress(RuntimeError):  # the server has stopped
-                asyncio.run_coroutine_threadsafe(stream.end(), self._loop)
+                self._loop.call_soon_threadsafe(stream.end)
 
     async def handle(self, connection: SecureConnection) -> None:
         """Serve a connection, from its ticket on."""
