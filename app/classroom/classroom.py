@@ -75,6 +75,22 @@ class Orders:
 
 
 @dataclass(frozen=True, slots=True)
+class Display:
+    """What all teachers' pages of the class show of its answers.
+
+    Attributes:
+        lesson, step: where the displayed question is asked; the lesson may be gone, or "".
+        shown: whether the answers themselves are shown, and not only their number.
+        revealed: whether the truth is shown as well.
+    """
+
+    lesson: str = ""
+    step: int = 0
+    shown: bool = False
+    revealed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class ClassState:
     """Everything about a class that is stored.
 
@@ -86,6 +102,7 @@ class ClassState:
 
     joined: int = 0
     orders: Orders = field(default_factory=Orders)
+    display: Display = field(default_factory=Display)
     passes: frozenset[str] = frozenset()
     members: Mapping[str, Member] = field(default_factory=dict)
 
@@ -166,6 +183,17 @@ class Classroom:
             self.state = replace(old, members=members, joined=joined)
             return member
 
+    def rename(self, session: str, name: str) -> None:
+        """Change a student's nickname. Does nothing if the student has left.
+
+        Raises:
+            ValueError: the nickname is empty.
+        """
+        with self._lock:
+            old = self.state.members.get(session)
+            if old is not None:
+                self.note(session, name=seated(self.state.members, session, name, old).name)
+
     def leave(self, session: str) -> None:
         """Remove a student and all of the student's data from the class."""
         with self._lock:
@@ -204,14 +232,27 @@ class Classroom:
         """Send a set-up or a step to all members once, and to those who join later.
 
         It remains in effect until another one is sent or the class ends. None clears it without
-        changing any lab; students who join later then keep their own set-up.
+        changing any lab; students who join later then keep their own set-up. A step that is sent
+        is displayed, too, with its answers hidden: nobody should follow the majority.
         """
         with self._lock:
+            if isinstance(push, TakeStep):
+                self.show(Display(push.lesson, push.step))
             count, pace = self.orders.pushes + (push is not None), self.orders.pace
             if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
                 pace = None
             new = replace(self.orders, pushes=count, push=push, pace=pace)
             self.state = replace(self.state, orders=new)
+
+    @property
+    def display(self) -> Display:
+        """What the teachers' pages show now."""
+        return self.state.display
+
+    def show(self, display: Display) -> None:
+        """Show something else on all teachers' pages."""
+        with self._lock:
+            self.state = replace(self.state, display=display)
 
     def keep_within(self, pace: Pace | None) -> None:
         """Keep students within a range of steps; None lets them go anywhere.
@@ -227,7 +268,7 @@ class Classroom:
         with self._lock:
             old = self.state
             orders = replace(old.orders, frozen=False, push=None, pace=None)
-            self.state = replace(old, members={}, orders=orders)
+            self.state = replace(old, members={}, orders=orders, display=Display())
             return len(old.members)
 
 

@@ -12,22 +12,15 @@ from onpath.lessons.words import Words
 
 @dataclass(slots=True)
 class TeacherChoices:
-    """Selections on one teacher's page, kept when the page is rebuilt.
+    """Selections on one teacher's page, kept when the page is rebuilt; see also `Display`.
 
     Attributes:
-        lesson, step: where the displayed prediction is asked.
-        shown: whether the answers themselves are shown, and not only their number.
-        revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
         message: the outcome of deleting a student.
         picked: numbers of the sketches to show; empty for all.
         numbered: sketches in order of arrival, by lesson, step and round; `picked` counts them.
     """
 
-    lesson: str = ""
-    step: int = 0
-    shown: bool = True
-    revealed: bool = False
     followed: str = ""
     message: str = ""
     picked: tuple[int, ...] = ()
