@@ -17,7 +17,8 @@ UNSEEN = 1e-5
 PLACED = ("bars", "parts", "tips")
 """Fields that are world positions; the others are directions, lengths and forces."""
 OF_BARS = ("bars", "quaternions", "lengths")
-"""Fields with one row for each bar: first the links of all robots, then the pieces of strips."""
+"""Fields with one row for each bar: first the links of all robots, then the pieces of strips, then
+the straight strips."""
 
 
 class Poses(Struct, frozen=True, eq=False):
@@ -92,7 +93,7 @@ def _layout(stage: Stage, counts: Counts) -> _Layout:
         width, before = prod(rest), len(order)
         places = [(i, row) for i in range(len(bases)) for row in range(rows)]
         if name in OF_BARS:
-            places.sort(key=lambda place: place[1] >= counts.links)
+            places.sort(key=lambda place: (place[1] >= counts.links) + (place[1] >= counts.bars))
         for i, row in places:
             at = i * counts.size + start + row * width
             order.extend(range(at, at + width))
