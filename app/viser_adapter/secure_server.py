@@ -68,6 +68,7 @@ def make_server(
     health: Callable[[str], str] = well,
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
+    course_url: str = "",
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -81,6 +82,7 @@ def make_server(
             a folder of its own.
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a place; a websocket there is answered 502.
+        course_url: see `page_scripts.words`.
 
     Raises:
         ValueError: a proxy is malformed, or the process may not open enough files.
@@ -105,6 +107,7 @@ def make_server(
         counts=connections,
         to_place=to_place,
         elsewhere=elsewhere,
+        course_url=course_url,
     ):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
@@ -213,6 +216,7 @@ def _guarded_serve(
     counts: ConnectionLimits,
     to_place: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
+    course_url: str,
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes.
 
@@ -233,7 +237,7 @@ def _guarded_serve(
                 return connection.respond(*answer)
             if response := to_place(connection, request):
                 return response
-            return add_scripts(process_request(connection, request))
+            return add_scripts(process_request(connection, request), course_url)
 
         options |= _options(limits)
         finish = partial(_finish, requests)

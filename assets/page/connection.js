@@ -1,21 +1,18 @@
-// Tells users who wait in vain that the lab does not answer, in the browser's language, since the page
-// has no texts yet. viser's worker reports when it has connected, and when the connection has ended.
+// Tells users who wait in vain that the lab does not answer. viser's worker reports when it has connected, and when the connection has ended.
 (() => {
   "use strict";
 
   const PATIENCE = 10000;  // [ms]
 
-  const words = JSON.parse(document.getElementById("op-words").textContent);
   const box = document.createElement("p");
-  box.id = "op-silent";
+  box.className = "op-notice";
   box.setAttribute("role", "alert");
   let waiting = setTimeout(tell, PATIENCE);
 
   function tell() {
-    const own = navigator.languages.map((language) => language.split("-")[0]);
-    box.lang = own.find((language) => language in words) ?? "en";
+    box.lang = ownWords.language;
     document.body.append(box);
-    box.textContent = words[box.lang];
+    box.textContent = ownWords.text.silent;
   }
 
   function hear({ data }) {
