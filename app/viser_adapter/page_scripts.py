@@ -12,8 +12,6 @@ from onpath.assets import asset_path
 from onpath.assets.messages import catalogue, languages
 
 ELEMENTS = {".js": b"script", ".css": b"style"}
-SCHEMES = b'<meta name="color-scheme" content="light dark">\n'
-"""Tells browsers that darken pages by force that this one has dark colours of its own."""
 SAID = (
     *("connect.silent", "connect.lost", "connect.no_webgl", "connect.no_webgl_why"),
     *("connect.course", "connect.course_link"),
@@ -47,14 +45,14 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 @cache
 def our_scripts(course_url: str = "") -> bytes:
-    """The page's colour schemes, words that are needed before the lab sends any, and our scripts.
+    """The words that the scripts need before the lab sends any, then all files of assets/page.
 
-    Those are all files of assets/page. Each is a <script> or <style> element; the files are in alphabetical order.
+    Each is a <script> or <style> element; the files are in alphabetical order.
     """
     files = sorted(file for file in asset_path("page").iterdir() if file.suffix in ELEMENTS)
     elements = [(ELEMENTS[file.suffix], file.read_bytes()) for file in files]
     parts = [b"<%b>\n%b</%b>\n" % (name, text, name) for name, text in elements]
-    return b"".join([SCHEMES, words(course_url), *parts])
+    return b"".join([words(course_url), *parts])
 
 
 def words(course_url: str = "") -> bytes:

@@ -110,10 +110,10 @@ def test_a_browser_whose_3d_is_switched_off_is_told_so(browser: Browser, server:
 def test_a_page_that_is_darkened_by_force_has_readable_axes(
     browser: Browser, server: LabServer
 ) -> None:
-    """Such a browser leaves canvases as they are, so that dark numbers would be on dark paper."""
+    """Such a browser asks for dark pages, and leaves canvases as they are: dark on dark paper."""
     arguments = (*PLAIN, "--force-dark-mode", "--enable-features=WebContentsForceDark")
     forced = browser.browser_type.launch(executable_path=CHROMIUM, args=arguments)
-    tab = Tab(server, forced.new_context(color_scheme=None), draws=False)
+    tab = Tab(server, forced.new_context(color_scheme="null"), draws=False)
     plot = tab.page.locator(".uplot canvas").first
     plot.scroll_into_view_if_needed()
     tab.settle()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 import viser
 
-from onpath.app.viser_adapter.page_scripts import SCHEMES, TITLES, our_scripts, with_scripts, words
+from onpath.app.viser_adapter.page_scripts import TITLES, our_scripts, with_scripts, words
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.assets import asset_path
 
@@ -81,7 +81,7 @@ def test_every_script_is_an_element_of_its_own_in_order_of_name() -> None:
     kinds = [b"style" if file.suffix == ".css" else b"script" for file in FILES]
     elements = zip(kinds, texts.values(), strict=True)
     ours = b"".join(b"<%b>\n%b</%b>\n" % (k, t, k) for k, t in elements)
-    assert our_scripts() == SCHEMES + words() + ours
+    assert our_scripts() == words() + ours
 
 
 @pytest.mark.parametrize(
