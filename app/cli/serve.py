@@ -55,6 +55,9 @@ class Serve:
     for."""
     path: str | None = None
     """The path of new labs, or @FILE with options, as for onpath experiment."""
+    course_url: str = ""
+    """Address of the course as pages (onpath export site), https://example.org/course, to which
+    browsers without WebGL are led."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -77,6 +80,8 @@ class Serve:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
         if self.privacy_url and not _is_web_address(self.privacy_url):
             raise ValueError(f"--privacy-url {self.privacy_url}: expected https://… or http://…")
+        if self.course_url and not _is_web_address(self.course_url):
+            raise ValueError(f"--course-url {self.course_url}: expected https://… or http://…")
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         try:
             return self._serve()
@@ -119,6 +124,7 @@ class Serve:
                 hang_seconds=self.hang_seconds,
                 privacy_url=self.privacy_url,
                 path=self._path(ROBOTS[robot]),
+                course_url=self.course_url,
                 allowed_origins=self.origin,
                 trusted_proxies=self.trusted_proxy,
                 unix_socket=self.socket,

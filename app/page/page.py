@@ -35,6 +35,7 @@ from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.page_release import clear_page
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -42,6 +43,8 @@ from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
+UPRIGHT_KEY = "upright"
+"""Where a browser keeps whether the panel is below the scene; see assets/page/portrait.js."""
 
 
 class Page:
@@ -69,10 +72,8 @@ class Page:
         self._preferences = Preferences(client)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
-        self._is_phone = self._is_narrow()
-        if not self._is_phone:
-            client.gui.main_panel.dock_right()
-            client.gui.main_panel.set_width(CONTROL_WIDTH)
+        self._narrow: bool | None = None  # not laid out yet
+        self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
 
@@ -88,7 +89,7 @@ class Page:
 
     def show(self, snapshot: PageSnapshot | Motion) -> None:
         """Show a snapshot. Called on the simulation thread while the page is ready."""
-        if self._key(snapshot) != self._built:
+        if self._key(snapshot) != self._built or self._wanted_narrow != self._narrow:
             self._renew(snapshot)
             return
         with self._channel:
@@ -147,6 +148,7 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
+        self._lay_out()
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words)
@@ -158,7 +160,7 @@ class Page:
             robot=robot,
             switches=self._switches,
             submit=self._rebuilds.submit,
-            is_narrow=self._is_phone,
+            is_narrow=bool(self._narrow),
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
@@ -189,7 +191,7 @@ class Page:
             self._build_free_lab(controls, first, words, post)
             return
         lesson_tab = None
-        if self._is_narrow():  # a single panel with tabs: the lesson first, then the lab
+        if self._narrow:  # a single panel with tabs: the lesson first, then the lab
             tabs = gui.add_tab_group()
             lesson_tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
             step_tab = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
@@ -320,9 +322,20 @@ class Page:
         )
         self._parts.append(plot)
 
+    def _lay_out(self) -> None:
+        """Put the panel beside the scene unless the window is narrow: it is below it then."""
+        if self._narrow is not False and not self._wanted_narrow:
+            self._client.gui.main_panel.dock_right()
+            self._client.gui.main_panel.set_width(CONTROL_WIDTH)
+        self._narrow = self._wanted_narrow
+
     def _is_narrow(self) -> bool:
         camera = self._client.camera
         return camera.image_width < NARROW * camera.image_height
+
+    def _heard_upright(self, kept: str) -> None:
+        """Note whether the window is upright now. A browser's value is not trusted."""
+        self._wanted_narrow = {"yes": True, "no": False}.get(kept, self._is_narrow())
 
     def _frame_camera(self) -> None:
         """Refit the camera to both robots when the aspect ratio of the view changes.
@@ -339,8 +352,9 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
+            ask_item(self._client, UPRIGHT_KEY, self._heard_upright)
             below = 0.0 if self._step_plot is None else self._step_plot.share
-            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._is_phone else below)))
+            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._narrow else below)))
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

@@ -30,7 +30,11 @@ NARROW = 0.8
 DOWN = np.array([0.0, 1.0, 0.0, 0.0])
 """Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
+HIGHER = 0.3
+"""How much higher than the middle the robots are, as a share of half of the room that is left."""
+TEXT = 0.022
+"""Usual height of text in the scene [m]."""
+TITLE, AIM = (0.0, 0.03), (0.037, 0.022)
 """Lines above a robot: offset below the title's position, and height, [m]."""
 
 
@@ -168,6 +172,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
     aside = (insets.left - insets.right) / width * tan_x * distance
     above = (insets.bottom - insets.top) / height * tan_y * distance
+    above += HIGHER * max(tan_y * free_y * (distance - reach_z) - reach_y, 0.0)
     target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)
 
@@ -238,7 +243,7 @@ def add_text(
     name: str,
     text: str,
     position: np.ndarray,
-    size: float = 0.026,
+    size: float = TEXT,
     below: float = 0.0,
 ) -> viser.LabelHandle:
     """Add text of height `size`, `below` lower than a position, [m]."""
@@ -260,7 +265,7 @@ class ChangingText:
         scene: viser.SceneApi,
         name: str,
         position: np.ndarray,
-        size: float = 0.026,
+        size: float = TEXT,
         below: float = 0.0,
     ) -> None:
         self.label = add_text(scene, name, "", position, size, below)

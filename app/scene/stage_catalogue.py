@@ -21,9 +21,9 @@ from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
-LARGEST_PATH = 0.1
+LARGEST_PATH = 0.075
 """Usual extent of paths from their centre, for which the view has room [m]."""
-ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
+ASIDE, ABOVE, BELOW = 0.03, 0.095, 0.05
 """Margins beside the bars, above them for the title, and between them and the floor [m]."""
 THIN = 0.03
 """Half of the depth of robots in the vertical plane [m]."""
@@ -39,7 +39,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
     shapes = None if robot.chain is None else body_meshes(robot.chain)
     floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02) if shapes is None else shapes.floor
     middle = float(low[0] + high[0]) / 2
-    apart = float(high[0] - low[0]) + 0.05 if drawing.apart is None else drawing.apart
+    apart = float(high[0] - low[0]) if drawing.apart is None else drawing.apart
     plane = _path_plane(robot)
     pulls = {IN_PATH_PLANE: plane}
     if robot.system.p > 2 and plane.normal[:2].any():
@@ -56,7 +56,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
         reach=robot.reach,
         axes=_axes(robot),
         zone=lambda: zone_picture(stage_of(robot), robot),
-        title=np.array(drawing.title or (middle, 0.0, high[2] - 0.033)),
+        title=np.array(drawing.title or (middle, 0.0, high[2] - 0.025)),
         note=np.array(drawing.note or (middle, 0.0, floor + 0.06)),
         force_scale=drawing.force_scale,
         sheet=drawing.sheet

@@ -71,6 +71,7 @@ def make_server(
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
     channel: DataChannel | None = None,
+    course_url: str = "",
     verbose: bool = False,
 ) -> viser.ViserServer:
     """A protected server that listens on exactly this address; port 0 takes a free one.
@@ -85,6 +86,7 @@ def make_server(
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a place; a websocket there is answered 502.
         channel: the data channels of the pages, if they have any.
+        course_url: see `page_scripts.words`.
 
     Raises:
         ValueError: a proxy is malformed, or the process may not open enough files.
@@ -110,6 +112,7 @@ def make_server(
         to_place=to_place,
         elsewhere=elsewhere,
         channel=DataChannel() if channel is None else channel,
+        course_url=course_url,
     ):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
@@ -219,6 +222,7 @@ def _guarded_serve(
     to_place: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
     channel: DataChannel,
+    course_url: str,
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes.
 
@@ -239,7 +243,7 @@ def _guarded_serve(
                 return connection.respond(*answer)
             if response := to_place(connection, request):
                 return response
-            return add_scripts(process_request(connection, request))
+            return add_scripts(process_request(connection, request), course_url)
 
         options |= _options(limits)
         finish = partial(_finish, requests)

@@ -7,18 +7,15 @@
   const PATIENCE = 10000;  // [ms] until the first connection
   const MOVES = 1500;  // [ms], in which a lab that moves to another process is connected again
 
-  const words = JSON.parse(document.getElementById("op-words").textContent);
   const box = document.createElement("p");
-  box.id = "op-silent";
+  box.className = "op-notice";
   box.setAttribute("role", "alert");
   let waiting = setTimeout(tell, PATIENCE, "silent");
 
   function tell(what) {
-    const shown = document.querySelector("[data-page]") ? [document.documentElement.lang] : [];
-    const own = [...shown, ...navigator.languages].map((language) => language.split("-")[0]);
-    box.lang = own.find((language) => language in words) ?? "en";
+    box.lang = ownWords.language();
     document.body.append(box);
-    box.textContent = words[box.lang][what];
+    box.textContent = ownWords.text()[what];
   }
 
   function hear({ data }) {

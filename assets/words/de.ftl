@@ -446,6 +446,11 @@ aim-theta_ref = zielt auf seinen Sollpunkt
 
 ## Die Seite: was immer da ist
 
+connect-no_webgl = Dieser Browser kann das Labor nicht zeichnen
+connect-no_webgl_why = Die beiden Roboter werden mit WebGL 2 gezeichnet, das in diesem Browser abgeschaltet ist oder fehlt. Oft ist es wieder da, wenn in den Einstellungen des Browsers die „Grafikbeschleunigung“ (oder „Hardwarebeschleunigung“) eingeschaltet und der Browser neu gestartet wird. Vielleicht hat es auch ein anderer Browser.
+connect-course = Die Lektionen brauchen kein WebGL: Den Kurs gibt es auch als Seiten. Wer dieses Labor betreibt, erstellt sie mit „onpath export site course“.
+connect-course_link = Zum Kurs
+connect-picture_lost = Das Bild der Roboter ging verloren; das Labor läuft weiter. Das Bild kommt von selbst zurück; wenn nicht, lade die Seite neu.
 connect-silent = Das Labor antwortet nicht. Läuft es noch? Ein Proxy dazwischen muss Websockets weiterleiten: assets/deploy/README.md zeigt, wie.
 connect-lost = Die Verbindung zum Labor ist abgebrochen. Was du siehst, steht still; die Seite versucht weiter, das Labor zu erreichen.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.

@@ -394,6 +394,11 @@ aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
+connect-no_webgl = This browser cannot draw the lab
+connect-no_webgl_why = The two robots are drawn with WebGL 2, which is switched off in this browser or missing. It often comes back when “graphics acceleration” (or “hardware acceleration”) is switched on in the browser's settings and the browser is started again. Another browser may have it, too.
+connect-course = The lessons need no WebGL: the course also exists as pages. Whoever runs this lab makes them with “onpath export site course”.
+connect-course_link = To the course
+connect-picture_lost = The picture of the robots was lost; the lab goes on. The picture comes back by itself; if it does not, load the page again.
 connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
 connect-lost = The connection to the lab is lost. What you see stands still; the page keeps trying to reach the lab.
 page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.

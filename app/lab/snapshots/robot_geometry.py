@@ -251,9 +251,13 @@ def _poses(robot: Robot, counts: Counts, points: _Points, q: ca.SX) -> tuple[ca.
     else:
         waist, bodies = ca.SX(0), frame_poses(robot.chain, q)
     normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
-    begins = points.bars[:, ::2]
-    along = points.bars[:, 1::2] - begins
-    layers = ca.DM([depths.back if back else depths.front for back in counts.behind]).T
+    begins, ends = points.bars[:, ::2], points.bars[:, 1::2]
+    if counts.marks:  # the strip if it were straight
+        begins = ca.horzcat(begins, begins[:, counts.links])
+        ends = ca.horzcat(ends, points.marks)
+    along = ends - begins
+    behind = [*counts.behind, *[False] * counts.marks]
+    layers = ca.DM([depths.back if back else depths.front for back in behind]).T
     turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
     still = ca.DM([1, 0, 0, 0])  # these face the viewer at any orientation of the linkage
     discs = [points.marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]

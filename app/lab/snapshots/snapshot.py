@@ -19,7 +19,8 @@ class PoseShapes(NamedTuple):
     """Shapes of the fields of `RobotView.poses`, in their order.
 
     Attributes:
-        bars: beginnings of the link meshes, in their layers, [m].
+        bars: beginnings of the link meshes, in their layers, [m]; then, for each mark, that of the
+            strip if it were straight.
         quaternions: orientations of the link meshes, scalar first.
         parts: positions of bearings, pen, two marker discs and further points, [m].
         tips: drawn end-point, [m].
@@ -72,7 +73,7 @@ class Counts:
     @property
     def pose_shapes(self) -> PoseShapes:
         """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
-        bars, parts = self.bars, self.joints + 3 + self.marks
+        bars, parts = self.bars + self.marks, self.joints + 3 + self.marks
         return PoseShapes(
             bars=(bars, 3),
             quaternions=(bars, 4),

@@ -217,6 +217,7 @@ BAD = [
     ["-x"],
     ["--port", "abc"],
     ["--privacy-url", "javascript:alert(1)"],
+    ["--course-url", "javascript:alert(1)"],
     ["--privacy-url", "https://"],
     ["--privacy-url", "school.example/privacy"],
     ["--privacy-url", "https://school.example/a b"],
