@@ -76,6 +76,8 @@ def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
 def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     joints = sum("rad" in name for name in robot.system.coordinate_names)
+    if robot.chain is not None:  # drawn by its bodies, which have no labels
+        joints = 0
     assert sorted(coordinates(robot)) == [f"q{'₁₂₃'[i]}" for i in range(joints)]
     each = [labels(robot, q)[1] for q in poses(robot)]
     for length in robot.drawing.lengths:
