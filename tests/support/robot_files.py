@@ -6,8 +6,9 @@ the lab draws them.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -31,10 +32,11 @@ class Link:
         at: origin of that joint in the frame of the link before, [m].
         end: where the link ends, in its own frame, [m].
         mass: of a rod from the joint to the end, [kg].
-        limit: largest angle to either side, [rad].
+        limit: largest angle to either side, [rad]; infinite: none.
         effort: of the motor, [N m].
         damping: [N m s/rad].
         radius: of the link, [m].
+        rotor: inertia of its motor, about any axis, [kg m²].
     """
 
     axis: tuple[float, float, float]
@@ -45,21 +47,22 @@ class Link:
     effort: float
     damping: float
     radius: float
+    rotor: float
 
 
 PLANAR = (
-    Link((0, -1, 0), (0, 0, 0.17), (0.17, 0, 0), 0.6, 3.0, 12.0, 0.08, 0.017),
-    Link((0, -1, 0), (0.17, 0, 0), (0.15, 0, 0), 0.4, 2.8, 6.0, 0.05, 0.015),
-    Link((0, -1, 0), (0.15, 0, 0), (0.1, 0, 0), 0.2, 2.8, 2.0, 0.03, 0.012),
+    Link((0, -1, 0), (0, 0, 0.17), (0.15, 0, 0), 0.6, 3.0, 12.0, 0.02, 0.017, 0.004),
+    Link((0, -1, 0), (0.15, 0, 0), (0.13, 0, 0), 0.4, 2.8, 6.0, 0.01, 0.015, 0.002),
+    Link((0, -1, 0), (0.13, 0, 0), (0.09, 0, 0), 0.2, 2.8, 2.0, 0.004, 0.012, 0.001),
 )
 SEVEN = (
-    Link((0, 0, 1), (0, 0, 0.06), (0, 0, 0.11), 1.2, 2.9, 40.0, 0.3, 0.034),
-    Link((0, 1, 0), (0, 0, 0.11), (0, 0, 0.11), 1.0, 2.1, 40.0, 0.3, 0.031),
-    Link((0, 0, 1), (0, 0, 0.11), (0, 0, 0.1), 0.8, 2.9, 25.0, 0.2, 0.029),
-    Link((0, 1, 0), (0, 0, 0.1), (0, 0, 0.11), 0.7, 2.3, 25.0, 0.2, 0.027),
-    Link((0, 0, 1), (0, 0, 0.11), (0, 0, 0.1), 0.5, 2.9, 10.0, 0.1, 0.025),
-    Link((0, 1, 0), (0, 0, 0.1), (0, 0, 0.05), 0.4, 2.1, 10.0, 0.1, 0.023),
-    Link((0, 0, 1), (0, 0, 0.05), (0, 0, 0.05), 0.2, 2.9, 5.0, 0.05, 0.016),
+    Link((0, 0, 1), (0, 0, 0.06), (0, 0, 0.11), 1.2, 2.9, 40.0, 0.1, 0.034, 0.02),
+    Link((0, 1, 0), (0, 0, 0.11), (0, 0, 0.11), 1.0, 2.1, 40.0, 0.1, 0.031, 0.02),
+    Link((0, 0, 1), (0, 0, 0.11), (0, 0, 0.1), 0.8, 2.9, 25.0, 0.08, 0.029, 0.015),
+    Link((0, 1, 0), (0, 0, 0.1), (0, 0, 0.11), 0.7, 2.3, 25.0, 0.05, 0.027, 0.01),
+    Link((0, 0, 1), (0, 0, 0.11), (0, 0, 0.1), 0.5, 2.9, 10.0, 0.03, 0.025, 0.006),
+    Link((0, 1, 0), (0, 0, 0.1), (0, 0, 0.05), 0.4, 2.1, 10.0, 0.02, 0.023, 0.005),
+    Link((0, 0, 1), (0, 0, 0.05), (0, 0, 0.05), 0.2, 2.9, 5.0, 0.01, 0.016, 0.003),
 )
 
 
@@ -94,11 +97,14 @@ def _visual(folder: str, name: str) -> str:
 
 
 def _joint(i: int, link: Link, before: str) -> str:
+    free = math.isinf(link.limit)
+    ends = "" if free else f'lower="{-link.limit:g}" upper="{link.limit:g}" '
+    kind = "continuous" if free else "revolute"
     return (
-        f'<joint name="joint{i}" type="revolute"><parent link="{before}"/><child link="link{i}"/>'
+        f'<joint name="joint{i}" type="{kind}"><parent link="{before}"/><child link="link{i}"/>'
         f'<origin xyz="{_numbers(link.at)}"/><axis xyz="{_numbers(link.axis)}"/>'
-        f'<limit lower="{-link.limit:g}" upper="{link.limit:g}" effort="{link.effort:g}"'
-        f' velocity="6"/><dynamics damping="{link.damping:g}"/></joint>'
+        f'<limit {ends}effort="{link.effort:g}" velocity="6"/>'
+        f'<dynamics damping="{link.damping:g}"/></joint>'
     )
 
 
@@ -106,7 +112,7 @@ def _link(i: int, link: Link, meshes: str) -> str:
     length = float(np.linalg.norm(link.end))
     across = link.mass * (length**2 / 12 + link.radius**2 / 4)
     along = link.mass * link.radius**2 / 2
-    moments = np.where(np.abs(np.array(link.end)) > 0, along, across)
+    moments = link.rotor + np.where(np.abs(np.array(link.end)) > 0, along, across)
     inertia = " ".join(
         f'{key}="{value:.4g}"' for key, value in zip(("ixx", "iyy", "izz"), moments, strict=True)
     )
@@ -169,4 +175,5 @@ def write(folder: Path, name: str, links: Sequence[Link]) -> None:
 
 if __name__ == "__main__":
     for arm, parts in (("planar_arm", PLANAR), ("seven_axes", SEVEN)):
-        write(asset_path(".") / "robots", arm, parts)
+        turning = [replace(link, limit=math.inf) for link in parts]  # a pull must not stop them
+        write(asset_path(".") / "robots", arm, turning)

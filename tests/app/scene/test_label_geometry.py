@@ -82,7 +82,10 @@ def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
 def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     names = zip(joint_names(robot), robot.system.coordinate_names, strict=True)
-    assert sorted(coordinates(robot)) == [short for short, name in names if "rad" in name]
+    joints = [short for short, name in names if "rad" in name]
+    if robot.chain is not None:  # drawn by its bodies, which have no labels
+        joints = []
+    assert sorted(coordinates(robot)) == joints
     each = [labels(robot, q)[1] for q in poses(robot)]
     for length in robot.drawing.lengths:
         sizes = [np.linalg.norm(ends[length.end] - ends[length.begin]) for ends in each]

@@ -73,7 +73,7 @@ CASES = {
     "mimic": (changed("</joint>", '<mimic joint="joint2"/></joint>'), 4, "joint joint1"),
     "mass": (changed(MASS, '<mass value="-0.6"/>'), 5, "mass"),
     "inertia": (re.sub('ixx="[^"]*"', 'ixx="-1"', ARM, count=1), 5, "inertia"),
-    "negative": (changed('damping="0.08"', 'damping="-1"'), 4, "dynamics"),
+    "negative": (changed('damping="0.02"', 'damping="-1"'), 4, "dynamics"),
     "limits": (changed('lower="-3"', 'lower="4"'), 4, "limit"),
     "axis": (changed('axis xyz="0 -1 0"', 'axis xyz="0 0 0"'), 4, "axis"),
     "elements": (added("<a>" * 40 + "</a>" * 40), 12, "a"),
