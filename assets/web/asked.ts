@@ -1,7 +1,8 @@
 // Questions that are answered at once: quizzes, numbers, and open questions.
 
 import { made } from "./controls"
-import { said, type BlockData, type PageData } from "./lesson_data"
+import type { BlockData, PageData } from "./lesson_data"
+import { said } from "./words"
 import type { Notes } from "./notes"
 import { accepted } from "./own"
 

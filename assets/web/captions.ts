@@ -1,7 +1,8 @@
 // Captions of what each robot is doing, as in app/scene/captions.py.
 
 import type { Side } from "./side"
-import { said, written, type FigureData } from "./figure_data"
+import type { FigureData } from "./figure_data"
+import { said, written } from "./words"
 import type { Simulation } from "./simulation"
 
 function kind(side: Side, off: boolean, data: FigureData): string {

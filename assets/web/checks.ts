@@ -1,6 +1,7 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import { filled, type Bound, type Check, type Compare, type Only, type Robot, type Said, type Setting, type SettingCheck, type Window } from "./lesson_data"
+import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, Window } from "./lesson_data"
+import { filled } from "./words"
 import { fixed, general, sum } from "./numbers"
 
 export interface Happening {

@@ -1,8 +1,10 @@
 // Buttons, menus and sliders of a figure.
 
-import { said, significant, type FigureData, type Point, type SliderData } from "./figure_data"
+import type { FigureData, Point, SliderData } from "./figure_data"
+import { said, significant } from "./words"
 import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
+import { Transport } from "./transport"
 
 const WAYS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
 
@@ -18,7 +20,7 @@ export function made<T extends keyof HTMLElementTagNameMap>(
 }
 
 /** What has not changed is not announced again. */
-export function written(element: HTMLElement, text: string): void {
+export function tell(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text
 }
 
@@ -38,74 +40,23 @@ export function refused(data: FigureData, error: unknown): HTMLElement {
 
 export class Controls {
     readonly element: HTMLElement
-    private readonly held = this.button("main", "", () => this.toggleHold(), "run.hold_hint")
-    private readonly run = this.button("", "", () => this.toggleRun(), "run.run_hint")
+    readonly transport: Transport
 
     constructor(private readonly simulation: Simulation, private readonly page: Figure, ended: AbortSignal) {
         const { data } = simulation
-        const every: Record<string, HTMLElement> = {
-            hold: this.held,
-            run: this.run,
-            step: this.button("", said(data, "run.step"), () => this.step(), "key.right"),
-            reset: this.button("", said(data, "run.reset"), () => this.reset(), "key.reset"),
-            ...(data.paths.length > 1 ? { path: this.paths() } : {}),
-        }
-        const shown = Object.keys(every).filter(name => data.controls.includes(name))
+        this.transport = new Transport(data, page.engine, data.controls, ended)
+        const paths = data.paths.length > 1 && data.controls.includes("path") ? [this.paths()] : []
         const laws = data.choices.length ? simulation.sides.map((_, i) => this.laws(i)) : []
-        const buttons = made("div", "buttons", ...shown.map(name => every[name]!), ...laws)
         const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
-        this.element = made("div", "controls", buttons, made("div", "sliders", ...sliders))
-        this.show()
+        this.element = made("div", "controls", made("div", "buttons", ...paths, ...laws), made("div", "sliders", ...sliders))
         document.addEventListener("keydown", event => this.key(event), { signal: ended })
-    }
-
-    /** Show the present state on the buttons. */
-    show(): void {
-        const { data, held } = this.simulation
-        const both = data.sides.length > 1 ? "_both" : ""
-        written(this.held, said(data, held ? `run.let${both}_go` : `run.hold${both}`))
-        this.held.ariaPressed = String(held)
-        written(this.run, said(data, this.page.running ? "run.pause" : "run.run"))
-    }
-
-    toggleHold(): void {
-        this.simulation.hold(!this.simulation.held)
-        this.toggleRun(true)
-    }
-
-    toggleRun(on = !this.page.running): void {
-        this.page.engine.act({ do: "run", on })
-        this.show()
-    }
-
-    step(): void {
-        this.page.engine.act({ do: "step" })
-        this.show()
-    }
-
-    reset(): void {
-        this.simulation.reset()
-        this.begun()
-    }
-
-    private begun(): void {
-        this.page.changed()
-        this.show()
-    }
-
-    private button(name: string, text: string, act: () => void, hint: string): HTMLButtonElement {
-        const button = made("button", name, text)
-        button.type = "button"
-        button.title = said(this.simulation.data, hint)
-        button.addEventListener("click", act)
-        return button
     }
 
     private paths(): HTMLElement {
         const { data } = this.simulation
         return this.choice(said(data, "standalone.path"), data.paths.map(path => path.label), 0, path => {
             this.simulation.choose(path)
-            this.begun()
+            this.page.changed()
         })
     }
 
@@ -151,15 +102,16 @@ export class Controls {
     /** The lab's keys, unless the focused control uses them. */
     private key(event: KeyboardEvent): void {
         const target = event.target as HTMLElement
-        if (isTyped(event) || target.closest("input")) return
+        if (isTyped(event) || target.closest("input, [role=slider]")) return
         if (event.key === " " && target.closest("button")) return
-        const { simulation } = this
+        const { simulation, transport, page } = this
         const { selected, followed } = simulation
         const acts: Record<string, [string, () => void]> = {
-            h: ["hold", () => this.toggleHold()],
-            " ": ["run", () => this.toggleRun()],
-            ArrowRight: ["step", () => this.step()],
-            r: ["reset", () => this.reset()],
+            h: ["hold", () => transport.toggleHold()],
+            " ": ["run", () => transport.toggleRun()],
+            ArrowRight: ["step", () => page.engine.act({ do: "step" })],
+            r: ["reset", () => page.engine.act({ do: "reset" })],
+            g: ["run", () => page.engine.act({ do: "goOn" })],
             n: ["drag", () => simulation.select(((selected ?? -1) + 1) % followed.data.points.length)],
         }
         const way = WAYS[event.key]

@@ -28,6 +28,8 @@ export interface Sample {
 
 /** What is said of a robot: its law's name and meaning, and what it does now, if that is worth a word. */
 export interface SideText {
+    /** Its colours: 0 is the left robot's, 1 the right one's. */
+    side: 0 | 1
     title: string
     text: string
     caption: string

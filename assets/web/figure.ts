@@ -1,50 +1,50 @@
 // Builds a figure in a page, and runs its time.
 
-import { caption, notes, spoken } from "./captions"
-import { Controls, isTyped, made, written } from "./controls"
-import { said, written as number, type Point } from "./figure_data"
+import { notes, spoken } from "./captions"
+import { Controls, isTyped, made, tell } from "./controls"
+import type { Point } from "./figure_data"
+import { Lens } from "./lens"
 import { LocalEngine } from "./local"
-import { Plot } from "./plot"
 import type { Simulation } from "./simulation"
+import { Strip } from "./strip"
 import { View } from "./view"
+import { said } from "./words"
 
 const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
 const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
-const DARK = matchMedia("(prefers-color-scheme: dark)")
-DARK.addEventListener("change", () => dispatchEvent(new Event("resize"))) // everything is drawn anew
 const TRACE = 4 // [s], of the tips' traces
 const PULL = 0.03 // [m], by which a key pulls
 const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
 
 export class Figure {
-    readonly engine = new LocalEngine(this.simulation)
+    readonly engine = new LocalEngine(this.simulation, this.branches)
     private readonly data = this.simulation.data
-    private readonly views = this.simulation.sides.map(side => new View(side, this.data))
+    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true), this.ended))
+    private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))
-    private readonly plot = new Plot(this.simulation)
+    private readonly strip = new Strip(this.data, this.engine, this.ended)
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
     private readonly poles = made("p", "poles")
-    private readonly axis = made("p", "axis")
     readonly controls = new Controls(this.simulation, this, this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
     private stale = true
-    private shown = 0 // simulated time in the picture, in ticks
     private kind = ""
     private said = 0
 
-    /** `ended` stops the figure when a page puts another one in its place. */
+    /** `ended` stops the figure when a page puts another one in its place; `branches`: see `State`. */
     constructor(
         readonly simulation: Simulation,
         into: HTMLElement,
         private readonly ended: AbortSignal = new AbortController().signal,
+        private readonly branches = true,
     ) {
         this.live.setAttribute("role", "status")
         into.replaceChildren(...this.parts())
         for (const view of this.views) this.grabs(view)
         if (this.data.controls.includes("pull")) this.keys()
-        addEventListener("resize", () => (this.stale = true), { signal: ended })
+        this.engine.on(() => (this.stale = true), ended)
         this.changed()
         requestAnimationFrame(() => this.frame())
     }
@@ -62,29 +62,28 @@ export class Figure {
             const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
             this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
         })
-        this.stale = true
+        simulation.changed("state")
     }
 
     /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
     private parts(): HTMLElement[] {
-        const { data } = this
+        const { data, controls } = this
         const robots = this.views.map((view, i) => {
-            const heading = made("h2", `title side${i}`, this.titles[i]!, " ", this.captions[i]!)
+            const heading = made("h2", `title side${this.engine.texts[i]!.side}`, this.titles[i]!, " ", this.captions[i]!)
             view.canvas.setAttribute("role", "img")
-            return made("section", "robot", heading, view.canvas)
+            return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
         })
-        const { canvas } = this.plot
-        const plotted = said(data, "standalone.plot")
-        canvas.setAttribute("role", "img")
-        canvas.setAttribute("aria-label", plotted)
+        const title = made("h2", "", said(data, "chart.title"))
+        const strip = data.controls.includes("plot") ? [this.strip.chart.element] : []
         return [
             made("div", "robots", ...robots),
             this.note,
-            this.controls.element,
+            made("div", "bar", ...(strip.length ? [title] : []), controls.transport.element),
+            ...strip,
+            controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),
-            ...(data.controls.includes("plot") ? [this.axis, made("div", "plot", canvas)] : []),
             this.live,
         ]
     }
@@ -92,30 +91,31 @@ export class Figure {
     private frame(): void {
         if (this.ended.aborted) return
         this.drag()
-        if (this.engine.pass(performance.now())) this.stale = true
-        this.controls.show()
-        if (this.stale || this.shown !== this.simulation.ticks) this.draw()
+        const now = performance.now()
+        if (this.engine.pass(now)) this.stale = true
+        if (this.stale) this.draw()
+        this.strip.draw(now)
+        for (const [i, lens] of this.lenses.entries()) {
+            lens.scale = this.views[i]!.scale
+            lens.draw(now)
+        }
         requestAnimationFrame(() => this.frame())
     }
 
     private draw(): void {
-        const { simulation, data } = this
+        const { simulation, data, engine } = this
         this.stale = false
-        this.shown = simulation.ticks
-        const moments = [...simulation.recent, simulation.moment()]
-        const traced = moments.filter(moment => moment.time > simulation.time - TRACE)
-        data.colours = data.tones[DARK.matches ? "dark" : "light"]
+        const { past } = engine.state
+        const moments = [...engine.since((past ?? simulation.time) - TRACE), ...(past === null ? [engine.present] : [])]
+        const traced = moments.filter(moment => past === null || moment.time <= past)
         this.views.forEach((view, i) => {
             view.draw(simulation.followed, simulation.selected, traced.map(moment => moment.tips[i]!))
         })
-        this.plot.draw(moments)
-        const captions = simulation.sides.map(side => caption(side, data))
-        this.captions.forEach((element, i) => written(element, captions[i]!))
-        const now = simulation.sides.map((side, i) => `${simulation.title(i)} ${number(data, 1e3 * side.distance, 1)}`)
-        written(this.axis, `${said(data, "standalone.plot")}: ${now.join(", ")}`)
-        const late = this.engine.lost > LATE ? said(data, "standalone.late") : ""
+        const captions = engine.texts.map(text => (past === null ? text.caption : ""))
+        this.captions.forEach((element, i) => tell(element, captions[i]!))
+        const late = engine.lost > LATE ? said(data, "standalone.late") : ""
         const note = [notes(simulation), late].filter(Boolean).join(" ")
-        written(this.note, note)
+        tell(this.note, note)
         this.say(captions, note)
     }
 

@@ -9,7 +9,7 @@ export type Point = [number, number]
 type Numbers<Name extends string> = Record<Name, number>
 type Texts<Name extends string> = Record<Name, string>
 
-export type SideData = Texts<"colour" | "dark"> & { law: number }
+export interface SideData { law: number; side: 0 | 1 }
 
 export interface LawData extends Texts<"title" | "text"> {
     aim: "theta" | "theta_ref"
@@ -53,26 +53,7 @@ export interface FigureData extends Texts<"language" | "module"> {
     returns: number
     full: number
     strip: number
-    tones: Record<"light" | "dark", FigureData["colours"]> // colours are one of these
-    colours: Texts<"path" | "force" | "steel" | "ink" | "point" | "selected" | "warning" | "grid" | "held">
     poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
     edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }
-}
-
-/** A text with its values filled in. */
-export function said(data: FigureData, key: string, values: Record<string, string> = {}): string {
-    const text = data.words[key]
-    if (text === undefined) throw new Error(`no words for ${key}`)
-    return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
-}
-
-/** A number as the language writes it. */
-export function written(data: FigureData, value: number, digits?: number): string {
-    return (digits === undefined ? String(value) : value.toFixed(digits)).replace("-", "−").replace(".", data.words["point"] ?? ".")
-}
-
-/** The same with a number of significant digits. */
-export function significant(data: FigureData, value: number, digits: number): string {
-    return written(data, Number(value.toPrecision(digits)))
 }

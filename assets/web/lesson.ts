@@ -2,7 +2,8 @@
 
 import { made, refused } from "./controls"
 import { ask, ordered } from "./asked"
-import { said, type PageData } from "./lesson_data"
+import type { PageData } from "./lesson_data"
+import { said } from "./words"
 import { gradeOf } from "./grade"
 import { given, keep, notesOf, thinned, type Notes } from "./notes"
 import { showOwn } from "./own"
@@ -76,7 +77,6 @@ export class LessonPage {
             each.classList.toggle("seen", i < notes.seen)
         })
         history.replaceState(null, "", `#${this.index + 1}`)
-        dispatchEvent(new Event("resize")) // so that what was hidden is drawn
         if (move) {
             section.focus({ preventScroll: true })
             scrollTo(0, 0)

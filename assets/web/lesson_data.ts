@@ -138,14 +138,3 @@ export interface PageData {
     steps: StepData[]
     lessons: Record<string, { steps: number; required: number; tasks: string[] }>
 }
-
-/** A text of the page with its values filled in. */
-export function said(page: PageData, key: string, values: Said = {}): string {
-    const text = page.words[key]
-    if (text === undefined) throw new Error(`no words for ${key}`)
-    return filled(text, values)
-}
-
-export function filled(text: string, values: Said): string {
-    return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
-}

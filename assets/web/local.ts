@@ -13,6 +13,8 @@ export class LocalEngine implements Engine {
     /** Simulated time lost lately, [s], because pictures were late. */
     lost = 0
     private past: number | null = null
+    private resumes = false // whether the present goes on after a look at the past
+    private now: Moment | null = null // the present, if it is known
     private due = 0
     private last = performance.now()
     private readonly listeners = new Set<(change: Change) => void>()
@@ -22,6 +24,7 @@ export class LocalEngine implements Engine {
         simulation.changed = change => {
             if (change === "path") this.shape = null
             if (change === "history") this.show(null)
+            this.now = null
             this.tell(change)
         }
     }
@@ -40,10 +43,13 @@ export class LocalEngine implements Engine {
 
     get texts(): SideText[] {
         const { sides, data } = this.simulation
-        return sides.map((side, i) => ({ title: this.simulation.title(i), text: side.does().text, caption: caption(side, data) }))
+        return sides.map((each, i) => {
+            const title = this.simulation.title(i)
+            return { side: each.data.side, title, text: each.does().text, caption: caption(each, data) }
+        })
     }
 
-    get present(): Moment { return this.simulation.moment() }
+    get present(): Moment { return (this.now ??= this.simulation.moment()) }
 
     since(time: number): Moment[] {
         const { recent } = this.simulation
@@ -96,9 +102,12 @@ export class LocalEngine implements Engine {
     private show(time: number | null): void {
         const { simulation } = this
         const moment = time === null ? undefined : sampleAt(simulation.recent, time) as Moment | undefined
+        const before = this.past
         this.past = moment?.time ?? null
         simulation.sides.forEach((side, i) => side.show(moment?.robots[i] ?? null))
+        if (moment && before === null) this.resumes = this.running
         if (moment) this.running = false
+        else if (before !== null) this.running = this.resumes
     }
 
     private goOn(): void {

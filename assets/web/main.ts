@@ -7,7 +7,8 @@ import type { FigureData } from "./figure_data"
 import { gradeOf } from "./grade"
 import { Kernels } from "./kernels"
 import { LessonPage } from "./lesson"
-import { said, type PageData } from "./lesson_data"
+import type { PageData } from "./lesson_data"
+import { said } from "./words"
 import { packed, unpacked } from "./packed"
 import { LocalProgress, type Tell } from "./progress"
 import { ScormProgress } from "./scorm"
@@ -20,9 +21,19 @@ async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
         const simulation = new Simulation(data, await Kernels.from(data.module))
         // For an enclosing page, and for tests: advance(ticks), simulation.hold(true) and so on.
         Object.assign(window, { onpath: new Figure(simulation, place) })
+        if (parent !== window) tellHeight()
     } catch (error) {
         place.replaceChildren(refused(data, error))
     }
+}
+
+/** Tell the page around this one, whenever it changes, how high a frame must be. */
+function tellHeight(): void {
+    const observer = new ResizeObserver(entries => {
+        const height = Math.ceil(entries[entries.length - 1]!.borderBoxSize[0]!.blockSize)
+        parent.postMessage({ onpath: "height", height }, "*")
+    })
+    observer.observe(document.documentElement)
 }
 
 function showPage(page: PageData): void {

@@ -1,6 +1,7 @@
 // What the page says about the poles of the laws, as in app/page/panels/gains_panel.py.
 
-import { said, significant, written, type FigureData } from "./figure_data"
+import type { FigureData } from "./figure_data"
+import { said, significant, written } from "./words"
 import type { Kernels } from "./kernels"
 
 export class Poles {

@@ -2,9 +2,13 @@
 
 import { made } from "./controls"
 import { judged } from "./asked"
-import { said, type BlockData, type PageData, type SketchData, type StepData } from "./lesson_data"
+import type { BlockData, PageData, Script, SketchData, StepData } from "./lesson_data"
+import { said } from "./words"
 import { given, type Answer, type Notes } from "./notes"
-import { Board, Chart } from "./sketch"
+import { Chart, type Axes, type Span } from "./chart"
+import { Drawing } from "./drawing"
+import { local } from "./numbers"
+import { radiusOf } from "./strip"
 
 export interface Prediction {
     /** Number of the step that asks, and of the block in it. */
@@ -37,17 +41,28 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
     const asked = element.querySelector<HTMLElement>(".committing")!
     element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
     let answer: Answer = {}
+    let committed = () => {}
     commit.disabled = true
     if (data.kind === "sketch") {
-        const board = new Board(page, data, () => {
-            answer = board.answer
-            commit.disabled = !answer.times
-            told.textContent = said(page, answer.times ? "lesson.drawn" : "lesson.draw_first")
+        const chart = chartOf(page, prediction, data, () => {
+            drawing.show()
+            chart.draw()
         })
-        asked.before(board.element)
-        const draw = () => board.draw(given(notes.answers[key]) ? notes.answers[key] : answer, undefined)
-        draw()
-        addEventListener("resize", draw)
+        const seconds = local(data.seconds, 4, page.words["point"]!)
+        chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
+        chart.ghost = curveOf(notes.answers[key])
+        const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
+        hint()
+        const drawing = new Drawing(chart, () => {
+            const { times, values } = chart.ghost ?? {}
+            answer = times && values ? { times: [...times], values: [...values] } : {}
+            commit.disabled = !times
+            told.textContent = said(page, times ? "lesson.drawn" : "lesson.draw_first")
+            hint()
+            chart.draw()
+        })
+        asked.before(chart.element)
+        committed = () => (drawing.open = false)
     } else
         element.addEventListener("change", event => {
             const input = event.target as HTMLInputElement
@@ -62,7 +77,7 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
         if (!given(kept)) return
         asked.hidden = true
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
-        element.querySelectorAll<HTMLElement>(".board").forEach(board => (board.parentElement!.inert = true))
+        committed()
         if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
     }
     const finish = (own: Answer) => {
@@ -86,20 +101,62 @@ export class Comparison {
         const { data } = prediction
         this.again = made("p", "", said(page, "site.again"))
         if (data.kind === "sketch") {
-            this.chart = new Chart(page, data)
-            this.elements.push(this.chart.canvas, this.again)
+            const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
+            this.elements.push(chart.element, this.again)
         } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
     }
 
     /** If the truth is not kept, the page says how to see it again. */
     draw(truth: Notes["truths"][string] | undefined): void {
         this.again.hidden = truth !== undefined
-        this.chart?.draw(this.answer, truth)
+        const { chart, prediction } = this
+        if (!chart || prediction.data.kind !== "sketch") return
+        const { robots } = prediction.data
+        chart.ghost = curveOf(this.answer)
+        chart.lines = truth ? [
+            { name: robots[0]!, tone: "side0", dashed: false, times: truth.times, values: truth.tracker },
+            { name: robots[1]!, tone: "side1", dashed: true, times: truth.times, values: truth.follower },
+        ] : []
+        chart.draw()
     }
 
     private get answer(): Answer | undefined {
         return this.notes.answers[String(this.prediction.step)]
     }
+}
+
+/** A chart with the axes of a prediction, and when the run's script holds and pulls. */
+function chartOf(page: PageData, { step }: Prediction, data: SketchData, changed: () => void): Chart {
+    const run = page.steps[page.steps[step]!.kind === "run" ? step : step + 1]
+    const { label, unit, bottom, top, quantity, seconds } = data
+    const axes: Axes = { label, unit, bottom, top }
+    const outline = page.figures[run?.figure ?? -1]?.paths[0]?.outline ?? []
+    const radius = radiusOf(Array.from({ length: outline.length / 2 }, (_, i) => outline.slice(2 * i, 2 * i + 2)))
+    if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: said(page, "chart.centre") }
+    const chart = new Chart(page, axes, changed)
+    chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
+    chart.until = seconds
+    chart.spans = acting(run?.script ?? null)
+    return chart
+}
+
+/** When a script holds or pulls a robot; after a reset, times mean something else. */
+function acting(script: Script | null): Span[] {
+    const found: Span[] = []
+    let span: Span | null = null
+    for (const [time, act] of [...script?.do ?? []].sort((a, b) => a[0] - b[0])) {
+        if (act.reset || act.path !== undefined) break
+        const kind = act.hold ? "held" : act.pull ? "pulled" : null
+        if (span && (act.hold === false || act.release)) {
+            span.until = time
+            span = null
+        } else if (kind && !span) found.push((span = { from: time, until: script!.until, kind }))
+    }
+    return found
+}
+
+function curveOf(answer: Answer | undefined): { times: number[]; values: number[] } | null {
+    return answer?.times && answer.values ? { times: answer.times, values: answer.values } : null
 }
 
 /** How sure the student is, and why, if stated. */

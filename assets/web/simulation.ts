@@ -2,7 +2,8 @@
 
 import type { Change, Sample } from "./engine"
 import { Side, MOST_TICKS, type Kept } from "./side"
-import { said, type FigureData, type Point } from "./figure_data"
+import type { FigureData, Point } from "./figure_data"
+import { said } from "./words"
 import type { Kernels } from "./kernels"
 import { Path } from "./path"
 import { Poles } from "./poles"
@@ -75,6 +76,7 @@ export class Simulation {
             left -= part
             if (this.ticks % period === 0) this.remember()
         }
+        this.changed("samples")
     }
 
     private remember(): void {
@@ -98,11 +100,13 @@ export class Simulation {
             this.held = on
         }
         for (const side of this.meant(only)) side.hold(on)
+        this.changed("state")
     }
 
     /** Pull the tip of one robot, or all tips, by a vector in the picture; null: let go. */
     pull(by: Point | null, only?: number): void {
         for (const side of this.meant(only)) side.pull(by)
+        this.changed("state")
     }
 
     private readonly meant = (only?: number): Side[] => (only === undefined ? this.sides : [this.sides[only]!])

@@ -44,7 +44,7 @@ export class Stage {
     static async open(data: SiteFigure, values: StepData["values"], into: HTMLElement): Promise<Stage> {
         const simulation = new Recorded(data, await kernelsOf(data.module), values)
         const ended = new AbortController()
-        const stage = new Stage(new Figure(simulation, into, ended.signal), simulation, into)
+        const stage = new Stage(new Figure(simulation, into, ended.signal, false), simulation, into)
         stage.stop.signal.addEventListener("abort", () => ended.abort())
         return stage
     }
@@ -56,7 +56,6 @@ export class Stage {
 
     run(on: boolean): void {
         this.figure.engine.act({ do: "run", on })
-        this.figure.controls.show()
     }
 
     /** Perform a link's actions; sliders follow. */
@@ -67,7 +66,6 @@ export class Stage {
             if (act.reset || act.path !== undefined) this.figure.changed()
         }
         this.sliders()
-        this.figure.controls.show()
     }
 
     /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
@@ -87,7 +85,7 @@ export class Stage {
             }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
                 const [, act] = waiting.shift()!
-                if (act.rate) figure.engine.rate = act.rate
+                if (act.rate) figure.engine.act({ do: "rate", rate: act.rate })
                 simulation.act(act)
                 if (simulation.record().run === run) continue
                 run = simulation.record().run
@@ -105,7 +103,7 @@ export class Stage {
 
     private cancel(): void {
         this.simulation.before = () => true
-        this.figure.engine.rate = 1
+        this.figure.engine.act({ do: "rate", rate: 1 })
     }
 
     /** Show the values on the sliders. */

@@ -2,7 +2,8 @@
 
 import { made } from "./controls"
 import { judge, statistic, type Verdict } from "./checks"
-import { said, type PageData, type TaskData } from "./lesson_data"
+import type { PageData, TaskData } from "./lesson_data"
+import { said } from "./words"
 import type { Notes } from "./notes"
 import { general } from "./numbers"
 import type { Recorded } from "./recorded"

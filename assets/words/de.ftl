@@ -1435,7 +1435,9 @@ error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 ## Eine Abbildung ohne Server
 
 standalone-path = Bahn
-standalone-plot = Abstand von der Bahn [mm] über der Zeit [s]
+standalone-hint_hold_pull = Beide Roboter festhalten oder an einer Spitze ziehen und vergleichen. Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_hold = Die Roboter festhalten und vergleichen. Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_pull = Mit der Maus oder einem Finger an einer Spitze ziehen. Wer an der Linie unten zieht, blickt zurück.
 standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
 standalone-law = Gesetz
 standalone-late = Die simulierte Zeit hinkt nach: Dieses Gerät ist zu langsam, um in Echtzeit zu zeichnen.
@@ -1445,6 +1447,29 @@ standalone-drag_hint = Die Punkte der Bahn lassen sich ziehen; die Taste N wähl
 standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschaltet oder von der Content-Security-Policy des Servers verboten ist.
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
+
+# Das Schaubild der Abstände, die Lupe und die Knöpfe für die Zeit
+
+chart-title = Abstand von der Bahn
+chart-held = festgehalten
+chart-pulled = gezogen
+chart-centre = Mittelpunkt des Kreises
+chart-table = Als Tabelle
+chart-time = Zeit [s]
+chart-acts = was wirkt
+chart-look = Zurückblicken
+chart-look_hint = Ziehen, um über die letzte Minute zurückzublicken; mit Tasten: Pfeile, Bild auf und ab, Pos1 und Ende
+chart-at = { $time } s: { $values }
+chart-yours = Deine Vorhersage
+chart-draw = Hier zeichnen, von links nach rechts
+chart-point = Deine Vorhersage bei { $time } s
+lens-name = Die Spitze unter dem Gesetz { $law }, vergrößert
+lens-closest = nächster Bahnpunkt
+lens-reference = Sollpunkt
+lens-straight = gerades Glied
+transport-back = Zurück zu jetzt
+transport-back_hint = Zeigt wieder die Gegenwart. Taste: Ende, auf dem Griff
+transport-go_on_hint = Verwirft, was danach kam. Taste: G
 
 ## Der Kurs als statische Seiten: assets/web, app/exports/site
 
@@ -1483,7 +1508,7 @@ site-done = { $done } von { $all } Schritten gesehen, { $tasks } Aufgaben gelös
 site-next_lesson = Nächste Lektion: { $title }
 site-end = Das Ende dieser Lektion
 site-features = Was diese Seiten nicht haben
-site-features_text = Diese Seiten haben keine Aufzeichnung zum Zurückblicken, keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
+site-features_text = Diese Seiten haben keinen Bahneditor, kein eigenes Gesetz, keinen anderen Roboter und kein anderes Gesetz im selben Schritt, kein Diagramm außer dem des Abstands, keine Wand, keinen Start neben der Bahn, keine Identifikation, keine Klasse, keinen Konzepttest und kein CSV. Wo eine Lektion etwas davon benutzt, sagt sie es. Das Labor hat all das.
 site-control-editor = der Bahneditor
 site-control-gains = alle Verstärkungen und der Realismus
 site-control-plots = die anderen Diagramme

@@ -1153,7 +1153,9 @@ error-no_nickname = a nickname has at least one character
 ## A figure without a server
 
 standalone-path = Path
-standalone-plot = Distance to the path [mm] over time [s]
+standalone-hint_hold_pull = Hold both robots back, or pull an end-point, and compare. Drag the line below to look back.
+standalone-hint_hold = Hold the robots back, and compare. Drag the line below to look back.
+standalone-hint_pull = Pull an end-point with the mouse or a finger. Drag the line below to look back.
 standalone-scene = The robot under the law { $law }, drawn from the side
 standalone-law = Law
 standalone-late = Simulated time runs late: this device is too slow to draw in real time.
@@ -1163,6 +1165,29 @@ standalone-drag_hint = Drag the points of the path, or press N to select the nex
 standalone-no_script = This figure needs JavaScript, which is switched off here or forbidden by the Content-Security-Policy of the server.
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
+
+# The chart of distances, the lens and the buttons for time
+
+chart-title = Distance from the path
+chart-held = held
+chart-pulled = pulled
+chart-centre = centre of the circle
+chart-table = As a table
+chart-time = time [s]
+chart-acts = what acts
+chart-look = Look back
+chart-look_hint = Drag to look back over the last minute; with keys: arrows, Page Up and Page Down, Home and End
+chart-at = { $time } s: { $values }
+chart-yours = Your prediction
+chart-draw = Draw here, from left to right
+chart-point = Your prediction at { $time } s
+lens-name = The end-point under the law { $law }, magnified
+lens-closest = closest point
+lens-reference = reference point
+lens-straight = straight link
+transport-back = Back to now
+transport-back_hint = Shows the present again. Key: End, on the handle
+transport-go_on_hint = Discards what came after. Key: G
 
 ## The course as a static site: assets/web, app/exports/site
 
@@ -1201,7 +1226,7 @@ site-done = { $done } of { $all } steps seen, { $tasks } tasks passed
 site-next_lesson = Next lesson: { $title }
 site-end = The end of this lesson
 site-features = What these pages do not have
-site-features_text = These pages have no history to look back on, no path editor, no law of your own, no other robot or law in the same step, no plots but that of the distance, no wall, no start beside the path, no identification, no class, no concept test and no CSV. Where a lesson uses one of these, it says so. The lab has them.
+site-features_text = These pages have no path editor, no law of your own, no other robot or law in the same step, no plots but that of the distance, no wall, no start beside the path, no identification, no class, no concept test and no CSV. Where a lesson uses one of these, it says so. The lab has them.
 site-control-editor = the path editor
 site-control-gains = all gains and realism
 site-control-plots = the other plots

@@ -29,7 +29,7 @@ NOT = ("no", "-", "fixed")
 """How a cell begins that denies something."""
 OWN = "across = -K1*xi - K2*dxi; along = 9*(2 - dtheta)"
 
-NAMED = "button, a, summary, label, option, h2, legend, canvas"
+NAMED = "button, a, summary, label, option, h2, legend, canvas, [role=slider]"
 SEEN = """([scope, marks, named]) => {
     const shown = each => each.checkVisibility() && !each.matches(":empty:not(canvas, input)")
     const all = [...document.querySelectorAll(scope)]
@@ -80,7 +80,9 @@ ROWS = {
         said=("design.add", "design.remove", "design.draw", "design.undo")
     ),
     "poles, in words and numbers": Row((".poles span",)),
-    "distance over time": Row((".plot canvas",), ("standalone.plot",)),
+    "distance over time": Row((".plot canvas",), ("chart.title",)),
+    "a lens on each end-point": Row((".lens canvas",)),
+    "slow motion": Row((".transport select",)),
     "aiming points, traces, forces, captions, live region": Row(
         ("[role=status]", ".title .caption")
     ),
@@ -97,7 +99,7 @@ ROWS = {
         said=("show.labels", "show.tube", "show.grid", "show.rank", "display.sounds")
     ),
     "one-sided wall": Row(said=("wall.switch",)),
-    "history, looking back, undo": Row(said=("past.title", "past.undo", "design.undo")),
+    "looking back over the last minute": Row(said=("chart.look",)),
     "set-ups, share codes, sessions that are kept": Row(said=("keep.share", "keep.paste")),
     "classroom, concept test, routes, record as a page": Row(said=("keep.report", "class.export")),
     "export of CSV, pictures and films, identification": Row(
@@ -106,8 +108,8 @@ ROWS = {
     "view": Row((".robot canvas",)),
 }
 ELSEWHERE = {
+    "going on from the past; undo of it",  # test_strip_browser
     "why a robot has stopped; the link's deflection",  # test_figure_browser
-    "slow motion",  # test_site_browser
     # test_site_answers_browser:
     "numbers of the student's curves in a text, texts for some answers only",
     "other numbers of the student's in a text, steps for some answers only",
@@ -179,7 +181,7 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
 def _before_and_while_held(reader: SiteReader) -> Iterator[SiteReader]:
     """A page with a figure that says what its robots do once they are held, if they can be."""
     yield reader
-    hold = reader.page.locator(".controls button.main:visible")
+    hold = reader.page.locator(".transport button.main:visible")
     if hold.count():
         hold.first.click()
         told = "Boolean(document.querySelector('.live[role=status]:not(:empty)'))"

@@ -16,12 +16,14 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 import onpath
+from onpath.app.common import palette
 from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
 from onpath.models.control.law_poles import channels_of
+from onpath.models.control.sides import SIDES
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
@@ -100,16 +102,15 @@ STROKES = """async () => {
     prototype.beginPath = function () { way = []; beginPath.call(this) }
     prototype.lineTo = function (...at) { way.push(at); lineTo.apply(this, at) }
     prototype.stroke = function () {
-        const canvas = [...document.querySelectorAll("canvas")].indexOf(this.canvas)
-        found.push([canvas, this.strokeStyle, way])
+        found.push([this.canvas.parentElement.className, this.globalAlpha, this.strokeStyle, way])
         stroke.call(this)
     }
-    onpath.stale = true
+    onpath.simulation.changed("state")
     await new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))
     Object.assign(prototype, {beginPath, lineTo, stroke})
     return found
 }"""
-"""What is drawn next: number of the canvas, colour, and points of each line, [px]."""
+"""What is drawn next: class around the canvas, opacity, colour, and points of each line, [px]."""
 
 
 def choice(robot: str = "five_bar") -> FigureChoice:
@@ -298,9 +299,9 @@ def test_every_robot_follows_also_a_path_whose_points_are_dragged(
 def drawn(opened: Opened) -> tuple[list[Array], list[Array]]:
     """The traces of both robots, and their lines in the plot, [px]."""
     strokes = opened.page.evaluate(STROKES)
-    colours = opened.number("onpath.data.sides.map(side => side.colour.toLowerCase())")
-    traces = [np.array(way) for canvas, ink, way in strokes if canvas < 2 and ink[:4] == "rgba"]
-    curves = [np.array(way) for canvas, ink, way in strokes if canvas == 2 and ink in colours]
+    colours = [palette.OF_SIDE[side].hex for side in SIDES]
+    traces = [np.array(way) for where, alpha, _, way in strokes if where == "seen" and alpha < 1]
+    curves = [np.array(way) for where, _, ink, way in strokes if where == "plot" and ink in colours]
     return traces, curves
 
 
@@ -316,9 +317,9 @@ def test_lines_are_as_fine_at_every_frame_rate(opened: Opened, frames: int) -> N
     for trace in traces:
         chords = np.linalg.norm(np.diff(trace, axis=0), axis=1) / scale
         assert len(trace) > 200 and chords.max() < 0.01  # at 2 rad/s and a radius below 0.1 m
-    width = opened.number("document.querySelector('.plot canvas').clientWidth")
+    width = opened.number("document.querySelector('.plot').clientWidth")
     for curve in curves:
-        assert np.diff(curve[:, 0]).max() < 1.5 * width / 8 / 60
+        assert np.diff(curve[:, 0]).max() < 1.5 * width / 10 / 60
 
 
 def test_a_reset_by_the_page_around_begins_the_picture_anew(opened: Opened) -> None:
@@ -380,7 +381,7 @@ def test_a_pen_drags_a_tip_and_scrolls_elsewhere(opened: Opened) -> None:
 def test_a_tip_is_dragged_with_the_mouse(opened: Opened) -> None:
     opened.do(("choose", 0), ("set", [0, 0.0]), ("advance", 500))
     opened.page.evaluate(THREE_FRAMES)
-    box = opened.page.locator("canvas").nth(1).bounding_box()
+    box = opened.page.locator(".seen > canvas").nth(1).bounding_box()
     assert box
     x, y = opened.number("onpath.views[1].pixel(onpath.simulation.sides[1].tip())")
     mouse = opened.page.mouse
@@ -416,10 +417,10 @@ def test_what_is_not_chosen_is_not_there(browser: Browser, tmp_path: Path) -> No
     figure = onpath.figure(tmp_path / "a.html", controls=["hold"], sliders=[], laws="set_point")
     opened = Opened(browser, figure)
     names = opened.page.get_by_role("button").all_inner_texts()
-    assert names == ["Hold back"]
+    assert names == ["Hold back", "Hold while pressed"]
     assert opened.page.get_by_role("slider").count() == 0
     assert opened.page.get_by_role("combobox").count() == 0
-    assert opened.page.locator("canvas").count() == 1
+    assert opened.page.locator("canvas").count() == 2  # the robot, and the lens on it
     opened.page.keyboard.press(" ")
     assert opened.number("onpath.running")
     opened.page.keyboard.press("h")
@@ -606,7 +607,7 @@ def test_a_law_is_chosen_for_each_robot_and_its_poles_are_the_lab_s(
     wait_for(lambda: "not stable" in page.locator(".poles").inner_text(), WAIT)
     page.get_by_role("combobox", name="Law, left").select_option(label="Trajectory tracking")
     page.get_by_role("combobox", name="Law, right").select_option(label="Trajectory tracking")
-    names = page.locator("h2").all_inner_texts()
+    names = page.locator(".title").all_inner_texts()
     assert [name.strip() for name in names] == [
         "Trajectory tracking, left",
         "Trajectory tracking, right",

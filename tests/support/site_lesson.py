@@ -80,11 +80,11 @@ def lesson_one_by_keys(reader: SiteReader) -> None:
     keys.press("h")
     wait_for(lambda: "torn off" in page.locator(".step.open .stage").inner_text(), WAIT)
     keys.press("PageDown")
-    reader.focus(page.locator(".step.open summary").first)
-    keys.press("Enter")
-    for value in ("0", "40", "0"):
-        keys.press("Tab")
-        keys.type(value)
+    point = page.get_by_role("slider", name="Your prediction at 4 s")
+    reader.focus(point)
+    for _ in range(8):
+        keys.press("PageUp")
+    assert point.get_attribute("aria-valuetext") == "40 mm"
     reader.focus(reader.button("Commit to this prediction"))
     keys.press("Enter")
     keys.press("PageDown")

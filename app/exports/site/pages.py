@@ -5,28 +5,31 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from onpath.app.common.templates import environment, inlined, json_block, render
+from onpath.app.common.templates import environment, json_block
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
+from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.app.exports.standalone.page_style import page_style
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words, language_name
 
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
-    "img-src 'self' data:; base-uri 'none'; form-action 'none'"
+    "img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 """The pages' Content-Security-Policy: only scripts and styles of the site, no eval except
-WebAssembly, pictures of the site and of the lessons' texts, no requests to other servers."""
+WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
+requests to other servers."""
 MESSAGES = (
-    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.yours", "lesson.right"),
+    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.right"),
     *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
-    *("lesson.drawn", "lesson.numbers", "lesson.passed", "lesson.predict_before", "lesson.finish"),
+    *("lesson.drawn", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
     *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    "site.review",
+    *("site.review", *PARTS),
 )
 
 
@@ -121,7 +124,7 @@ def lesson_page(
 
 def site_style() -> str:
     """The style sheet of all pages."""
-    return render("site/site.css", dark=inlined("page/dark_colours.css"))
+    return page_style("site/site.css")
 
 
 def _page(
@@ -137,7 +140,7 @@ def _messages(words: Words) -> dict[str, str]:
     messages = {key: words(key) for key in MESSAGES}
     messages["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
     messages["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
-    messages["lesson.at"] = words("lesson.at", time="{time}", unit="{unit}")
+    messages["chart.point"] = words("chart.point", time="{time}")
     messages["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
     messages["site.refused"] = words("site.refused", reason="{reason}")
     messages["site.cut"] = words("site.cut", most="{most}")

@@ -9,7 +9,6 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from onpath.app.common import palette
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_module import (
     design_of,
@@ -20,7 +19,6 @@ from onpath.app.exports.standalone.figure_module import (
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.scene.captions import FULL, OFF, RETURNS
-from onpath.app.scene.tones import DARK, LIGHT, Tones
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -72,7 +70,6 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
-        "tones": {"light": _colours(LIGHT), "dark": _colours(DARK)},
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
             "steps": STEPS,
@@ -107,22 +104,6 @@ _SET = (
 )
 
 
-def _colours(tones: Tones) -> dict[str, str]:
-    """Colours of the picture and the plot, on a light or a dark page."""
-    shown = {
-        "path": tones.path,
-        "force": tones.force,
-        "steel": palette.STEEL,
-        "ink": tones.line,
-        "point": tones.point,
-        "selected": palette.SELECTED,
-        "warning": palette.WARNING,
-        "grid": tones.cells,
-        "held": tones.wall.toward(tones.cells, 0.6),
-    }
-    return {name: colour.hex for name, colour in shown.items()}
-
-
 def _places(layout: Any, names: tuple[str, ...]) -> dict[str, list[int]]:
     """Name -> [index of the first number in a flat vector, how many there are]."""
     return {name: [(s := layout.slices[name]).start, s.stop - s.start] for name in names}
@@ -147,8 +128,7 @@ def _sides(figure: FigureChoice) -> list[dict[str, Any]]:
     return [
         {
             "law": figure.every_law.index(law),
-            "colour": palette.OF_SIDE[name].hex,
-            "dark": palette.OF_SIDE[name].toward(palette.INK, 0.45).hex,
+            "side": SIDES.index(name),
         }
         for name, law in zip(names, figure.laws, strict=True)
     ]

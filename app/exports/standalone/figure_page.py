@@ -5,9 +5,10 @@ from __future__ import annotations
 from base64 import b64encode
 from hashlib import sha256
 
-from onpath.app.common.templates import inlined, json_block, render, styled
+from onpath.app.common.templates import inlined, json_block, render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.app.exports.standalone.page_style import page_style
 from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
 
@@ -25,8 +26,7 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
     Args:
         title: heading above the figure; may be empty.
     """
-    dark = inlined("page/dark_colours.css")
-    script, style = inlined("web/onpath.js"), styled("standalone/figure.css", dark=dark)
+    script, style = inlined("web/onpath.js"), page_style("standalone/figure.css")
     names = " / ".join(law_label(law, words) for law in figure.laws)
     return render(
         "standalone/figure.html",
@@ -36,10 +36,17 @@ def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
         description=words("standalone.description", laws=names),
         policy=POLICY.format(script=_hash(script), style=_hash(style)),
         style=style,
+        hint=_hint(figure, words),
         no_script=words("standalone.no_script"),
         data=json_block(figure_data(figure, words)),
         script=script,
     )
+
+
+def _hint(figure: FigureChoice, words: Words) -> str:
+    """What a reader can do first."""
+    acts = [act for act in ("hold", "pull") if act in figure.controls]
+    return words(f"standalone.hint_{'_'.join(acts)}") if acts else ""
 
 
 def _hash(text: str) -> str:

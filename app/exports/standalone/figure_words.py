@@ -7,10 +7,18 @@ from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
 from onpath.models.paths.path_checks import TUBE
 
+PARTS = (
+    *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
+    *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
+)
+"""Messages of the chart, on every page that has one."""
 PLAIN = (
+    *PARTS,
+    *("lens.closest", "lens.reference", "lens.straight", "run.press", "run.press_hint"),
+    *("run.rate", "past.go_on", "transport.go_on_hint", "transport.back", "transport.back_hint"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
     *("run.run", "run.pause", "run.run_hint", "run.step", "run.reset", "key.reset", "key.right"),
-    *("standalone.path", "standalone.plot", "standalone.law", "standalone.late"),
+    *("standalone.path", "standalone.law", "standalone.late"),
     *("standalone.coincide", "standalone.drag_hint"),
     *("gains.across", "gains.along"),
     *(f"side.{side}" for side in SIDES),
@@ -27,6 +35,8 @@ _FILLED = {
     **{f"caption.{kind}": ("mm",) for kind in ("torn_off", "held", "waits", "pulled", "chases")},
     **{f"caption.{kind}": ("mm",) for kind in ("off", "stopped", "returns", "off_bounded")},
     **{f"caption.{kind}": ("mm",) for kind in ("pulled_far", "pulled_bounded")},
+    "chart.at": ("time", "values"),
+    "lens.name": ("law",),
     "caption.spoken": ("robot", "caption"),
     "standalone.scene": ("law",),
     "standalone.refused": ("reason",),

@@ -128,7 +128,7 @@ def test_all_that_the_scripts_say_is_in_the_pages() -> None:
     text = "".join(file.read_text("utf-8") for file in asset_path("web").glob("*.ts"))
     says = re.compile(r"(said|tell)\(")
     asked = {key for line in text.splitlines() if says.search(line) for key in _keys(line)}
-    given = {*MESSAGES, *CHECKS, "lesson.step", "lesson.at", "site.done", "site.sketch", "point"}
+    given = {*MESSAGES, *CHECKS, "lesson.step", "site.done", "site.sketch", "point"}
     given |= {"site.refused", "site.cut"}
     assert len(asked) > 15 and asked <= given
 

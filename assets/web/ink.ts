@@ -1,0 +1,111 @@
+// Drawing on canvases, in pixels of the page, without asking the browser for the layout.
+
+export type Pixel = readonly [number, number]
+
+/** The colours of the page's style, light or dark; see assets/templates/web/parts.css. */
+const NAMES = [
+    "paper", "ink", "soft", "grid", "path", "point", "selected", "warning", "steel", "force", "held", "pulled", "yours",
+    "side0", "side1", "dark0", "dark1",
+] as const
+export type Tone = (typeof NAMES)[number]
+export type Tones = Record<Tone, string>
+
+const DARK = matchMedia("(prefers-color-scheme: dark)")
+const listeners = new Set<() => void>()
+let kept: Tones | null = null
+
+export function tones(): Tones {
+    if (kept) return kept
+    const style = getComputedStyle(document.documentElement)
+    kept = Object.fromEntries(NAMES.map(name => [name, style.getPropertyValue(`--tone-${name}`).trim()])) as Tones
+    return kept
+}
+
+/** Read the colours anew, and draw everything anew; a page calls it that changes its scheme by itself. */
+export function retone(): void {
+    kept = null
+    for (const listener of listeners) listener()
+}
+DARK.addEventListener("change", retone)
+
+/** A canvas that is told its size. */
+export class Sheet {
+    readonly canvas = document.createElement("canvas")
+    width = 0
+    height = 0
+    // The browser then draws in memory: without a graphics card, the other way costs ten times as much.
+    private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
+
+    /** `changed`: everything is to be drawn anew. */
+    constructor(changed: () => void, ended?: AbortSignal) {
+        const observer = new ResizeObserver(entries => {
+            const { width, height } = entries[entries.length - 1]!.contentRect
+            Object.assign(this, { width, height })
+            changed()
+        })
+        observer.observe(this.canvas)
+        listeners.add(changed)
+        ended?.addEventListener("abort", () => {
+            observer.disconnect()
+            listeners.delete(changed)
+        })
+    }
+
+    /** The empty canvas; null if it cannot be seen. */
+    cleared(): CanvasRenderingContext2D | null {
+        const { canvas, ink, width, height } = this
+        if (!ink || !width || !height) return null
+        const ratio = window.devicePixelRatio || 1
+        const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)]
+        if (canvas.width !== across || canvas.height !== down) Object.assign(canvas, { width: across, height: down })
+        ink.setTransform(ratio, 0, 0, ratio, 0, 0)
+        ink.clearRect(0, 0, width, height)
+        ink.lineCap = ink.lineJoin = "round"
+        return ink
+    }
+}
+
+export function stroke(ink: CanvasRenderingContext2D, way: readonly Pixel[], colour: string, width: number): void {
+    ink.strokeStyle = colour
+    ink.lineWidth = width
+    ink.beginPath()
+    for (const [x, y] of way) ink.lineTo(x, y)
+    ink.stroke()
+}
+
+export function disc(ink: CanvasRenderingContext2D, [x, y]: Pixel, radius: number, colour: string): void {
+    ink.fillStyle = colour
+    ink.beginPath()
+    ink.arc(x, y, radius, 0, 2 * Math.PI)
+    ink.fill()
+}
+
+/** An arrow; a short one has a small head. */
+export function arrow(ink: CanvasRenderingContext2D, from: Pixel, to: Pixel, colour: string, width: number): void {
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]]
+    const length = Math.hypot(dx, dy)
+    if (length < 1) return
+    const head = Math.min(3.5 * width + 2, 0.6 * length)
+    const [x, y] = [(dx / length) * head, (dy / length) * head]
+    stroke(ink, [from, [to[0] - x, to[1] - y]], colour, width)
+    ink.fillStyle = colour
+    ink.beginPath()
+    for (const side of [1, -1]) ink.lineTo(to[0] - x - 0.45 * side * y, to[1] - y + 0.45 * side * x)
+    ink.lineTo(...to)
+    ink.fill()
+}
+
+/** Letters with a rim, so that they can be read on lines. */
+export function letters(ink: CanvasRenderingContext2D, text: string, x: number, y: number, colour: string, rim: string): void {
+    ink.strokeStyle = rim
+    ink.lineWidth = 4
+    ink.strokeText(text, x, y)
+    ink.fillStyle = colour
+    ink.fillText(text, x, y)
+}
+
+/** The step of a scale, 1, 2 or 5 times a power of ten, that is at least as large as asked. */
+export function niceStep(least: number): number {
+    const ten = 10 ** Math.floor(Math.log10(least))
+    return [1, 2, 5, 10].map(each => each * ten).find(each => each >= least * (1 - 1e-9)) ?? 10 * ten
+}

@@ -1,0 +1,28 @@
+// Texts and numbers in the language of the page.
+
+/** The data of a page, with its messages. */
+export interface Texts {
+    words: Record<string, string>
+}
+
+/** A message with its values filled in. */
+export function said(texts: Texts, key: string, values: Record<string, string> = {}): string {
+    const text = texts.words[key]
+    if (text === undefined) throw new Error(`no words for ${key}`)
+    return filled(text, values)
+}
+
+export function filled(text: string, values: Record<string, string>): string {
+    return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
+}
+
+/** A number as the language writes it. */
+export function written(texts: Texts, value: number, digits?: number): string {
+    const text = digits === undefined ? String(value) : value.toFixed(digits).replace(/^-(?=[0.]*$)/, "")
+    return text.replace("-", "−").replace(".", texts.words["point"] ?? ".")
+}
+
+/** The same with a number of significant digits. */
+export function significant(texts: Texts, value: number, digits: number): string {
+    return written(texts, Number(value.toPrecision(digits)))
+}
