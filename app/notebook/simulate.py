@@ -272,7 +272,7 @@ def through(
 
     >>> import onpath
     >>> onpath.through([[0.05, 0], [0, 0.05], [-0.05, 0], [0, -0.05]], corners="round", radius=0.03)
-    <closed path, 258 mm long, 87 x 87 mm>
+    <closed path, 231 mm long, 75 x 75 mm>
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
     read = path_through(given, Placing(corners=corners, radius=radius, closed=closed))

@@ -84,7 +84,8 @@ def _words(bare: str, line: int) -> dict[str, float]:
     while place < end:
         found = _WORD.match(bare, place)
         if found is None:
-            raise _refused("error.gcode_word", bare, place, line)
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
         letter, number = found[1], found[2]
         name, value = letter, float(number)
         if letter == "G":
@@ -92,20 +93,21 @@ def _words(bare: str, line: int) -> dict[str, float]:
             name = f"G{whole.lstrip('0') or '0'}" if not rest.strip("0") else number
         known = name[1:] in (*MOTIONS, *SIZES, *WAYS) if letter == "G" else letter in "XYIJRFN"
         if not known or not isfinite(value):
-            raise _refused("error.gcode_word", bare, place, line)
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
         if name in words:
-            raise _refused("error.gcode_twice", bare, place, line)
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_twice", line=str(line), column=column, text=text)
         words[name] = value
         place = found.end()
     return words
 
 
-def _refused(code: str, bare: str, place: int, line: int) -> CodedError:
-    """The error for what stands at a place of a line."""
+def _at(bare: str, place: int) -> tuple[str, str]:
+    """Column and text of what stands at a place of a line, for a message."""
     begin = place + len(bare[place:]) - len(bare[place:].lstrip())
     word = re.match(r"\S[^A-Z\s]*", bare[begin:])
-    text = repr((word[0] if word else bare[begin:])[:20])
-    return CodedError(code, line=str(line), column=str(begin + 1), text=text)
+    return str(begin + 1), repr((word[0] if word else bare[begin:])[:20])
 
 
 def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:

@@ -197,8 +197,9 @@ def _chosen(strokes: Sequence[Stroke], part: int | None) -> tuple[Stroke, list[M
     stroke = strokes[longest]
     if len(strokes) == 1:
         return stroke, []
-    taken = {"name": stroke.name, "part": str(longest + 1), "count": len(strokes)}
-    return stroke, [Message("say.one_of_lines", taken)]
+    number, count = str(longest + 1), len(strokes)
+    taken = Message("say.one_of_lines", {"name": stroke.name, "part": number, "count": count})
+    return stroke, [taken]
 
 
 def _remarked(curve: Curve, remarks: list[Message]) -> PathFile:

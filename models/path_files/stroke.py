@@ -39,7 +39,8 @@ class Stroke:
     @property
     def length(self) -> float:
         """The sum of the distances of its points, [m]."""
-        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+        with np.errstate(over="ignore"):
+            return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
 
 def drawn_stroke(points: list[tuple[float, float]] | Array, name: str) -> Stroke:

@@ -11,8 +11,10 @@ deep nesting and too many elements are refused before.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Iterator
 from functools import partial
+from importlib.util import find_spec
 from typing import Any
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
@@ -39,10 +41,8 @@ def strokes_of_svg(data: bytes) -> list[Stroke]:
         CodedError: svgpathtools is not installed, or the file is not a drawing that can be read;
             the message names the line.
     """
-    try:
-        from svgpathtools.svg_to_paths import parse_path  # noqa: F401
-    except ImportError:
-        raise CodedError("error.svg_not_installed") from None
+    if find_spec("svgpathtools") is None:
+        raise CodedError("error.svg_not_installed")
     root = _Reader().read(data)
     if root.tag != "svg":
         raise CodedError("error.svg_no_drawing")
@@ -136,7 +136,8 @@ def _shapes(root: Element) -> Iterator[tuple[Element, Any, str]]:
 def _read(element: Element, reader: Callable[..., Any], *arguments: Any) -> Any:
     """What svgpathtools reads of an element; whatever it raises is an error of the file."""
     try:
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
             return reader(*arguments)
     except Exception as error:  # it raises many kinds, also AssertionError
         reason = str(error).partition("\n")[0][:80] or type(error).__name__

@@ -24,7 +24,7 @@ from onpath.models.paths.curve_fit import with_deviation
 from onpath.models.paths.curves import HARMONICS, Curve, from_terms
 
 SMOOTHINGS = (0.0, 0.001, 0.003, 0.006, 0.01, 0.02, 0.04, 0.08, 0.15, 0.4, 1.0)  # τ
-SCALES = (*np.linspace(0.1, 1.0, 19), 1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0)  # s
+SCALES = np.append(np.linspace(0.1, 1.0, 19), [1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0])  # s
 SHIFTS = (0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0)  # u; at 1 the centre is the robot's home
 BISECTIONS = 6
 SAMPLES = 30  # points at which versions are compared
@@ -43,13 +43,16 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
     start, smoothed = curve.at(theta), [_smoothed(curve, tau) for tau in SMOOTHINGS]
     centre = start.mean(axis=0)
     outlines = [from_terms(curve.closed, terms).at(theta) for terms in smoothed]
-    ways = list(product(range(len(SMOOTHINGS)), SCALES, SHIFTS))
+    ways = [
+        (i, scale, shift)
+        for i, scale, shift in product(range(len(SMOOTHINGS)), SCALES.tolist(), SHIFTS)
+    ]
     moves = [(1 - shift - scale) * centre for _, scale, shift in ways]
     apart = [
-        np.abs(scale * outlines[i] + move - start).max()
+        float(np.abs(scale * outlines[i] + move - start).max())
         for (i, scale, _), move in zip(ways, moves, strict=True)
     ]
-    for k in np.argsort(apart, kind="stable"):
+    for k in sorted(range(len(ways)), key=lambda k: apart[k]):
         i, scale, _ = ways[k]
         terms = scale * smoothed[i]
         terms[0] += moves[k]

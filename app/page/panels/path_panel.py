@@ -156,6 +156,7 @@ class PathPanel:
                 step=1,
                 hint=words("design.radius_hint"),
             )
+            opened = gui.add_checkbox(words("design.open"), False, hint=words("design.open_hint"))
             button = gui.add_upload_button(
                 words("design.upload"),
                 color="gray",
@@ -177,6 +178,7 @@ class PathPanel:
                 fit=size.value / 1e3 or None,
                 corners=ROUND if radius.value else SMOOTH,
                 radius=radius.value / 1e3 or RADIUS,
+                closed=False if opened.value else None,
             )
             file = button.value
             upload = Upload(

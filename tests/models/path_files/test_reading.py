@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.path_files import svg
 from onpath.models.path_files.placing import CORNERED, LARGEST, Placing, least_radius
 from onpath.models.path_files.reading import (
     PathFile,
@@ -327,6 +328,15 @@ def test_anything_else_is_refused_by_its_line(case: str) -> None:
     text, name, words = REFUSED[case]
     with pytest.raises(CodedError, match=re.escape(words)):
         read(text, name)
+
+
+def test_without_the_library_a_drawing_says_how_to_install_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(svg, "find_spec", lambda _: None)
+    with pytest.raises(CodedError, match=re.escape('pip install "onpath[svg]"')):
+        read(DRAWING, "a.svg")
+    assert read(TABLE).curve.closed and read(TOOL, "a.nc").curve.closed
 
 
 def test_a_drawing_of_many_corners_is_not_rounded_one_by_one() -> None:
