@@ -43,6 +43,7 @@ export class Lens {
         const tone = engine.texts[side]!.side
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
         engine.on(() => (this.stale = true), ended)
+        this.read(shown(engine).sides[side]!)
     }
 
     draw(now = performance.now()): void {

@@ -17,7 +17,7 @@ export class Strip {
     readonly chart: Chart
     readonly handle = made("div", "handle")
     private stale = true
-    private spoken = 0
+    private spoken = -Infinity
     private first = 0 // of the axis, while one looks back
     private dragged: { pointer: number; x: number } | null = null
 
@@ -32,6 +32,7 @@ export class Strip {
             if (change === "history" || change === "path") this.scale()
         }, ended)
         this.hand()
+        this.grip(-Infinity)
     }
 
     /** Draw what has changed. */
