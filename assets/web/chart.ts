@@ -291,6 +291,7 @@ export class Chart {
     private table(): HTMLElement {
         const { texts } = this
         const body = made("div", "wide")
+        body.tabIndex = 0 // it may have to be scrolled
         const details = made("details", "table", made("summary", "", said(texts, "chart.table")), body)
         details.addEventListener("toggle", () => body.replaceChildren(...(details.open ? [this.rows()] : [])))
         return details
