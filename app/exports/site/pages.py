@@ -18,10 +18,11 @@ from onpath.lessons.words import Words, language_name
 
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
-    "img-src 'self' data:; base-uri 'none'; form-action 'none'"
+    "img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 """The pages' Content-Security-Policy: only scripts and styles of the site, no eval except
-WebAssembly, pictures of the site and of the lessons' texts, no requests to other servers."""
+WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
+requests to other servers."""
 MESSAGES = (
     *("lesson.playing", "lesson.replay", "lesson.play", "lesson.right"),
     *("lesson.not_quite", "lesson.committed", "lesson.skipped", "site.draw_first"),
