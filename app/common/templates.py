@@ -3,8 +3,8 @@
 Colours are those of the palette; a dark page replaces some of them, see
 assets/page/dark_colours.css.
 
-`Markup` is made only in `phrase`, `inlined`, `math_font`, `part_of_page` and `json_block` and, from a
-lesson's words, by `lessons.safe_html.safe`.
+`Markup` is made only in `phrase`, `inlined`, `math_font`, `part_of_page` and `json_block` and, from
+a lesson's words, by `lessons.safe_html.safe`.
 """
 
 from __future__ import annotations
