@@ -38,6 +38,7 @@ INVITATIONS = (
     Invitation("let_go", lambda shown: not shown.held, "h"),
     Invitation("pull", lambda shown: shown.grabbed is not None),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
+    Invitation("lesson", lambda shown: shown.key.in_lesson, "o"),
 )
 
 

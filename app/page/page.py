@@ -165,7 +165,12 @@ class Page:
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
         self._build_panels(first, words, post)
-        page_actions = {"view": self.reset_view, "summary": self._narration.ask_summary}
+        first_lesson = next(iter(self._context.course.lessons), "")
+        page_actions = {
+            "view": self.reset_view,
+            "summary": self._narration.ask_summary,
+            "lesson": lambda: post(c.OpenLesson(first_lesson)),
+        }
         add_keys(self._client.gui, words, post, page_actions)
         self._building = self.is_outdated = False
 

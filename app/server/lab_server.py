@@ -32,6 +32,7 @@ from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
@@ -212,15 +213,15 @@ class LabServer:
         if kept[DARK_KEY] == "yes":
             self._dark.add(number)
         teaches = service is not None and service.teaches(number)
-        enter = partial(self._entered, client, kept[STORAGE_KEY])
+        enter = partial(self._entered, client, kept[STORAGE_KEY], arrival.language)
         self._room.admit(client, enter, arrival.address, always=teaches)
         if number not in self.server.get_clients():
             self._disconnected(client)
 
-    def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
+    def _entered(self, client: viser.ClientHandle, known: str | None, language: str) -> None:
         """Give a newly admitted client its session, if it is still connected."""
         if client.client_id in self.server.get_clients():
-            entry = self.sessions.join(client.client_id, known)
+            entry = self.sessions.join(client.client_id, known, language)
             self._newcomers.submit(client, partial(self._show, client, entry, known))
 
     def _show(self, client: viser.ClientHandle, entry: RegisteredLab, known: str | None) -> None:
@@ -346,6 +347,7 @@ def serve(
         LessonError: a lesson has errors.
         NotKept: the database cannot be used.
     """
+    limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)

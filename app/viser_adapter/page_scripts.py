@@ -47,8 +47,12 @@ def our_scripts() -> bytes:
 
 
 def words() -> bytes:
-    """The message of connection.js in every language, as an element with JSON."""
-    messages = {code: catalogue(code).text("connect.silent", {}) for code in languages()}
+    """The messages of connection.js in every language, as an element with JSON."""
+    keys = {"silent": "connect.silent", "lost": "connect.lost"}
+    messages = {
+        code: {name: catalogue(code).text(key, {}) for name, key in keys.items()}
+        for code in languages()
+    }
     text = msgspec.json.encode(messages).replace(b"<", b"\\u003c")
     return b'<script id="op-words" type="application/json">%b</script>\n' % text
 

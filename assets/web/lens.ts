@@ -8,9 +8,10 @@ import { drawShapes, shapesOf } from "./symbols"
 import { said, significant, written, type Texts } from "./words"
 
 const FACTORS = [1.5, 3, 6, 12, 20]
-const FITS = 0.7 // of the radius: what is to be seen is within
-const CLOSER = 0.5 // the same before the lens goes closer
+const FITS = 0.62 // of the radius: what is to be seen is within
+const CLOSER = 0.45 // the same before the lens goes closer
 const HIGHER = 0.92 // of the radius: the middle of what is to be seen is above the bar
+const LOWEST = 1.55 // of the radius: names are above the bar
 const PATIENCE = 900 // [ms] for which it could have gone closer
 const GLIDE = 120 // [ms], in which most of a change of scale is done
 const TRACE = 2 // [s]
@@ -181,11 +182,11 @@ export class Lens {
     private name(ink: CanvasRenderingContext2D, text: string, at: Pixel, tip: Pixel, radius: number, colour: string): void {
         const { width } = ink.measureText(text)
         const half = (y: number) => Math.sqrt(Math.max(0, radius ** 2 - (Math.abs(y - radius) + 7) ** 2)) - 5
-        const fits = (x: number, y: number) => x >= radius - half(y) && x + width <= radius + half(y)
+        const fits = (x: number, y: number) => y < LOWEST * radius && x >= radius - half(y) && x + width <= radius + half(y)
         const away = at[1] > tip[1] ? 18 : -18
         const sides = at[0] < tip[0] ? [-13 - width, 13] : [13, -13 - width]
         const tried: Pixel[] = [...sides.map((x): Pixel => [at[0] + x, at[1]]), [at[0] - width / 2, at[1] + away], [radius - width / 2, at[1] + away]]
-        const [x, y] = tried.find(place => fits(...place)) ?? [radius - width / 2, at[1] - away]
+        const [x, y] = tried.find(place => fits(...place)) ?? [Math.min(Math.max(at[0], 0.7 * radius), 1.3 * radius) - width / 2, at[1] - away]
         ink.textAlign = "left"
         letters(ink, text, x, y, colour, tones().paper)
     }

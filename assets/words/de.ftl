@@ -436,6 +436,7 @@ aim-theta_ref = zielt auf seinen Sollpunkt
 ## Die Seite: was immer da ist
 
 connect-silent = Das Labor antwortet nicht. Läuft es noch? Ein Proxy dazwischen muss Websockets weiterleiten: assets/deploy/README.md zeigt, wie.
+connect-lost = Die Verbindung zum Labor ist abgebrochen. Was du siehst, steht still; die Seite versucht weiter, das Labor zu erreichen.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
 page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige
@@ -488,6 +489,8 @@ invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so l
 invite-let_go_button = Lass sie los
 invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Finger oder den Tasten A, D, W, S.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
+invite-lesson = Was geschieht, wenn man ihn zwei Sekunden festhält? Erst zeichnen, dann sehen: Lektion 1 dauert eine Viertelstunde.
+invite-lesson_button = Lektion 1 öffnen
 invite-skip = Einführung überspringen
 
 scene-draw = Zeichne die Bahn in einem Zug
@@ -647,9 +650,9 @@ show-labels = Namen, Achsen
 show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 des Artikels
 show-tube = Schlauch
 show-tube_hint = Wo der nächste Punkt der Bahn eindeutig ist: Dort ist der virtuelle Ausgang definiert
-show-grid = Netz (θ, ξ)
+show-grid = Netz längs und quer zur Bahn
 show-grid_hint = Linien quer zur Bahn haben denselben nächsten Punkt, also dasselbe θ; Linien längs der Bahn denselben Abstand ξ.
-show-rank = Rangtest (11)
+show-rank = Wo die Gesetze definiert sind
 show-rank_hint = Wie weit jeder Ort davon entfernt ist, dass der Rang verloren geht und die Regelgesetze nicht mehr definiert sind
 show-errors = Beide Fehler
 show-errors_hint = e (orange) führt zum Punkt des Fahrplans, dem Ring des linken Roboters; d (blau) führt zum nächsten Punkt der Bahn.
@@ -802,6 +805,7 @@ key-slowly = Wenn ein Roboter stehen geblieben ist: seine letzten Augenblicke la
 key-earlier = Wenn ein Roboter stehen geblieben ist: mit den letzten Einstellungen zurücksetzen, mit denen es ging
 key-summary = Sagen, was zu sehen ist
 key-view = Die Ansicht zurücksetzen
+key-lesson = Die erste Lektion öffnen
 
 keyname-space = Leertaste
 keyname-Esc = Esc

@@ -384,6 +384,7 @@ aim-theta_ref = aims at its reference point
 ## The page: what is always there
 
 connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
+connect-lost = The connection to the lab is lost. What you see stands still; the page keeps trying to reach the lab.
 page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-viewer = Settings of the viewer
@@ -436,6 +437,8 @@ invite-let_go = One is torn off the path by its clock; the other waits for as lo
 invite-let_go_button = Let them go
 invite-pull = Grab a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
 invite-bend = Bend the path: drag one of its grey points.
+invite-lesson = What happens if it is held for two seconds? Draw it first, then see: lesson 1 takes a quarter of an hour.
+invite-lesson_button = Open lesson 1
 invite-skip = Skip the introduction
 
 scene-draw = Draw the path in one stroke
@@ -595,9 +598,9 @@ show-labels = Labels, axes
 show-labels_hint = Angles q, lengths ℓ and the axes of y, as in the paper's figures 1 and 4
 show-tube = Tube
 show-tube_hint = Where the closest point of the path is unique: the virtual output is defined there
-show-grid = Grid (θ, ξ)
+show-grid = Grid along and across the path
 show-grid_hint = Lines across the path have the same closest point and so the same θ; lines along it the same distance ξ.
-show-rank = Rank test (11)
+show-rank = Where the laws are defined
 show-rank_hint = How far each place is from losing rank, where the control laws are no longer defined
 show-errors = Both errors
 show-errors_hint = e (orange) leads to the timetable's point, the ring of the left robot; d (blue) leads to the closest point of the path.
@@ -748,6 +751,7 @@ key-slowly = After a robot has stopped: show its last moments slowly
 key-earlier = After a robot has stopped: reset with the last settings that worked
 key-summary = Say what is on the screen
 key-view = Reset the view
+key-lesson = Open the first lesson
 
 keyname-space = space
 keyname-Esc = Esc

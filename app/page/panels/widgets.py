@@ -126,7 +126,7 @@ def help_of(words: Words, name: str, spec: Spec) -> str:
 
 def option_of(words: Words, name: str, option: Any) -> str:
     """Displayed name of one of a parameter's options."""
-    return words.get(f"parameter.{name}.option.{option}", str(option))
+    return words.get(f"parameter.{name}.option.{option}", str(option).replace("_", " "))
 
 
 class ParameterWidgets:

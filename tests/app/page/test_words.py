@@ -469,7 +469,8 @@ def test_reasons_and_behaviours_are_translated(words: Words) -> None:
     for message in said:
         own, english = words.sentence(message), str(message)
         assert own != english and "{" not in own
-        assert re.findall(r"\d[\d.]*\d", own) == re.findall(r"\d[\d.]*\d", english)
+        numbers = [words.written(number) for number in re.findall(r"\d[\d.]*\d", english)]
+        assert re.findall(r"\d[\d.,]*\d", own) == numbers
         assert ENGLISH.sentence(message) == english
 
 
@@ -477,7 +478,7 @@ def test_messages_inside_a_message_are_translated_too() -> None:
     kind = Message("behaviour.no_overshoot")
     settles = Message("behaviour.settles", {"seconds": "0.2", "kind": kind})
     assert str(settles) == "settles in 0.2 s, no overshoot"
-    assert Words("de").sentence(settles) == "klingt in 0.2 s ab, ohne Überschwingen"
+    assert Words("de").sentence(settles) == "klingt in 0,2 s ab, ohne Überschwingen"
     two = (Message("fault.cusp"), Message("fault.crosses"))
     refused = CodedError("error.cannot_follow", robot="R", reasons=two)
     assert Words("de").sentence(refused).count("; die Bahn") == 1

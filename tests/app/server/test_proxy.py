@@ -71,7 +71,7 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         student.set(f"Open lesson {[*numbers][-1]}", True)
         student.set("Next", True)
         student.read(lambda: student.sees("Step 2 of"))
-        student.set("B", "B")
+        student.choose("B")
         student.set("Commit to this prediction: B", True)
         student.read(lambda: student.has_widget("Next") and not student.has_widget("Commit"))
         kept = ("'answers': {'1'", "'K2': 44.0", "'clover'")
