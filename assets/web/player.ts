@@ -43,6 +43,7 @@ export class Player {
         addEventListener("hashchange", () => this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
         WIDE.addEventListener("change", () => this.place())
+        this.turnable()
         addEventListener("resize", () => this.formulas())
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
         addEventListener("afterprint", () => this.section.prepend(this.head))
@@ -57,6 +58,18 @@ export class Player {
 
     get notes() { return this.student.notes }
     private get section(): HTMLElement { return this.sections[this.index]! }
+    /** On a narrow page, lead from the text to the robots and back. */
+    private turnable(): void {
+        const button = document.querySelector<HTMLButtonElement>("#turn")!
+        let seen = false
+        const observer = new IntersectionObserver(entries => {
+            for (const { target, isIntersecting } of entries) if (this.section.contains(target)) seen = isIntersecting
+            button.textContent = said(this.page, seen ? "site.to_text" : "site.to_robots")
+        }, { threshold: 0.5 })
+        for (const robots of document.querySelectorAll(".step .stage")) observer.observe(robots)
+        button.addEventListener("click", () => this.section.querySelector(seen ? ".words" : ".stage")!.scrollIntoView())
+    }
+
     private readonly asked = (): number => Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
     private key(event: KeyboardEvent): void {
         const by = { PageDown: 1, PageUp: -1 }[event.key]

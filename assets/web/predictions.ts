@@ -71,12 +71,12 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             const { times, values } = chart.ghost ?? {}
             answer = times && values ? { times: [...times], values: [...values] } : {}
             answers()
-            told.textContent = said(page, times ? "lesson.drawn" : "lesson.draw_first")
+            told.textContent = said(page, times ? "lesson.drawn" : "site.draw_first")
             hint()
             chart.draw()
         })
         board = chart.element
-        told.textContent = said(page, "lesson.draw_first")
+        told.textContent = said(page, "site.draw_first")
         committed = () => (drawing.open = false)
     } else
         element.addEventListener("change", event => {

@@ -18,7 +18,7 @@ export class Strip {
     readonly chart: Chart
     readonly handle = made("div", "handle", made("span", ""))
     private stale = true
-    private spoken = 0
+    private spoken = -Infinity
     private first = 0 // of the axis, while one looks back
     private readonly times: number[] = []
     private readonly values: number[][] = [] // [mm], of each robot
@@ -39,7 +39,7 @@ export class Strip {
             if (change === "history" || change === "path") this.scale(change === "history" ? 0 : this.chart.axes.top)
         }, ended)
         this.hand()
-        this.grip(0)
+        this.grip(-Infinity)
     }
 
     /** Draw what has changed. */

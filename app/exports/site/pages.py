@@ -25,13 +25,13 @@ WebAssembly, pictures of the site and of the lessons' texts, the site's font for
 requests to other servers."""
 MESSAGES = (
     *("lesson.playing", "lesson.replay", "lesson.play", "lesson.right"),
-    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
+    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "site.draw_first"),
     *("lesson.drawn", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
     *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    *("site.skip_short", "site.review", "site.symbols", *PARTS),
+    *("site.to_robots", "site.to_text", "site.skip_short", "site.review", "site.symbols", *PARTS),
 )
 
 

@@ -39,6 +39,7 @@ class StepFigure:
     Attributes:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
+        drawings: what is drawn besides the robots, in the lab.
         plots: plots that the step shows in the lab.
         faithful: whether the figure begins where the lab does; only then is it shown.
         changing: names of the parameters that sliders, links or the script change.
@@ -46,6 +47,7 @@ class StepFigure:
 
     choice: FigureChoice
     lacking: tuple[str, ...]
+    drawings: tuple[str, ...]
     plots: tuple[str, ...]
     faithful: bool
     changing: frozenset[str]
@@ -116,7 +118,9 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     known = specs(type(bare.parameters))
     sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
     lacking = {name: None for name in scene.controls if name not in (*sliders, "hold")}
-    if scene.show or scene.marks:
+    if scene.show:
+        lacking.pop("show", None)
+    elif scene.marks:
         lacking["show"] = None
     if scene.start.numbers:
         lacking["start"] = None
@@ -126,6 +130,7 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     return StepFigure(
         choice=figure,
         lacking=tuple(lacking),
+        drawings=scene.show,
         plots=scene.plots,
         faithful=not scene.start.numbers,
         changing=changing,
@@ -195,6 +200,7 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
         else words(f"site.control.{name}")
         for name in figure.lacking
     ]
+    named += [words(f"show.{name}") for name in figure.drawings]
     named += [words("site.plot", plot=words(f"plot.{plot}")) for plot in figure.plots]
     return ", ".join(named)
 

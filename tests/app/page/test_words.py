@@ -74,7 +74,8 @@ KEYS_MADE = (
     *("caption.", "invite.", "spoken."),
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
-    *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol."),
+    *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
+    "standalone.hint_",
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
