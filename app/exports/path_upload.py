@@ -10,6 +10,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.export_process import ExportError, ExportProcess, ExportStopped
@@ -72,7 +73,10 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
 
 
 def started() -> None:
-    """Do nothing: the process has started, and imported what it needs."""
+    """Import what reading needs and is slow to import, so that it is not counted as reading."""
+    for name in ("scipy.interpolate", "scipy.spatial", "svgpathtools"):
+        with suppress(ImportError):  # svgpathtools is an extra
+            import_module(name)
 
 
 class PathReader:

@@ -22,12 +22,15 @@ from onpath.models.arrays import Array
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curve_fit import with_deviation
 from onpath.models.paths.curves import HARMONICS, Curve, from_terms
+from onpath.models.paths.path_checks import LEAST_MARGIN, TUBE
 
 SMOOTHINGS = (0.0, 0.001, 0.003, 0.006, 0.01, 0.02, 0.04, 0.08, 0.15, 0.4, 1.0)  # τ
 SCALES = np.append(np.linspace(0.1, 1.0, 19), [1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3.0])  # s
 SHIFTS = (0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0)  # u; at 1 the centre is the robot's home
 BISECTIONS = 6
 SAMPLES = 30  # points at which versions are compared
+CHECKED = 240  # points at which their curvature is
+SLACK = 1.001  # of the quick checks, whose samples are others
 
 
 def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
@@ -42,7 +45,9 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
     theta = np.linspace(-np.pi, np.pi, SAMPLES)
     start, smoothed = curve.at(theta), [_smoothed(curve, tau) for tau in SMOOTHINGS]
     centre = start.mean(axis=0)
-    outlines = [from_terms(curve.closed, terms).at(theta) for terms in smoothed]
+    curves = [from_terms(curve.closed, terms) for terms in smoothed]
+    outlines = [each.at(theta) for each in curves]
+    bends = [float(np.abs(each.curvature(each.sample(CHECKED))).max()) for each in curves]
     ways = [
         (i, scale, shift)
         for i, scale, shift in product(range(len(SMOOTHINGS)), SCALES.tolist(), SHIFTS)
@@ -54,6 +59,10 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
     ]
     for k in sorted(range(len(ways)), key=lambda k: apart[k]):
         i, scale, _ = ways[k]
+        if bends[i] > SLACK * scale / TUBE:
+            continue  # quicker than all checks
+        if not reach(scale * outlines[i] + moves[k]).min() >= LEAST_MARGIN / SLACK:
+            continue
         terms = scale * smoothed[i]
         terms[0] += moves[k]
         if not curve_faults(reach, from_terms(curve.closed, terms)):
