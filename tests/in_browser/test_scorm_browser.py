@@ -258,7 +258,12 @@ def test_a_drawn_curve_is_kept_beside_long_reasons(
     for step in (1, 2, opened.ask("site.page.steps.length")):
         opened.ask(f"site.open({step})")
         shown = opened.frame.locator(".step.open")
-        wait_for(lambda shown=shown: shown.locator("canvas.chart").first.is_visible(), WAIT)
+        wait_for(
+            lambda shown=shown: shown.locator(
+                ":is(.beneath, .compared) .plot canvas"
+            ).first.is_visible(),
+            WAIT,
+        )
         assert not shown.get_by_text("You skipped the prediction").first.is_visible()
         is_told = shown.get_by_text("let it happen again to see them").is_visible()
         assert is_told == (step > 1 and platform[0] == "1.2")

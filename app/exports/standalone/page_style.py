@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from markupsafe import Markup
-
 from onpath.app.common import palette
-from onpath.app.common.templates import inlined, part_of_page
+from onpath.app.common.templates import Markup, inlined, part_of_page
 from onpath.app.scene.tones import DARK, LIGHT, Tones
 from onpath.models.control.sides import SIDES
 
