@@ -942,12 +942,6 @@ machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spi
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
 
-machine-planar_arm-label = Ebener Dreigelenkarm
-machine-planar_arm-text = Drei Motoren in einer senkrechten Ebene: Einer mehr, als die Bahn braucht, hält eine Haltung.
-
-machine-seven_axes-label = Siebenachser
-machine-seven_axes-text = Sieben Motoren für eine Spitze im Raum: Vier mehr, als die Bahn braucht, halten eine Haltung.
-
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
