@@ -335,7 +335,7 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
     if limit is not None:
         effort = limit.number("effort", 0.0) or math.inf
         if effort < 0:
-            raise Fault(limit, Message("robot_file.negative", {"key": "effort"}))
+            raise Fault(limit, Message("robot_file.negative", {"field": "effort"}))
     if kind in ("revolute", *SLIDING):
         if limit is None:
             raise Fault(joint, Message("robot_file.without", {"what": "<limit>"}))
@@ -346,7 +346,7 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
             )
     damping = 0.0 if dynamics is None else dynamics.number("damping", 0.0)
     if dynamics is not None and damping < 0:
-        raise Fault(dynamics, Message("robot_file.negative", {"key": "damping"}))
+        raise Fault(dynamics, Message("robot_file.negative", {"field": "damping"}))
     return Joint(
         name=joint.name(),
         slides=kind in SLIDING,

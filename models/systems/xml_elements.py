@@ -72,7 +72,7 @@ class Element:
         """
         text = self.text(key)
         if not _NAME.fullmatch(text):
-            raise Fault(self, Message("robot_file.name", {"key": key, "value": shown(text)}))
+            raise Fault(self, Message("robot_file.name", {"field": key, "value": shown(text)}))
         return text
 
     def number(self, key: str, default: float | None = None) -> float:
@@ -96,11 +96,11 @@ class Element:
         if len(words) != count or not all(len(w) < 40 and _NUMBER.fullmatch(w) for w in words):
             raise Fault(
                 self,
-                Message("robot_file.numbers", {"key": key, "count": count, "value": shown(text)}),
+                Message("robot_file.numbers", {"field": key, "count": count, "value": shown(text)}),
             )
         numbers = tuple(float(word) for word in words)
         if any(not math.isfinite(x) or abs(x) > LARGEST_NUMBER for x in numbers):
-            raise Fault(self, Message("robot_file.large", {"key": key, "value": shown(text)}))
+            raise Fault(self, Message("robot_file.large", {"field": key, "value": shown(text)}))
         return numbers
 
 
