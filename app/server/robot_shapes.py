@@ -28,6 +28,6 @@ def prepare_shapes(chain: Chain) -> None:
     finally:
         process.stop()
     for mesh, reason in left_out:
-        arguments = {"mesh": mesh, "reason": reason}
-        log.warning("%s", Message("robot_file.mesh_unreadable", arguments))
+        told = Message("robot_file.mesh_unreadable", {"mesh": mesh, "reason": reason})
+        log.warning("%s", told)
     keep_shapes(chain, shapes)

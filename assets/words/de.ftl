@@ -982,12 +982,6 @@ machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stang
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
 
-machine-planar_arm-label = Ebener Dreigelenkarm
-machine-planar_arm-text = Drei Motoren in einer senkrechten Ebene: Einer mehr, als die Bahn braucht, hält eine Haltung.
-
-machine-seven_axes-label = Siebenachser
-machine-seven_axes-text = Sieben Motoren für eine Spitze im Raum: Vier mehr, als die Bahn braucht, halten eine Haltung.
-
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
@@ -1623,12 +1617,12 @@ robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
 robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } fehlt
-robot_file-name = { $key } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
-robot_file-numbers = { $key } { $value }: erwartet { $count ->
+robot_file-name = { $field } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen
  }
-robot_file-large = { $key } { $value }: Die Zahl ist zu groß
+robot_file-large = { $field } { $value }: Die Zahl ist zu groß
 robot_file-no_link = ein Glied { $name } gibt es nicht
 robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
 robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
@@ -1642,7 +1636,7 @@ robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: 
 robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
 robot_file-mass = die Masse { $value } ist negativ
 robot_file-inertia = kein Körper hat diese Trägheit: Ein Trägheitsmoment um irgendeine Achse ist negativ
-robot_file-negative = { $key } ist negativ
+robot_file-negative = { $field } ist negativ
 robot_file-limits = die untere Grenze { $low } liegt über der oberen { $high }
 robot_file-axis = eine Achse braucht eine Richtung
 robot_file-shape = eine Form braucht positive Maße unter 100 m

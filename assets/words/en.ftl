@@ -1309,12 +1309,12 @@ robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
 robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } is missing
-robot_file-name = { $key } { $value }: a name has 1 to 64 letters, digits, _, - and .
-robot_file-numbers = { $key } { $value }: expected { $count ->
+robot_file-name = { $field } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers
  }
-robot_file-large = { $key } { $value }: too large a number
+robot_file-large = { $field } { $value }: too large a number
 robot_file-no_link = there is no link { $name }
 robot_file-two_parents = the link { $name } already hangs on the joint { $other }
 robot_file-loop = the links form a loop: only trees of links can be simulated
@@ -1328,7 +1328,7 @@ robot_file-mimic = a joint that follows another on the way to the tip: lock it
 robot_file-outside = { $value } is outside of the limits from { $low } to { $high }
 robot_file-mass = the mass { $value } is negative
 robot_file-inertia = no body has this inertia: a moment of inertia about some axis is negative
-robot_file-negative = { $key } is negative
+robot_file-negative = { $field } is negative
 robot_file-limits = the lower limit { $low } is above the upper limit { $high }
 robot_file-axis = an axis needs a direction
 robot_file-shape = a shape needs positive sizes below 100 m

@@ -38,7 +38,7 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
     """
     for element in _all(root):
         if element.tag in REFUSED:
-            raise Fault(element, "robot_file.refused", element=element.tag)
+            raise Fault(element, Message("robot_file.refused", {"element": element.tag}))
     try:
         mujoco: Any = import_module("mujoco")
     except ImportError:
@@ -93,7 +93,7 @@ class _Model:
             groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
         number, here = frames[tip]
         if number == 0:
-            raise Fault(self._root, "robot_file.still_tip")
+            raise Fault(self._root, Message("robot_file.still_tip"))
         here = here @ place
         chain = Chain(
             bodies=tuple(group.body() for group in groups[1:]),
@@ -113,7 +113,7 @@ class _Model:
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
                 if on_way:
-                    raise Fault(self._root, "robot_file.free", type=shown(name))
+                    raise Fault(self._root, Message("robot_file.free", {"type": shown(name)}))
                 continue
             anchor = Place(translation=np.array(model.jnt_pos[i]))
             back = Place(translation=-anchor.translation)
@@ -124,7 +124,7 @@ class _Model:
             frame = Place(aligned(axis))
             groups.append(Group(model.body(body).name, self._joint(i, name), here @ anchor @ frame))
             if len(groups) - 1 > MOST_JOINTS:
-                raise Fault(self._root, "robot_file.joints", most=MOST_JOINTS)
+                raise Fault(self._root, Message("robot_file.joints", {"most": MOST_JOINTS}))
             number, here = len(groups) - 1, Place(frame.rotation.T) @ back
         return number, here
 

@@ -117,8 +117,13 @@ def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> A
         value = given.get(joint.name, joint.low)
         if not joint.low <= value <= joint.high:
             low, high = f"{joint.low:.3g}", f"{joint.high:.3g}"
-            told = {"joint": joint.name, "value": f"{value:.3g}", "low": low, "high": high}
-            raise CodedError("robot_file.pose_outside", **told)
+            raise CodedError(
+                "robot_file.pose_outside",
+                joint=joint.name,
+                value=f"{value:.3g}",
+                low=low,
+                high=high,
+            )
     if len(given) == chain.n:
         home = np.array([given[joint.name] for joint in chain.joints])
     else:

@@ -47,7 +47,7 @@ class _Tree:
 
     def __init__(self, file: Path, root: Element, options: Options) -> None:
         if root.tag != "robot":
-            raise Fault(root, "robot_file.root")
+            raise Fault(root, Message("robot_file.root"))
         _refuse_xacro(root)
         self.remarks = list[Message]()
         self._folders = _Folders(file, options.packages)
@@ -70,11 +70,13 @@ class _Tree:
             for end in ("parent", "child"):
                 named = joint.need(end)
                 if named.name("link") not in self._links:
-                    raise Fault(named, "robot_file.no_link", name=named.name("link"))
+                    raise Fault(named, Message("robot_file.no_link", {"name": named.name("link")}))
             child = joint.need("child").name("link")
             if child in before:
                 other = before[child].name()
-                raise Fault(joint, "robot_file.two_parents", name=child, other=other)
+                raise Fault(
+                    joint, Message("robot_file.two_parents", {"name": child, "other": other})
+                )
             before[child] = joint
         return before
 
@@ -82,17 +84,17 @@ class _Tree:
         """The link from which all others can be reached."""
         roots = [name for name in self._links if name not in self._before]
         if not roots:
-            raise Fault(self._root, "robot_file.loop")
+            raise Fault(self._root, Message("robot_file.loop"))
         reached, waiting = set[str](), [roots[0]]
         while waiting:
             name = waiting.pop()
             reached.add(name)
             waiting += [j.need("child").name("link") for j in self._after.get(name, [])]
         for name, link in self._links.items():
+            if name not in reached and name in roots:
+                raise Fault(link, Message("robot_file.apart", {"name": roots[0]}))
             if name not in reached:
-                raise Fault(
-                    link, "robot_file.apart" if name in roots else "robot_file.loop", name=roots[0]
-                )
+                raise Fault(link, Message("robot_file.loop"))
         return roots[0]
 
     def _tip(self) -> str:
@@ -145,7 +147,7 @@ class _Tree:
                 frame = Place(aligned(_axis(joint)))
                 groups.append(Group(child, moving, origin @ frame))
                 if len(groups) - 1 > MOST_JOINTS:
-                    raise Fault(joint, "robot_file.joints", most=MOST_JOINTS)
+                    raise Fault(joint, Message("robot_file.joints", {"most": MOST_JOINTS}))
                 waiting.append((child, len(groups) - 1, Place(frame.rotation.T)))
         return Chain(
             bodies=tuple(group.body() for group in groups[1:]),
@@ -158,16 +160,16 @@ class _Tree:
         """The joint if it is on the way to the tip and moves; None if it is locked."""
         kind, name = joint.text("type"), joint.name()
         if kind not in (*TURNING, *SLIDING, *STILL, *FREE):
-            raise Fault(joint, "robot_file.type", type=shown(kind))
+            raise Fault(joint, Message("robot_file.type", {"type": shown(kind)}))
         data = _joint(joint, kind, self._options.armature)
         if name not in self._way or kind in STILL:
             return None
         if kind in FREE:
-            raise Fault(joint, "robot_file.free", type=kind)
+            raise Fault(joint, Message("robot_file.free", {"type": kind}))
         if name in self._options.lock:
             return None
         if joint.first("mimic") is not None:
-            raise Fault(joint, "robot_file.mimic")
+            raise Fault(joint, Message("robot_file.mimic"))
         if data.low == data.high:
             self.remarks.append(Message("robot_file.still", {"joint": name}))
             return None
@@ -184,7 +186,10 @@ class _Tree:
         value = min(max(wanted, data.low), data.high)
         if name in (*options.lock, *options.pose) and value != wanted:
             low, high = f"{data.low:.3g}", f"{data.high:.3g}"
-            raise Fault(joint, "robot_file.outside", value=f"{wanted:.3g}", low=low, high=high)
+            raise Fault(
+                joint,
+                Message("robot_file.outside", {"value": f"{wanted:.3g}", "low": low, "high": high}),
+            )
         axis = _axis(joint)
         if data.slides:
             return Place(translation=value * axis)
@@ -204,14 +209,14 @@ class _Tree:
     def _inertial(self, link: Element, inertial: Element) -> tuple[float, Place, Array]:
         mass = inertial.need("mass").number("value")
         if mass < 0:
-            raise Fault(inertial.need("mass"), "robot_file.mass", value=f"{mass:g}")
+            raise Fault(inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"}))
         element = inertial.need("inertia")
         xx, xy, xz = (element.number(key, 0.0) for key in ("ixx", "ixy", "ixz"))
         yy, yz, zz = (element.number(key, 0.0) for key in ("iyy", "iyz", "izz"))
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         least, middle, most = np.linalg.eigvalsh(inertia)
         if least < -1e-6 * abs(most):
-            raise Fault(element, "robot_file.inertia")
+            raise Fault(element, Message("robot_file.inertia"))
         if least + middle < 0.99 * most:
             self.remarks.append(Message("robot_file.triangle", {"link": link.name()}))
         return mass, _origin(inertial), inertia
@@ -226,8 +231,8 @@ class _Tree:
                 address, size = element.text("filename"), (x, y, z)
                 found = self._folders.mesh(address)
                 if found is None or not any(size):
-                    said = {"mesh": shown(address)}
-                    self.remarks.append(Message("robot_file.mesh_left_out", said))
+                    left = Message("robot_file.mesh_left_out", {"mesh": shown(address)})
+                    self.remarks.append(left)
                     return None
                 file = str(found)
             elif kind == "box":
@@ -241,7 +246,7 @@ class _Tree:
             else:
                 continue
             if kind != "mesh" and not 0 < min(size) <= max(size) < 100:
-                raise Fault(element, "robot_file.shape")
+                raise Fault(element, Message("robot_file.shape"))
             return Shape(
                 kind=kind,
                 file=file,
@@ -298,12 +303,12 @@ def _named(root: Element, tag: str, most: int) -> dict[str, Element]:
     for element in root.all(tag):
         name = element.name()
         if name in found:
-            raise Fault(element, "robot_file.twice", line=found[name].line)
+            raise Fault(element, Message("robot_file.twice", {"line": found[name].line}))
         found[name] = element
         if len(found) > most:
-            raise Fault(element, "robot_file.many", most=most)
+            raise Fault(element, Message("robot_file.many", {"most": most}))
     if tag == "link" and not found:
-        raise Fault(root, "robot_file.without", what="<link>")
+        raise Fault(root, Message("robot_file.without", {"what": "<link>"}))
     return found
 
 
@@ -313,14 +318,14 @@ def _refuse_xacro(root: Element) -> None:
         element = waiting.pop()
         values = element.values.values()
         if element.tag.startswith("xacro:") or any("${" in v or "$(" in v for v in values):
-            raise Fault(element, "robot_file.xacro")
+            raise Fault(element, Message("robot_file.xacro"))
         waiting += element.children
 
 
 def _check_last(link: Element, number: int, groups: list[Group]) -> None:
     """Check that something moves at all."""
     if number == 0 or len(groups) < 2:
-        raise Fault(link, "robot_file.still_tip")
+        raise Fault(link, Message("robot_file.still_tip"))
 
 
 def _joint(joint: Element, kind: str, armature: float) -> Joint:
@@ -330,16 +335,18 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
     if limit is not None:
         effort = limit.number("effort", 0.0) or math.inf
         if effort < 0:
-            raise Fault(limit, "robot_file.negative", key="effort")
+            raise Fault(limit, Message("robot_file.negative", {"field": "effort"}))
     if kind in ("revolute", *SLIDING):
         if limit is None:
-            raise Fault(joint, "robot_file.without", what="<limit>")
+            raise Fault(joint, Message("robot_file.without", {"what": "<limit>"}))
         low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
         if low > high:
-            raise Fault(limit, "robot_file.limits", low=f"{low:g}", high=f"{high:g}")
+            raise Fault(
+                limit, Message("robot_file.limits", {"low": f"{low:g}", "high": f"{high:g}"})
+            )
     damping = 0.0 if dynamics is None else dynamics.number("damping", 0.0)
     if dynamics is not None and damping < 0:
-        raise Fault(dynamics, "robot_file.negative", key="damping")
+        raise Fault(dynamics, Message("robot_file.negative", {"field": "damping"}))
     return Joint(
         name=joint.name(),
         slides=kind in SLIDING,
@@ -357,7 +364,7 @@ def _axis(joint: Element) -> Array:
     axis = np.array((1.0, 0.0, 0.0) if element is None else element.numbers("xyz", 3))
     length = np.linalg.norm(axis)
     if not length > 1e-6:
-        raise Fault(joint if element is None else element, "robot_file.axis")
+        raise Fault(joint if element is None else element, Message("robot_file.axis"))
     return axis / length
 
 

@@ -51,7 +51,7 @@ class Element:
         """
         child = self.first(tag)
         if child is None:
-            raise Fault(self, "robot_file.without", what=f"<{tag}>")
+            raise Fault(self, Message("robot_file.without", {"what": f"<{tag}>"}))
         return child
 
     def text(self, key: str) -> str:
@@ -61,7 +61,7 @@ class Element:
             Fault: it is absent.
         """
         if key not in self.values:
-            raise Fault(self, "robot_file.without", what=key)
+            raise Fault(self, Message("robot_file.without", {"what": key}))
         return self.values[key]
 
     def name(self, key: str = "name") -> str:
@@ -72,7 +72,7 @@ class Element:
         """
         text = self.text(key)
         if not _NAME.fullmatch(text):
-            raise Fault(self, "robot_file.name", key=key, value=shown(text))
+            raise Fault(self, Message("robot_file.name", {"field": key, "value": shown(text)}))
         return text
 
     def number(self, key: str, default: float | None = None) -> float:
@@ -94,10 +94,13 @@ class Element:
         text = self.text(key) if default is None else self.values.get(key, default)
         words = text.split(maxsplit=count)
         if len(words) != count or not all(len(w) < 40 and _NUMBER.fullmatch(w) for w in words):
-            raise Fault(self, "robot_file.numbers", key=key, count=count, value=shown(text))
+            raise Fault(
+                self,
+                Message("robot_file.numbers", {"field": key, "count": count, "value": shown(text)}),
+            )
         numbers = tuple(float(word) for word in words)
         if any(not math.isfinite(x) or abs(x) > LARGEST_NUMBER for x in numbers):
-            raise Fault(self, "robot_file.large", key=key, value=shown(text))
+            raise Fault(self, Message("robot_file.large", {"field": key, "value": shown(text)}))
         return numbers
 
 
@@ -106,20 +109,23 @@ class Fault(Exception):
 
     Args:
         element: where it is.
-        code: of the reason; see `Message`.
-        arguments: of the reason.
+        reason: why.
     """
 
-    def __init__(self, element: Element, code: str, /, **arguments: str | int) -> None:
-        super().__init__(code)
-        self.element, self.reason = element, Message(code, arguments)
+    def __init__(self, element: Element, reason: Message) -> None:
+        super().__init__(reason.code)
+        self.element, self.reason = element, reason
 
     def in_file(self, file: Path) -> CodedError:
         """The error that names the file, the line and the element."""
         named = self.element.values.get("name", "")
-        tag = shown(self.element.tag) + (f" {shown(named)}" if named else "")
-        where = {"file": file.name, "line": self.element.line, "element": tag}
-        return CodedError("robot_file.at", **where, reason=self.reason)
+        return CodedError(
+            "robot_file.at",
+            file=file.name,
+            line=self.element.line,
+            element=shown(self.element.tag) + (f" {shown(named)}" if named else ""),
+            reason=self.reason,
+        )
 
 
 def shown(text: str) -> str:
@@ -162,12 +168,16 @@ def root_of(data: bytes) -> Element:
         element = Element(tag, values, parser.CurrentLineNumber)
         count += 1
         if count > MOST_ELEMENTS or len(path) > DEEPEST:
-            raise Fault(element, "robot_file.elements", most=MOST_ELEMENTS, deepest=DEEPEST)
+            raise Fault(
+                element, Message("robot_file.elements", {"most": MOST_ELEMENTS, "deepest": DEEPEST})
+            )
         path[-1].children.append(element)
         path.append(element)
 
     def doctype(name: str, *_: object) -> None:
-        raise Fault(Element("!DOCTYPE", {}, parser.CurrentLineNumber), "robot_file.doctype")
+        raise Fault(
+            Element("!DOCTYPE", {}, parser.CurrentLineNumber), Message("robot_file.doctype")
+        )
 
     parser.StartElementHandler = start
     parser.EndElementHandler = lambda _: path.pop()
@@ -176,7 +186,11 @@ def root_of(data: bytes) -> Element:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        raise Fault(Element("", {}, error.lineno), "robot_file.xml", reason=reason) from None
+        raise Fault(
+            Element("", {}, error.lineno), Message("robot_file.xml", {"reason": reason})
+        ) from None
     except (ValueError, LookupError) as error:  # an unknown or unsuitable encoding
-        raise Fault(Element("", {}, 1), "robot_file.xml", reason=shown(str(error))) from None
+        raise Fault(
+            Element("", {}, 1), Message("robot_file.xml", {"reason": shown(str(error))})
+        ) from None
     return top.children[0]

@@ -40,6 +40,7 @@ from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
+from onpath.models.systems.chain_robot import RedundantSpatialParameters
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
@@ -339,7 +340,8 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
     there_are = {f"language.{language}", *(f"path.{name}" for name in presets())}
     for entry in ROBOTS.values():
         there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}
-        for name, spec in specs(entry.parameters).items():
+    for kind in (*(entry.parameters for entry in ROBOTS.values()), RedundantSpatialParameters):
+        for name, spec in specs(kind).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
     parts = ("label", "text", "good", "limits")

@@ -18,9 +18,10 @@ from onpath.app.scene.body_meshes import (
     read_shapes,
 )
 from onpath.app.server.robot_shapes import prepare_shapes
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.assets import asset_path
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.rigid_chain import Chain, chain_frames, frame_poses, tip_of
+from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.urdf_file import read_urdf
 from onpath.models.systems.xml_elements import root_of
 from tests.support.robot_files import PLANAR, urdf
@@ -65,7 +66,7 @@ def test_bodies_without_a_mesh_reach_from_joint_to_joint_and_the_base_stands_on_
 
 @pytest.mark.parametrize("robot", ["planar_arm", "seven_axes"])
 def test_the_tip_of_our_own_robots_is_at_the_end_of_their_last_mesh(robot: str) -> None:
-    source = ROBOTS[robot].source
+    source = read_robot(asset_path(f"robots/{robot}.urdf"), Options()).entry.source
     assert source is not None
     chain, meshes = source.chain, body_meshes(source.chain)
     tip = tip_of(chain, chain_frames(chain, ca.SX(ca.DM(source.home))))
