@@ -50,7 +50,7 @@ class RodGantryParameters(Parameters):
 
     speed: float = wanted_speed(2.0, (-10, 10, 0.1))
     alpha: float = number(
-        0.5,
+        0.9,
         "",
         (-1, 1.5, 0.01),
         "share of the swing that the controller sees: 1 the pen, 0 the carriage",
