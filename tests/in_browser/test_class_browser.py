@@ -36,7 +36,7 @@ IN_SIGHT = """box => {
     const {left, top, width, height} = box.getBoundingClientRect()
     return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
 }"""
-WINDOWS = ((1100, 600), (800, 400), (800, 400))
+WINDOWS = ((1100, 700), (800, 400), (800, 400))
 
 
 @dataclass
@@ -105,7 +105,7 @@ def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     refusal = teacher.page.get_by_role("alert").filter(has_text="this is not the teacher's key")
     refusal.wait_for()
     assert placed(refusal)["y"] > placed(teacher.button("Open the teacher's page"))["y"]
-    assert refusal.evaluate(IN_SIGHT)
+    wait_for(lambda: refusal.evaluate(IN_SIGHT))
     fill(teacher, "Teacher's key", shown(tabs.room.key))
     teacher.press("Open the teacher's page")
     teacher.page.get_by_text("2 in the class").first.wait_for()
@@ -250,7 +250,6 @@ def test_on_a_projector_what_leads_the_class_stays_in_sight(
     large = page.get_by_label("Presentation: large type")
     large.click()  # below everything
     for name in ("Back for all", re.compile("^Next for all"), "Ask this again"):
-        page.get_by_role("button", name=name).evaluate(IN_SIGHT)
         wait_for(lambda n=name: page.get_by_role("button", name=n).evaluate(IN_SIGHT))
     for name in ("Show the answers", "Show the truth"):
         assert page.get_by_label(name).evaluate(IN_SIGHT)
@@ -343,12 +342,12 @@ def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> Non
     teacher.page.get_by_text("This is the lab of").wait_for()
     wait_for(lambda: teacher.field("Nickname").input_value() == HOSTILE)
     fill(teacher, "Nickname", "Ada")
-    teacher.press("Rename")
+    teacher.button("Rename").click()
     second.page.get_by_text("You are in the class as Ada 2").wait_for(state="attached")
     teacher.page.get_by_text("This is the lab of Ada 2").wait_for()
     wait_for(lambda: teacher.field("Nickname").input_value() == "Ada 2")
     lab = second.lab
-    teacher.press("Remove from the class")
+    teacher.button("Remove from the class").click()
     teacher.page.get_by_text("Removed.").wait_for()
     teacher.page.get_by_text("1 in the class").first.wait_for()
     second.button("Join the class").wait_for(state="attached")
