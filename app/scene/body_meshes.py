@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -54,11 +55,11 @@ class BodyMeshes:
         return np.vstack(found)
 
 
-_READ: dict[Chain, list[Mesh | None]] = {}
+_READ: dict[Chain, Sequence[Mesh | None]] = {}
 _MADE: dict[Chain, BodyMeshes] = {}
 
 
-def keep_shapes(chain: Chain, shapes: list[Mesh | None]) -> None:
+def keep_shapes(chain: Chain, shapes: Sequence[Mesh | None]) -> None:
     """Keep what `read_shapes` has returned for a chain."""
     _READ[chain] = shapes
 
@@ -160,7 +161,7 @@ def _joined(solids: list[Any]) -> Mesh | None:
     return Mesh(np.asarray(smooth.vertices, np.float32), np.asarray(smooth.faces, np.uint32))
 
 
-def _completed(chain: Chain, shapes: list[Mesh | None]) -> BodyMeshes:
+def _completed(chain: Chain, shapes: Sequence[Mesh | None]) -> BodyMeshes:
     """Capsules for the bodies that have no mesh."""
     ends = [*(body.translation for body in chain.bodies[1:]), chain.tip]
     length = sum(float(np.linalg.norm(each)) for each in ends)

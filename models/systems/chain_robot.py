@@ -141,12 +141,16 @@ def output_axes(chain: Chain) -> tuple[Point, ...]:
     across them. Of a plane that is not horizontal, the first direction is horizontal.
     """
     frames = chain_frames(chain, ca.SX(ca.DM.zeros(chain.n)))
-    lines = [ca.evalf(ca.densify(rotation[:, 2])).full()[:, 0] for rotation in frames.rotations]
+    lines: list[Array] = [
+        ca.evalf(ca.densify(rotation[:, 2])).full()[:, 0] for rotation in frames.rotations
+    ]
     turning = [a for a, joint in zip(lines, chain.joints, strict=True) if not joint.slides]
     sliding = [a for a, joint in zip(lines, chain.joints, strict=True) if joint.slides]
     space = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-    normal = turning[0] if turning else np.cross(*sliding[:2]) if len(sliding) > 1 else None
-    if normal is None or not np.linalg.norm(normal) > 1e-6:
+    if not turning and len(sliding) < 2:
+        return space
+    normal: Array = turning[0] if turning else np.cross(sliding[0], sliding[1])
+    if not np.linalg.norm(normal) > 1e-6:
         return space
     normal = normal / np.linalg.norm(normal)
     parallel = all(np.linalg.norm(np.cross(normal, a)) < 1e-6 for a in turning)

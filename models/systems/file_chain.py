@@ -112,7 +112,8 @@ def aligned(axis: Array) -> Array:
     z, k = np.array([0.0, 0.0, 1.0]), int(np.argmax(np.abs(axis)))
     if abs(axis[k]) > 1 - EXACT and k < 2:  # a permutation, which is exact
         other = np.eye(3)[(k + 1) % 3]
-        return np.stack([other, np.cross(axis, other), axis], axis=1).round()
+        permutation: Array = np.stack([other, np.cross(axis, other), axis], axis=1)
+        return permutation.round()
     across, along = np.cross(z, axis), float(axis[2])
     sine = float(np.linalg.norm(across))
     if sine < EXACT:
@@ -128,5 +129,7 @@ def skew(r: Array) -> Array:
 
 def exact(rotation: Array) -> Array:
     """A rotation whose entries near 0 and ±1 are exact."""
-    near = np.abs(rotation - rotation.round()) < EXACT
-    return np.where(near, rotation.round(), rotation)
+    rounded: Array = rotation.round()
+    near = np.abs(rotation - rounded) < EXACT
+    found: Array = np.where(near, rounded, rotation)
+    return found

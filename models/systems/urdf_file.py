@@ -239,7 +239,8 @@ class _Tree:
                 x, y, z = element.numbers("size", 3)
                 size = (x, y, z)
             elif kind == "sphere":
-                size = (element.number("radius"),) * 3
+                radius = element.number("radius")
+                size = (radius, radius, radius)
             elif kind == "cylinder":
                 radius = element.number("radius")
                 size = (radius, radius, element.number("length"))

@@ -166,7 +166,8 @@ async def misuse_data(tab: Intruder) -> AsyncIterator[bytes]:
     while not tab.ticket:
         await asyncio.sleep(TURNED_AWAY)
     yield GREETING
-    address, options = f"ws://127.0.0.1:{tab.port}", {"local_addr": (SOURCE, 0)}
+    address = f"ws://127.0.0.1:{tab.port}"
+    options: dict[str, Any] = {"local_addr": (SOURCE, 0)}
     async with connect(address, subprotocols=[Subprotocol(DATA)], **options) as data:
         await data.send(random.choice([tab.ticket, tab.ticket, tab.ticket[:-1]]))
         while True:

@@ -86,7 +86,7 @@ def urdf(name: str, links: Sequence[Link], meshes: str = "") -> str:
     return f'<?xml version="1.0"?>\n<robot name="{name}">\n{body}\n</robot>\n'
 
 
-def _numbers(values: Sequence[float]) -> str:
+def _numbers(values: Sequence[float] | np.ndarray) -> str:
     return " ".join(f"{value:g}" for value in values)
 
 
@@ -124,6 +124,13 @@ def _link(i: int, link: Link, meshes: str) -> str:
     )
 
 
+def solid_of(parts: Sequence[Trimesh]) -> Trimesh:
+    """One mesh of several."""
+    solid = concatenate(list(parts))
+    assert isinstance(solid, Trimesh)
+    return solid
+
+
 def housing(link: Link) -> Trimesh:
     """A bearing about the joint's axis."""
     radius = 1.25 * link.radius
@@ -154,14 +161,14 @@ def foot(links: Sequence[Link]) -> Trimesh:
     plate.apply_translation([0, 0, 0.007])
     column = cylinder(1.3 * first.radius, height=height, sections=2 * ROUND)
     column.apply_translation([0, 0, height / 2])
-    return concatenate([plate, column])
+    return solid_of([plate, column])
 
 
 def meshes(links: Sequence[Link]) -> dict[str, Trimesh]:
     """The meshes of an arm's links by name."""
     made = {"base": foot(links)}
     for i, link in enumerate(links, 1):
-        made[f"link{i}"] = concatenate([housing(link), bar(link)])
+        made[f"link{i}"] = solid_of([housing(link), bar(link)])
     return made
 
 

@@ -200,7 +200,7 @@ PLACES: dict[str, Callable[[str], str]] = {
     "remark": lambda text: lesson_html.remark(text, italic=True),
     "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
     "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
-    "class code": lambda text: class_html.class_code(text, 1, ENGLISH),
+    "class code": lambda text: class_html.class_code(text, False, text, 1, ENGLISH),
     "report": gone,
 }
 texts = st.sampled_from(HOSTILE) | st.text(max_size=40)
@@ -244,7 +244,7 @@ def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
         yield shown(words, "a")
         yield alpha_bar(0.5, 0.2, True, words)
         yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
-        yield class_html.class_code("a", 1, words)
+        yield class_html.class_code("https://a.example/c/a/", False, "a", 1, words)
         yield lesson_html.entry(lesson, run, "1")
 
     ours, theirs = pages(ENGLISH), pages(HostileWords())
@@ -363,7 +363,7 @@ def test_a_lesson_makes_markup_in_one_place() -> None:
     "piece",
     [
         render("panel/code.html", label="x", code="K7P", words=ENGLISH),
-        class_html.class_code("K7P", 1, ENGLISH),
+        class_html.class_code("https://a.example/", False, "K7P", 1, ENGLISH),
         report(LessonRun(COURSE, Progress()), "K7P", DAY).decode(),
         render("panel/laws.html", laws=[("#123456", "Own law", "K7P", True)]),
     ],

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -42,7 +43,9 @@ def test_the_quaternions_are_those_of_the_frames(text: str) -> None:
     function = ca.Function("frames", [q], [places, turns, *frames.rotations, *frames.origins])
     rng = np.random.default_rng(0)
     for _ in range(20):
-        found, quaternions, *rest = (x.full() for x in function.call([rng.normal(size=chain.n)]))
+        found, quaternions, *rest = (
+            x.full() for x in function.call([ca.DM(rng.normal(size=chain.n))])
+        )
         for i in range(chain.n):
             w, vector = quaternions[0, i], quaternions[1:, i]
             across = np.cross(vector, np.eye(3))
@@ -77,7 +80,7 @@ def test_the_tip_of_our_own_robots_is_at_the_end_of_their_last_mesh(robot: str) 
     assert meshes.floor == pytest.approx(0.0, abs=1e-6)
 
 
-def robot_with(folder: Path, **meshes: bytes) -> Chain:
+def robot_with(folder: Path, **meshes: Any) -> Chain:
     """The planar arm whose first links have meshes of these names and contents."""
     (folder / "meshes").mkdir(exist_ok=True)
     text = urdf("planar", PLANAR)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import viser
+from viser.transforms import SO3
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.snapshot import Snapshot
@@ -31,7 +32,7 @@ def ends(snapshot: Snapshot, scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     """Beginnings of the straight blades, and where they end, shape (robots, 3), in the world."""
     poses = poses_of(scene.stage, snapshot.motion)
     rows = slice(-len(snapshot.robots), None)
-    turns = [viser.transforms.SO3(wxyz) for wxyz in poses["quaternions"][rows]]
+    turns = [SO3(wxyz) for wxyz in poses["quaternions"][rows]]
     along = [turn.apply(np.array([1.0, 0.0, 0.0])) for turn in turns]
     begins = poses["bars"][rows]
     return begins, begins + poses["lengths"][rows][:, None] * np.stack(along)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -203,12 +204,13 @@ def test_shapes_of_a_drawing_are_those_curves() -> None:
 
 
 def test_a_path_is_placed_and_scaled_on_request() -> None:
-    for options, size, centre in (
+    cases: list[tuple[dict[str, Any], float, tuple[float, float] | None]] = [
         ({"scale": 0.5}, 0.05, None),
         ({"fit": 0.08}, 0.08, (0.0, 0.0)),
         ({"fit": 0.08, "centre": (0.01, -0.02)}, 0.08, (0.01, -0.02)),
         ({"centre": (0.01, -0.02)}, 0.1, (0.01, -0.02)),
-    ):
+    ]
+    for options, size, centre in cases:
         placed = read(TABLE, **options).curve.given
         assert placed is not None
         low, high = placed.min(0), placed.max(0)
@@ -341,7 +343,7 @@ def test_without_the_library_a_drawing_says_how_to_install_it(
 
 def test_a_drawing_of_many_corners_is_not_rounded_one_by_one() -> None:
     angle = np.linspace(0, 6.2, 3 * CORNERED)
-    radius = 0.04 + 0.004 * (np.arange(3 * CORNERED) % 2)
+    radius = 0.04 + 0.004 * (np.arange(3 * CORNERED) % 2).astype(float)
     star = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     with pytest.raises(CodedError, match="corners"):
         path_through(star, Placing(corners="round"))
@@ -354,7 +356,7 @@ def test_a_drawing_of_many_corners_is_not_rounded_one_by_one() -> None:
         {"corners": "sharp"}, {"centre": (np.nan, 0.0)}, {"radius": 0.02}, {"part": 0},
     ],
 )  # fmt: skip
-def test_impossible_options_are_refused(options: dict[str, object]) -> None:
+def test_impossible_options_are_refused(options: dict[str, Any]) -> None:
     with pytest.raises(ValueError):
         read(TABLE, **options)
 
