@@ -10,6 +10,5 @@ for gain in (1, 0):
     run = onpath.simulate(arm, "circle", posture_stiffness=stiffness, posture_damping=damping)
     turned = abs(run.trajectory.fields["q"] - run.trajectory.fields["q"][0]).max()
     off = 1e3 * run.max_distance
-    print(
-        f"{stiffness} 1/s², {damping} 1/s: a joint turns by {turned:.1f} rad, and the tip is {off:.2f} mm off"
-    )
+    gains = f"{stiffness} 1/s² and {damping} 1/s"
+    print(f"{gains}: a joint turns by {turned:.1f} rad, and the tip is {off:.2f} mm off")

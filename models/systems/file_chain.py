@@ -111,9 +111,9 @@ def aligned(axis: Array) -> Array:
     """A rotation that turns z to an axis, shape (3, 3)."""
     z, k = np.array([0.0, 0.0, 1.0]), int(np.argmax(np.abs(axis)))
     if abs(axis[k]) > 1 - EXACT and k < 2:  # a permutation, which is exact
-        other = np.eye(3)[(k + 1) % 3]
-        permutation: Array = np.stack([other, np.cross(axis, other), axis], axis=1)
-        return permutation.round()
+        other: Array = np.eye(3)[(k + 1) % 3]
+        third: Array = np.cross(axis, other)
+        return np.stack([other, third, axis], axis=1).round()
     across, along = np.cross(z, axis), float(axis[2])
     sine = float(np.linalg.norm(across))
     if sine < EXACT:
