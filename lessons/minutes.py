@@ -66,9 +66,12 @@ def word_count(html: str) -> int:
 
 
 def step_minutes(step: Step) -> Minutes:
-    """Estimated duration of a step: its text, its run, and what the student does in it."""
+    """Estimated duration of a step: its text, its run, and what the student does in it.
+
+    What to watch is read while the run plays.
+    """
     asked = [block for block in step.blocks if not isinstance(block, Text | Task)]
-    read = [step.watch, *(text for block in step.blocks for text in _read(block))]
+    read = [text for block in step.blocks for text in _read(block)]
     tried = MINUTES["play"] if step.kind == "play" else 0.0
     return Minutes(
         reading=sum(map(word_count, read)) / WORDS,

@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -17,6 +18,8 @@ from onpath.models.path_files.reading import path_in
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.nearest_path import nearest_path
+
+SVG = "http://www.w3.org/2000/svg"
 
 
 def path_from(
@@ -116,16 +119,17 @@ class PathCheck:
         return "\n".join(lines)
 
     def _repr_svg_(self) -> str:
-        other = None if self.nearest is self.path else self.nearest
-        marks = "".join(
-            f'<circle cx="{1e3 * x:.1f}" cy="{-1e3 * y:.1f}" r="1.5" fill="red"/>'
-            for x, y in self.places
-        )
-        if other is not None:
-            points = 1e3 * other.at(np.linspace(-np.pi, np.pi, 181)) * (1, -1)
+        ElementTree.register_namespace("", SVG)
+        drawing = ElementTree.fromstring(self.path._repr_svg_())
+        for x, y in self.places:
+            at = {"cx": f"{1e3 * x:.1f}", "cy": f"{-1e3 * y:.1f}", "r": "1.5", "fill": "red"}
+            ElementTree.SubElement(drawing, f"{{{SVG}}}circle", at)
+        if self.nearest is not None and self.nearest is not self.path:
+            points = 1e3 * self.nearest.at(np.linspace(-np.pi, np.pi, 181)) * (1, -1)
             line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-            marks += f'<polyline points="{line}" fill="none" stroke="green"/>'
-        return self.path._repr_svg_().replace("</svg>", f"{marks}</svg>")
+            shape = {"points": line, "fill": "none", "stroke": "green"}
+            ElementTree.SubElement(drawing, f"{{{SVG}}}polyline", shape)
+        return ElementTree.tostring(drawing, encoding="unicode")
 
 
 def check_path(path: Curve | str, robot: str = "five_bar") -> PathCheck:

@@ -115,6 +115,7 @@ class LabServer:
         path: PathDesign | None = None,
         **listening: Any,
     ) -> None:
+        listening.setdefault("limits", Limits(max_upload_bytes=2 * path_upload.MOST_BYTES))
         self._store, self._privacy_url = store, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
         self._origins: Sequence[str] = listening.get("allowed_origins", ())
@@ -131,7 +132,6 @@ class LabServer:
             health=partial(metrics_json, self.simulation),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
-            limits=Limits(max_upload_bytes=2 * path_upload.MOST_BYTES),
             **listening,
         )
         self._records, self._retention = records, retention or Retention()

@@ -27,6 +27,7 @@ TOO_FAST = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
 NOT_FINITE = Message("stop.range")
 SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
 LEAST_REGULARITY = 0.02
+FARTHEST = 1e3  # [m], beyond the reach of every robot, also of one that slides without an end
 """Regularity relative to home below which a run is stopped, unless a robot has its own stops."""
 _FINITE = float(np.finfo(float).max)
 _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
@@ -123,7 +124,8 @@ class Robot:
         Raises:
             ValueError: a point is out of reach.
         """
-        q = _inverse(self.core)(y)
+        near = np.where(np.abs(y) <= FARTHEST, y, np.nan)
+        q = _inverse(self.core)(near)
         if not np.isfinite(q).all():
             bad = y[~np.isfinite(q).all(-1)].reshape(-1, self.system.p)[0]
             where = ", ".join(f"{value:.4g}" for value in bad)
