@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 from hypothesis import example, given
@@ -49,7 +50,8 @@ def server() -> Iterator[LabServer]:
 
 def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
-    with Student(address, **{"Accept-Language": "de-AT,de;q=0.9,en;q=0.5"}) as student:
+    headers: Any = {"Accept-Language": "de-AT,de;q=0.9,en;q=0.5"}
+    with Student(address, **headers) as student:
         student.open()
         student.read(lambda: student.has_widget("Bahn"))
         lab = server.sessions.find(student.code)
