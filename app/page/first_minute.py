@@ -43,7 +43,7 @@ INVITATIONS = (
 
 
 def end_first_minute(client: viser.ClientHandle) -> None:
-    """Let a browser count all invitations as shown."""
+    """Record in the browser that all invitations have been shown."""
     client.local_storage.set_item(KEPT_AS, str(len(INVITATIONS)))
 
 
