@@ -42,6 +42,11 @@ INVITATIONS = (
 )
 
 
+def end_first_minute(client: viser.ClientHandle) -> None:
+    """Record in the browser that all invitations have been shown."""
+    client.local_storage.set_item(KEPT_AS, str(len(INVITATIONS)))
+
+
 class FirstMinute:
     """Shows the invitations that a user has not followed yet; see assets/page/invitation.js."""
 

@@ -28,7 +28,7 @@ class LessonMenu:
     ) -> None:
         self._gui, self._words, self._post, self._course = gui, words, post, course
         self.follow(first)
-        button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL)
+        button = gui.add_button(words("lesson.lessons"), icon=viser.Icon.SCHOOL, color="gray")
         on_menu_press(button, self._open)
 
     def follow(self, snapshot: PageSnapshot) -> None:

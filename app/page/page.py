@@ -11,7 +11,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
-from onpath.app.page.first_minute import FirstMinute
+from onpath.app.page.first_minute import FirstMinute, end_first_minute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.narration import Narration
@@ -175,14 +175,18 @@ class Page:
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
         self._build_panels(first, words, post)
-        first_lesson = next(iter(self._context.course.lessons), "")
         page_actions = {
             "view": self.reset_view,
             "summary": self._narration.ask_summary,
-            "lesson": lambda: post(c.OpenLesson(first_lesson)),
+            "lesson": lambda: self._open_first_lesson(post),
         }
         add_keys(self._client.gui, words, post, page_actions)
         self._building = self.is_outdated = False
+
+    def _open_first_lesson(self, post: Post) -> None:
+        """Open the first lesson, to which the invitations of the first minute lead."""
+        end_first_minute(self._client)
+        post(c.OpenLesson(next(iter(self._context.course.lessons), "")))
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui = self._client.gui

@@ -29,7 +29,7 @@ class Arrival:
         kept: values by key; "" where there is none.
         address: the client's, as the limits on connections count it.
         place: of its page; see `app.viser_adapter.addresses`.
-        language: the one of ours that its browser prefers.
+        language: the supported language that its browser prefers.
     """
 
     client: viser.ClientHandle

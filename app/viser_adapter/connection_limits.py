@@ -206,7 +206,7 @@ class CountedConnection(ServerConnection):
 
     @property
     def language(self) -> str:
-        """The language of ours that the browser prefers."""
+        """The supported language that the browser prefers."""
         accepted = self.request.headers.get_all("Accept-Language") if self.request else []
         return preferred(",".join(accepted))
 

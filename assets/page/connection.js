@@ -5,7 +5,7 @@
   "use strict";
 
   const PATIENCE = 10000;  // [ms] until the first connection
-  const MOVES = 1500;  // [ms], in which a lab that moves to another process is connected again
+  const MOVES = 1500;  // [ms], within which the page of a lab that moves to another process reconnects
 
   const box = document.createElement("p");
   box.className = "op-notice";

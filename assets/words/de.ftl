@@ -505,7 +505,7 @@ invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so l
 invite-let_go_button = Lass sie los
 invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Finger oder den Tasten A, D, W, S.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
-invite-lesson = Was geschieht, wenn man ihn zwei Sekunden festhält? Erst zeichnen, dann sehen: Lektion 1 dauert eine Viertelstunde.
+invite-lesson = Was geschieht, während ein Roboter zwei Sekunden lang festgehalten wird? Sag es in Lektion 1 voraus, und sieh dann nach.
 invite-lesson_button = Lektion 1 öffnen
 invite-skip = Einführung überspringen
 

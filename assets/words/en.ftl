@@ -453,7 +453,7 @@ invite-let_go = One is torn off the path by its clock; the other waits for as lo
 invite-let_go_button = Let them go
 invite-pull = Grab a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
 invite-bend = Bend the path: drag one of its grey points.
-invite-lesson = What happens if it is held for two seconds? Draw it first, then see: lesson 1 takes a quarter of an hour.
+invite-lesson = What happens while a robot is held for two seconds? Predict it in lesson 1, and then see.
 invite-lesson_button = Open lesson 1
 invite-skip = Skip the introduction
 

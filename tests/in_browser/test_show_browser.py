@@ -89,7 +89,12 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
     wait_for(tab.is_built)
     wait_for(lambda: drawn(tab) == set(NODES))
     tab.open("Zeigen")
-    for name in ("Namen, Achsen", "Schlauch", "Netz (θ, ξ)", "Rangtest (11)"):
+    for name in (
+        "Namen, Achsen",
+        "Schlauch",
+        "Netz längs und quer zur Bahn",
+        "Wo die Gesetze definiert sind",
+    ):
         expect(page.get_by_label(name, exact=True)).to_be_checked()
         switch(tab, name)
     wait_for(lambda: drawn(tab) == set() and share_of_scale(tab) < 0.01)

@@ -130,7 +130,7 @@ class Student:
         self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
 
     def choose(self, option: str) -> None:
-        """Choose an option as soon as it is there; a longer one that begins so is not meant."""
+        """Wait for exactly this option, and choose it."""
         self.read(lambda: option in self._labels())
         self.set(option, option)
 
