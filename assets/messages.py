@@ -15,11 +15,28 @@ if TYPE_CHECKING:
     from fluent.syntax.ast import Pattern, Resource
 
 DEFAULT = "en"
+DECIMAL = re.compile(r"[-+\N{MINUS SIGN}]?\d+\.\d+")
 
 
 def languages() -> list[str]:
     """Languages that have a catalogue."""
     return sorted(path.stem for path in asset_path("words").glob("*.ftl"))
+
+
+def preferred(accepted: str) -> str:
+    """The language that a browser's Accept-Language header prefers; English if there is none.
+
+    See RFC 9110, 12.5.4: "de-AT, fr;q=0.8" prefers German to French. What is malformed is ignored.
+    """
+    wanted = list[tuple[float, str]]()
+    for entry in accepted.split(","):
+        tag, _, weight = entry.partition(";")
+        found = re.fullmatch(r"\s*q=(0(?:\.\d{0,3})?|1(?:\.0{0,3})?)\s*", weight or "q=1")
+        language = tag.strip().lower().partition("-")[0]
+        if found and language in languages():
+            wanted.append((float(found[1]), language))
+    quality, language = max(wanted, key=lambda each: each[0], default=(0.0, DEFAULT))
+    return language if quality > 0.0 else DEFAULT
 
 
 @lru_cache
@@ -59,9 +76,20 @@ class Catalogue:
     def text(self, key: str, arguments: Mapping[str, object]) -> str:
         """Format a message with its arguments.
 
+        An argument that is a decimal number, such as "0.5", is written with the decimal separator
+        of the language.
+
         Raises:
             KeyError: no such message, or an argument is missing.
         """
+        point = self._messages["report-point"]
+        if point != "." and arguments:
+            arguments = {
+                name: value.replace(".", str(point))
+                if isinstance(value, str) and DECIMAL.fullmatch(value)
+                else value
+                for name, value in arguments.items()
+            }
         return self._messages[identifier(key)].format_map(arguments)
 
 

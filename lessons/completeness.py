@@ -105,7 +105,7 @@ def _revealed_before(hidden: str, steps: Sequence[Step], asked: Step) -> Iterato
     """The steps up to a prediction whose text reveals what it hides."""
     for step in steps:
         blocks = [block.html for block in step.blocks if isinstance(block, Text)]
-        words = safe(FOLDED.sub(" ", "".join(blocks))).striptags()
+        words = safe(FOLDED.sub(" ", "".join([*blocks, step.watch]))).striptags()
         if _contains(f"{step.title} {words}", hidden):
             yield (
                 step,

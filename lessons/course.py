@@ -247,6 +247,8 @@ def _differences(first: Lesson, other: Lesson, file: Path) -> Iterator[Problem]:
         robots = f"robot is {other.front.robot!r}, and {first.front.robot!r} in {first.language}.md"
         front = read_text(file).partition("\n+++")[0]
         yield Problem(str(file), line_of(robots, front, 1), robots)
+    if first.front.symbols != other.front.symbols:
+        yield Problem(str(file), 1, f"symbols are not those of {first.language}.md")
     for ours, theirs in zip(first.steps, other.steps, strict=False):
         parts, translated = _structure(ours), _structure(theirs)
         if differs := [what for what, part in parts.items() if translated[what] != part]:
@@ -269,6 +271,7 @@ def _structure(step: Step) -> dict[str, object]:
         "block `step`": (step.optional, step.when),
         "scene": _without_words(step.scene),
         "script": step.script,
+        "block `watch`": bool(step.watch),
         "conditions of texts (`when`)": [text.when for text in texts if text.when],
         "number of folds": sum(text.html.count("<details>") for text in texts),
         "lab links": [link.actions for text in texts for link in text.links],

@@ -66,11 +66,15 @@ def word_count(html: str) -> int:
 
 
 def step_minutes(step: Step) -> Minutes:
-    """Estimated duration of a step: its text, its run, and what the student does in it."""
+    """Estimated duration of a step: its text, its run, and what the student does in it.
+
+    What to watch is read while the run plays.
+    """
     asked = [block for block in step.blocks if not isinstance(block, Text | Task)]
+    read = [text for block in step.blocks for text in _read(block)]
     tried = MINUTES["play"] if step.kind == "play" else 0.0
     return Minutes(
-        reading=sum(word_count(text) for block in step.blocks for text in _read(block)) / WORDS,
+        reading=sum(map(word_count, read)) / WORDS,
         runs=0.0 if step.script is None else step.script.seconds / 60,
         predictions=sum(MINUTES[KINDS[type(block)]] for block in asked),
         tasks=MINUTES["task"] * len(step.tasks()) + tried,

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from markdown_it.token import Token
+from markupsafe import Markup
 
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
@@ -35,6 +36,7 @@ from onpath.lessons.schema import (
     StepMark,
     Text,
 )
+from onpath.lessons.symbols import symbol_faults
 from onpath.lessons.task_schema import Task
 from onpath.lessons.text_files import FileError, load_toml, read_text
 from onpath.lessons.toml_blocks import read_checked, read_toml
@@ -47,7 +49,7 @@ from onpath.lessons.vocabulary.blocks import (
 from onpath.lessons.vocabulary.fences import FENCES, toml_parts
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
-NO_MARK = StepMark()
+NO_MARK, NO_WORDS = StepMark(), Markup()
 KINDS: tuple[str, ...] = get_args(StepKind)
 HEADING = re.compile(r"(\w+):\s*(.+)")
 FOLD = re.compile(r"fold(?:\s+(.*))?")
@@ -65,6 +67,7 @@ class _Draft:
     scene: StepSetup | None = None
     script: Script | None = None
     mark: StepMark = NO_MARK
+    watch: Markup = NO_WORDS
     fences: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
@@ -81,6 +84,7 @@ class _Draft:
             optional=self.mark.optional or bool(when),
             when=when,
             stated=stated,
+            watch=self.watch,
         )
 
 
@@ -148,6 +152,7 @@ class _Reader:
         self._complain_all(2, _words_faults(content))
         if front is not None:
             self._complain_all(1, scene_faults(StepSetup(robot=front.robot), front.robot))
+            self._complain_all(1, symbol_faults(front.symbols))
             self._robot = self._home = front.robot
             try:
                 front = rendered(front)
@@ -170,6 +175,8 @@ class _Reader:
                 self._fold(drafts[-1], fold[1] or "", head.content, line + 1)
             elif head.type == "fence" and (branch := BRANCH.fullmatch(head.info.strip())):
                 self._branch(drafts[-1], branch[1] or "", head.content, line + 1)
+            elif head.type == "fence" and head.info.strip() == "watch":
+                self._watch(drafts[-1], head.content, line + 1)
             else:
                 self._prose(drafts[-1], tokens, line)
         broken = {draft.line for draft in drafts if draft.broken}
@@ -261,6 +268,24 @@ class _Reader:
             self._complain(line, "a branch needs an answer: ```when wrong")
         self._branches[draft.line, when] = line - 1
         self._prose(draft, self._markdown.parse(content), line, when=when)
+
+    def _watch(self, draft: _Draft, content: str, line: int) -> None:
+        """Read a fenced block of Markdown that says what to look at during the run."""
+        if draft.watch:
+            self._complain(line - 1, f"a second watch in step {draft.title!r}: only one is used")
+        if draft.kind != "run":
+            self._complain(
+                line - 1, f"a watch stands in a `run` step, and this is a {draft.kind!r} step"
+            )
+        if "{{" in content:
+            self._complain(line, "a watch has no numbers of the student")
+        read = read_prose(
+            self._markdown, self._markdown.parse(content), self._path.parent, self._robot
+        )
+        if not read.html or read.links:
+            self._complain(line - 1, "a watch is a sentence or two, without lab links")
+        self._complain_all(line, (fault for _, fault in read.faults))
+        draft.watch = read.html
 
     def _prose(
         self, draft: _Draft, tokens: list[Token], line: int, fold: str = "", when: str = ""

@@ -60,6 +60,9 @@ OF_ELEMENT: Mapping[str, Allowed] = {
         "xmlns": re.compile("http://www.w3.org/1998/Math/MathML"),
         "display": re.compile("inline|block"),
     },
+    "mi": {"data-symbol": SYMBOL},
+    "msub": {"data-symbol": SYMBOL},
+    "msubsup": {"data-symbol": SYMBOL},
     "mo": {
         **dict.fromkeys(("stretchy", "fence", "separator", "form", "largeop"), WORD),
         **dict.fromkeys(("movablelimits", "symmetric", "accent"), WORD),

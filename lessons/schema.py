@@ -180,6 +180,7 @@ class Step(msgspec.Struct, frozen=True):
         optional: whether it may be skipped; it does not count for the minutes and the end of the
             lesson.
         when: see `StepMark`.
+        watch: of a `run` step: what to look at, shown before and during the run; may be empty.
         stated: numbers in its text that a run must confirm.
     """
 
@@ -192,6 +193,7 @@ class Step(msgspec.Struct, frozen=True):
     optional: bool = False
     when: str = ""
     stated: tuple[Stated, ...] = ()
+    watch: Markup = Markup()
 
     def predictions(self) -> list[Prediction]:
         """The predictions of this step."""
@@ -210,6 +212,7 @@ class Front(Data, frozen=True):
         goals: what the student learns, which follows "Afterwards you can:" on the first page.
         misconception: for the teacher, the false belief that the lesson targets.
         takeaway: points to remember, shown at the end of the lesson.
+        symbols: quantities that a page shows where a text names them; see `lessons.symbols`.
         minutes: an estimate in earlier files; ignored, see lessons/minutes.py.
     """
 
@@ -221,6 +224,7 @@ class Front(Data, frozen=True):
     goals: str = ""
     misconception: str = ""
     takeaway: tuple[str, ...] = ()
+    symbols: tuple[str, ...] = ()
 
 
 class Lesson(msgspec.Struct, frozen=True):

@@ -65,6 +65,6 @@ class CodedError(Coded, ValueError):
     """A user's request cannot be met; see `Coded`."""
 
 
-def said_by(error: Exception) -> Message | str:
+def message_of(error: Exception) -> Message | str:
     """The message of an error, as an argument of another message."""
     return error.message if isinstance(error, Coded) else str(error)

@@ -8,9 +8,10 @@ In Python, without a browser:
 (3000,)
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
-arguments. Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
-`onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
-in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
+arguments. `onpath.path_from("logo.svg")` reads a path from a file. Names are listed by
+`onpath.robots()`, `onpath.laws()`, `onpath.paths()` and `onpath.parameters("five_bar")`. The same
+arguments give the same motion here, on the command line, in figures and in the lab. A new lab and a
+figure begin more slowly, as with `**onpath.NEWCOMER`.
 """
 
 from importlib import import_module
@@ -20,6 +21,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
+    from onpath.app.notebook.path_files import check_path as check_path
+    from onpath.app.notebook.path_files import path_from as path_from
+    from onpath.app.notebook.robot import robot as robot
     from onpath.app.notebook.run import Run as Run
     from onpath.app.notebook.simulate import circle as circle
     from onpath.app.notebook.simulate import ellipse as ellipse
@@ -34,17 +38,28 @@ if TYPE_CHECKING:
 __all__ = (
     "NEWCOMER",
     "Run",
+    "check_path",
     "circle",
     "ellipse",
     "figure",
     "laws",
     "parameters",
+    "path_from",
     "paths",
+    "robot",
     "robots",
     "segment",
     "simulate",
     "through",
 )
+
+_MODULES = {
+    "figure": "figure",
+    "robot": "robot",
+    "path_from": "path_files",
+    "check_path": "path_files",
+}
+"""Public names that are not in app/notebook/simulate.py -> the module that has them."""
 
 # A wheel has app, assets, lessons and models in this folder; a checkout has them beside it.
 if not (Path(__file__).parent / "app").is_dir():
@@ -55,12 +70,8 @@ def __getattr__(name: str) -> Any:
     """Public names, imported when they are first used: `import onpath` alone is quick."""
     if name not in __all__:
         raise AttributeError(f"module 'onpath' has no attribute {name!r}")
-    if name == "figure":
-        globals()[name] = import_module("onpath.app.notebook.figure").figure
-        return globals()[name]
-    module = import_module("onpath.app.notebook.simulate")
-    others = (each for each in __all__ if each != "figure")
-    globals().update({each: getattr(module, each) for each in others})
+    module = import_module(f"onpath.app.notebook.{_MODULES.get(name, 'simulate')}")
+    globals()[name] = getattr(module, name)
     return globals()[name]
 
 

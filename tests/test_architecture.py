@@ -27,10 +27,12 @@ ORDER = [
     "app.storage",
     "app.lab",
     "app.viser_adapter",
+    "app.steps",
     "app.common",
     "lessons",
+    "models.path_files",
     "models.studies",
-    "models.web_export",
+    "models.standalone",
     "models.closed_loop",
     "models.control",
     "models.systems",
@@ -40,7 +42,7 @@ ORDER = [
 ]
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-PRINTING = ("app/cli/",)
+PRINTING = ("app/cli/", "assets/examples/")
 DRAWING = ("app.page", "app.scene")
 LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""

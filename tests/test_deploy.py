@@ -108,8 +108,8 @@ def test_the_container_has_no_root_a_health_check_and_its_dependencies(
     settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
     project, tools = settings["project"], settings["tool"]
     assert base == again and f">={base}" == project["requires-python"]
-    (extra,) = re.findall(r"/src\[(\w+)\]", CONTAINERFILE)
-    assert extra in project["optional-dependencies"]
+    (extras,) = re.findall(r"/src\[([\w,]+)\]", CONTAINERFILE)
+    assert set(extras.split(",")) <= set(project["optional-dependencies"])
     packed = tools["hatch"]["build"]["targets"]["wheel"]["only-include"]
     for needed in ("pyproject.toml", "README.md", "LICENSE", *packed):
         assert f"!{needed}" in (ROOT / ".containerignore").read_text().splitlines()

@@ -103,11 +103,6 @@ def not_among(others: set[str], name: str) -> str:
     return unique
 
 
-def new_class_code() -> str:
-    """A random class code."""
-    return "".join(secrets.choice(ALPHABET) for _ in range(CODE_LENGTH))
-
-
 def class_code_of(key: str) -> str:
     """The class code that belongs to a teacher's key, the same in every process.
 

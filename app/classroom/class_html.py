@@ -9,6 +9,7 @@ from onpath.app.classroom.classroom import Member
 from onpath.app.classroom.results import Distribution, tasks_passed
 from onpath.app.classroom.sketches_html import ALL, Picks, SketchRound, sketches_view
 from onpath.app.common.palette import AMBER, GREEN, GREY
+from onpath.app.common.qr_code import qr_code
 from onpath.app.common.templates import render
 from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
@@ -22,9 +23,23 @@ from onpath.models.control.sides import DEFAULT_LAWS
 IDLE = 60.0  # [s] without a command after which a student counts as idle
 
 
-def class_code(code: str, count: int, words: Words) -> str:
-    """The class code in large type for the projector."""
-    return render("class/code.html", code=code, count=count, words=words)
+def class_code(
+    address: str, is_local: bool, code: str, count: int, words: Words, large: bool = False
+) -> str:
+    """The address of the class, as a QR code, too, and its code, in large type for the projector.
+
+    Args:
+        is_local: whether only this machine can open the address.
+    """
+    return render(
+        "class/code.html",
+        address=address,
+        qr=None if is_local else qr_code(address),
+        code=code,
+        count=count,
+        words=words,
+        large=large,
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,7 +156,9 @@ def choices_view(
     )
 
 
-def hidden_view(block: Prediction, found: Distribution, words: Words, large: bool = False) -> str:
+def hidden_view(
+    block: Prediction | Quiz, found: Distribution, words: Words, large: bool = False
+) -> str:
     """The question, and how many students have answered it."""
     facts = given_line(found, words)
     return render("class/prediction.html", block=block, facts=facts, large=large)

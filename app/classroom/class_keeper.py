@@ -27,7 +27,7 @@ OPENING_WAIT = 10.0  # [s] to wait for another thread that is asking the databas
 
 
 class ClassKeeper:
-    """Keeps one class with an address.
+    """Keeps one class.
 
     Args:
         lost: called when another process has taken the class over and its copy here is empty.

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Annotated, Any
 
 import msgspec
 
 from onpath.app.classroom.admission import cleaned
-from onpath.app.classroom.classroom import MOST_MEMBERS, ClassState, Member, Orders, Push
+from onpath.app.classroom.classroom import MOST_MEMBERS, ClassState, Display, Member, Orders, Push
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.stored import from_data, to_data
@@ -31,7 +31,7 @@ class StoredMember(msgspec.Struct, frozen=True):
 
 
 class StoredClass(msgspec.Struct, frozen=True):
-    """A class; `push` and `members` are checked one by one."""
+    """A class; `push`, `members` and `display` are checked one by one."""
 
     joined: Count
     frozen: bool
@@ -40,6 +40,7 @@ class StoredClass(msgspec.Struct, frozen=True):
     passes: Annotated[list[str], msgspec.Meta(max_length=10_000)]
     members: list[Any]
     pace: Pace | None = None
+    display: Any = None
 
 
 def to_stored(state: ClassState, now: float) -> Stored:
@@ -64,6 +65,7 @@ def to_stored(state: ClassState, now: float) -> Stored:
         passes=sorted(state.passes),
         members=members,
         pace=orders.pace,
+        display=asdict(state.display),
     )
     return msgspec.to_builtins(stored)
 
@@ -94,7 +96,13 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
             members[session] = replace(member, progress=progress(session), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
     orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), kept.pace)
-    return ClassState(joined, orders, frozenset(kept.passes), members)
+    return ClassState(
+        joined=joined,
+        orders=orders,
+        display=_display(kept.display),
+        passes=frozenset(kept.passes),
+        members=members,
+    )
 
 
 def _member(data: Any) -> tuple[str, Member] | None:
@@ -105,6 +113,16 @@ def _member(data: Any) -> tuple[str, Member] | None:
         log_warning("a student of the class cannot be read: %s", error)
         return None
     return kept.session, Member(kept.number, name, connected=False, taken=kept.taken)
+
+
+def _display(data: Any) -> Display:
+    try:
+        display = msgspec.convert(data or {}, Display)
+        msgspec.convert(display.step, Count)
+    except ValueError as error:
+        log_warning("what the teacher's page showed cannot be read: %s", error)
+        return Display()
+    return display
 
 
 def push_data(push: Push) -> Stored:

@@ -17,7 +17,6 @@ from onpath.app.classroom.admission import (
     Admission,
     class_code_of,
     cleaned,
-    new_class_code,
     new_pass,
     not_among,
 )
@@ -76,6 +75,22 @@ class Orders:
 
 
 @dataclass(frozen=True, slots=True)
+class Display:
+    """What all teachers' pages of the class show of its answers.
+
+    Attributes:
+        lesson, step: where the displayed question is asked; the lesson may be gone, or "".
+        shown: whether the answers themselves are shown, and not only their number.
+        revealed: whether the truth is shown as well.
+    """
+
+    lesson: str = ""
+    step: int = 0
+    shown: bool = False
+    revealed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class ClassState:
     """Everything about a class that is stored.
 
@@ -87,6 +102,7 @@ class ClassState:
 
     joined: int = 0
     orders: Orders = field(default_factory=Orders)
+    display: Display = field(default_factory=Display)
     passes: frozenset[str] = frozenset()
     members: Mapping[str, Member] = field(default_factory=dict)
 
@@ -97,23 +113,20 @@ class Classroom:
 
     Attributes:
         clock: monotonic time, [s].
-        code: the class code that students type to join.
         key: the teacher's key, in the stored form of `app.common.access_codes`.
-        has_address: whether the class has an address, which contains its code; see
-            `class_with_address`.
+        code: the class code, the same in every process with this key; it is in the class's address.
         state: everything that is stored; replaced at each change.
     """
 
     clock: Callable[[], float] = time.monotonic
-    code: str = ""
     key: str = field(default_factory=new_code, repr=False)
-    has_address: bool = False
+    code: str = field(init=False)
     state: ClassState = field(default_factory=ClassState)
     _lock: threading.RLock = field(default_factory=threading.RLock)
     _door: Admission = field(init=False)
 
     def __post_init__(self) -> None:
-        self.code = self.code or new_class_code()
+        self.code = class_code_of(self.key)
         self._door = Admission(self.clock)
 
     def restore(self, state: ClassState) -> None:
@@ -170,6 +183,17 @@ class Classroom:
             self.state = replace(old, members=members, joined=joined)
             return member
 
+    def rename(self, session: str, name: str) -> None:
+        """Change a student's nickname. Does nothing if the student has left.
+
+        Raises:
+            ValueError: the nickname is empty.
+        """
+        with self._lock:
+            old = self.state.members.get(session)
+            if old is not None:
+                self.note(session, name=seated(self.state.members, session, name, old).name)
+
     def leave(self, session: str) -> None:
         """Remove a student and all of the student's data from the class."""
         with self._lock:
@@ -208,14 +232,27 @@ class Classroom:
         """Send a set-up or a step to all members once, and to those who join later.
 
         It remains in effect until another one is sent or the class ends. None clears it without
-        changing any lab; students who join later then keep their own set-up.
+        changing any lab; students who join later then keep their own set-up. A step that is sent
+        is displayed, too, with its answers hidden: nobody should follow the majority.
         """
         with self._lock:
+            if isinstance(push, TakeStep):
+                self.show(Display(push.lesson, push.step))
             count, pace = self.orders.pushes + (push is not None), self.orders.pace
             if isinstance(push, TakeStep) and pace and not pace.holds(push.lesson, push.step):
                 pace = None
             new = replace(self.orders, pushes=count, push=push, pace=pace)
             self.state = replace(self.state, orders=new)
+
+    @property
+    def display(self) -> Display:
+        """What the teachers' pages show now."""
+        return self.state.display
+
+    def show(self, display: Display) -> None:
+        """Show something else on all teachers' pages."""
+        with self._lock:
+            self.state = replace(self.state, display=display)
 
     def keep_within(self, pace: Pace | None) -> None:
         """Keep students within a range of steps; None lets them go anywhere.
@@ -227,22 +264,12 @@ class Classroom:
             self.state = replace(self.state, orders=replace(self.orders, pace=pace))
 
     def end(self) -> int:
-        """End the class: remove all members, and return their number.
-
-        The next class has a new code, unless this one has an address.
-        """
+        """End the class: remove all members, and return their number. Code and key stay."""
         with self._lock:
             old = self.state
             orders = replace(old.orders, frozen=False, push=None, pace=None)
-            self.state = replace(old, members={}, orders=orders)
-            if not self.has_address:
-                self.code = new_class_code()
+            self.state = replace(old, members={}, orders=orders, display=Display())
             return len(old.members)
-
-
-def class_with_address(key: str, clock: Callable[[], float] = time.monotonic) -> Classroom:
-    """The class of a teacher's key; every process with this key gives it the same code."""
-    return Classroom(clock=clock, code=class_code_of(key), key=key, has_address=True)
 
 
 def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import STOPPED, finite
 
@@ -28,7 +29,8 @@ class CompareCommand:
     """Compare control laws: the same robot, path, gains and obstructions for all of them."""
 
     robot: str = "five_bar"
-    """Name of the robot."""
+    """Name of the robot, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A law to compare, also one of your own in two lines: "across = …; along = …"; repeat for
     more. By default all that suit the robot."""
@@ -37,6 +39,8 @@ class CompareCommand:
     remedy of at_limit and, as NAME_cut, without it."""
     radius: float = 0.05
     """Radius of the circle to follow, in metres."""
+    path: str | None = None
+    """Another closed path, or @FILE with options, as for onpath experiment."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter, as name=value; repeat for more."""
     csv: Path | None = None
@@ -50,7 +54,7 @@ class CompareCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.cli.experiment import assignments
         from onpath.models.studies.comparison import as_data
-        from onpath.models.studies.experiments import forecast_text, on_path
+        from onpath.models.studies.experiments import forecast_text, on_path, path_remark
         from onpath.models.studies.unused import unused_text
 
         check_plot(self.plot)
@@ -60,7 +64,8 @@ class CompareCommand:
         laws = _laws(self.law, contest)
         plain = on_path(contest.entry, contest.parameters, contest.curve)
         given = assignments(self.set)
-        for text in (unused_text(plain, laws, given), forecast_text(plain, laws)):
+        remark = path_remark(contest.curve)
+        for text in (remark, unused_text(plain, laws, given), forecast_text(plain, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
         results = self._results(contest, laws)
@@ -84,26 +89,34 @@ class CompareCommand:
 
     def _contest(self) -> Contest:
         from onpath.app.cli.experiment import assignments
+        from onpath.app.cli.path_option import read_path
         from onpath.models.control.settable import with_values
         from onpath.models.paths.curves import circle
         from onpath.models.studies.comparison import Contest
+        from onpath.models.studies.experiments import check_path
         from onpath.models.systems.catalogue import ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
         from onpath.models.systems.parameters import rise_of
 
-        if self.robot not in ROBOTS:
-            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        robot = self.file_options.name_of(self.robot)
+        if robot not in ROBOTS:
+            raise unknown_name(robot, list(ROBOTS), "robot")
         if not 0.005 <= self.radius <= 0.12:
             raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
-        entry = ROBOTS[self.robot]
+        entry = ROBOTS[robot]
         parameters = with_values(entry.parameters(), assignments(self.set))
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")
         if parameters.speed_profile != "constant":
             raise ValueError("speed_profile: a comparison is at a constant speed")
         if rise_of(parameters):
-            raise ValueError("rise: a comparison is on a plane circle")
-        return Contest(entry, parameters, circle(self.radius))
+            raise ValueError("rise: a comparison is on a plane path")
+        robot = entry.make(parameters)
+        curve = circle(self.radius) if self.path is None else read_path(self.path, robot)
+        if not curve.closed:
+            raise ValueError(f"--path {self.path}: a comparison needs a closed path")
+        check_path(robot, curve, f"--path {self.path}" if self.path else "")
+        return Contest(entry, parameters, curve)
 
     def _results(self, contest: Contest, laws: list[str]) -> Results:
         from rich.console import Console

@@ -6,15 +6,14 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import tyro
 
+from onpath.app.cli.path_option import read_path
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
-
-if TYPE_CHECKING:
-    from onpath.models.paths.curves import Curve
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,8 @@ class ExperimentCommand:
     name: Annotated[str, tyro.conf.Positional]
     """position, obstruction or flexible (flexible link only)."""
     robot: str = ""
-    """Name of the robot; by default the paper's."""
+    """Name of the robot, or its URDF or MJCF file; by default the paper's."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
     """Laws to run: names with commas between, all, or both (trajectory_tracking and
     path_following); or a law of your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta -
@@ -33,7 +33,8 @@ class ExperimentCommand:
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
     --set across=level_set by the expression), or JSON with points; in metres. Or @FILE with such a
-    text."""
+    text, points (CSV), a drawing (SVG) or G-code, and perhaps options: "@logo.svg fit=0.1
+    centre=0,0.01 corners=round radius=0.01 nearest"; also scale=, unit=mm, part=2, open, closed."""
     profile: str | None = None
     """Wanted speed over time, linear between points, as 0:0,1:6.28,4:6.28 in s and rad/s."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -54,13 +55,14 @@ class ExperimentCommand:
             experiments,
             forecast_text,
             never_held,
+            path_remark,
             run,
             summary,
         )
         from onpath.models.studies.unused import unused_text
         from onpath.models.systems.parameter_specs import unknown_name
 
-        known = experiments(self.robot)
+        known = experiments(self.file_options.name_of(self.robot))
         if self.name not in known:
             raise unknown_name(self.name, list(known), what="experiment")
         check_plot(self.plot)
@@ -68,11 +70,12 @@ class ExperimentCommand:
             check_writable(self.csv)
         chosen = known[self.name]
         if self.path is not None:
-            chosen = chosen.along(read_path(self.path), self.path)
+            chosen = chosen.along(read_path(self.path, chosen.robot()), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
         given, laws = assignments(self.set) | times, laws_named(self.law)
         chosen = chosen.with_values(given)
-        for text in (unused_text(chosen, laws, given), forecast_text(chosen, laws)):
+        remark = path_remark(chosen.curve())
+        for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
             if text:
                 print(f"onpath: {text}", file=sys.stderr)
         runs = [run(chosen, name) for name in laws]
@@ -89,14 +92,17 @@ class ExperimentCommand:
 
 @dataclass(frozen=True)
 class ZeroDynamicsCommand:
-    """Compute exponents of the flexible link's internal dynamics for alpha and number of modes."""
+    """Compute the exponents of the zero dynamics, of a robot with fewer motors than coordinates."""
 
+    robot: str = "flexible"
+    """Name of the robot. For the flexible one, the table has alpha and the number of modes."""
     at: tuple[float, float] = (0.0, 0.0)
-    """y2 and y3 of the tip at rest, in metres."""
+    """Place of the end-point at rest in the path's plane, in metres; for the flexible robot, y2
+    and y3."""
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Set rho, plant, frequency or zeta, as name=value; repeat for more."""
+    """Set a parameter as name=value; repeat for more."""
     plot: Path | None = None
-    """Draw exponents and critical alpha to this .png, .svg or .pdf file."""
+    """Draw exponents and critical alpha of the flexible robot to this .png, .svg or .pdf file."""
     json: bool = False
     """Print the table as JSON."""
 
@@ -104,13 +110,32 @@ class ZeroDynamicsCommand:
         """Compute, draw and print the result."""
         from onpath.app.exports.figures_flexible import draw_zero_dynamics
         from onpath.app.exports.zero_dynamics import as_json, as_table, changed_all, study
+        from onpath.models.systems.catalogue import FLEXIBLE
 
         check_plot(self.plot)
+        if self.robot != FLEXIBLE.name:
+            self._of_robot()
+            return
         result = study(changed_all(assignments(self.set)), self.at)
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_zero_dynamics(result, path)
         print(json.dumps(as_json(result), indent=2) if self.json else as_table(result))
+
+    def _of_robot(self) -> None:
+        from onpath.app.exports.zero_dynamics import robot_json, robot_study, robot_table
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
+
+        if self.robot not in ROBOTS:
+            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        if self.plot:
+            raise ValueError("--plot: only the zero dynamics of the flexible robot are drawn")
+        result = robot_study(ROBOTS[self.robot], assignments(self.set), self.at)
+        if isinstance(result, str):
+            print(json.dumps({"robot": self.robot, "exponents_1_s": []}) if self.json else result)
+        else:
+            print(json.dumps(robot_json(result), indent=2) if self.json else robot_table(result))
 
 
 def laws_named(text: str) -> list[str]:
@@ -132,37 +157,6 @@ def laws_named(text: str) -> list[str]:
         if name not in LAWS:
             raise unknown_name(name, [*LAWS, "all", "both"], "law")
     return names
-
-
-def read_path(text: str) -> Curve:
-    """The path that `--path` describes, or the file that it names; a remark goes to stderr.
-
-    Raises:
-        ValueError: the text is not a path, or the file cannot be read.
-    """
-    from onpath.models.paths.curve_fit import deviation_remark
-    from onpath.models.studies.path_text import curve_from_text
-
-    curve = _path_in(Path(text[1:])) if text.startswith("@") else curve_from_text(text)
-    if remark := deviation_remark(curve):
-        print(f"onpath: {remark}", file=sys.stderr)
-    return curve
-
-
-def _path_in(file: Path) -> Curve:
-    from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_table
-
-    try:
-        with file.open(encoding="utf-8-sig") as opened:
-            text = opened.read(LONGEST_TEXT + 1)
-    except (OSError, UnicodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "not a text"
-        raise ValueError(f"--path @{file}: {reason}") from None
-    try:
-        return curve_from_text(text)
-    except ValueError as error:
-        hint = "this is a table of points: in Python, onpath.through(points) makes a path of them"
-        raise ValueError(f"--path @{file}: {hint if is_table(text) else error}") from None
 
 
 def assignments(pairs: tuple[str, ...]) -> dict[str, str]:

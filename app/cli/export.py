@@ -10,9 +10,11 @@ from typing import Annotated
 
 import tyro
 
-from onpath.app.cli.experiment import assignments, read_path
+from onpath.app.cli.experiment import assignments
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
+from onpath.app.cli.path_option import path_name, read_path
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 
 @dataclass(frozen=True)
@@ -22,12 +24,13 @@ class ExportFigure:
     file: Annotated[Path, tyro.conf.Positional]
     """The .html file to write."""
     robot: str = "five_bar"
-    """Name of the robot."""
+    """Name of the robot, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A control law; give it twice for two robots. By default tracking beside path following."""
     path: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A path, such as circle or "ellipse 0.07 0.04", or @FILE with such a text; repeat for more to
-    choose from."""
+    """A path, such as circle or "ellipse 0.07 0.04", or @FILE with options, as for onpath
+    experiment; repeat for more to choose from."""
     slider: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A parameter that readers may change; repeat for more. By default the speed and gains."""
     control: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -46,17 +49,21 @@ class ExportFigure:
     def run(self) -> None:
         """Write the page, and print its size."""
         from onpath.app.notebook.figure import PATHS, figure
+        from onpath.app.notebook.simulate import entry_named
+        from onpath.models.control.settable import with_values
         from onpath.models.control.sides import DEFAULT_LAWS
 
         given = assignments(self.set)
+        entry = entry_named(self.robot)
+        machine = entry.make(with_values(entry.parameters(), given))
         parameters = {"output" if name == "law" else name: given[name] for name in given}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             written = figure(
                 self.file,
-                robot=self.robot,
+                robot=self.file_options.name_of(self.robot),
                 laws=self.law or tuple(DEFAULT_LAWS.values()),
-                paths={_name(each): read_path(each) for each in self.path} or PATHS,
+                paths={path_name(each): read_path(each, machine) for each in self.path} or PATHS,
                 sliders=self.slider or None,
                 controls=self.control or None,
                 choices=self.choice,
@@ -67,11 +74,6 @@ class ExportFigure:
         for each in caught:
             print(f"onpath: {each.message}", file=sys.stderr)
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
-
-
-def _name(path: str) -> str:
-    """The name of a path in the list that readers see."""
-    return Path(path[1:]).stem if path.startswith("@") else path
 
 
 ExportAction = (

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import tyro
 
 from onpath.app.cli.experiment import assignments
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from onpath.models.systems.parameters import Parameters
     from onpath.models.systems.robots import RobotEntry
 
-RANK = "rank"
+RANK, CROSSING = "rank", "crossing"
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,11 @@ class FigureCommand:
     """Run what one of the paper's figures shows; print its settings and the numbers of the runs."""
 
     name: Annotated[str, tyro.conf.Positional]
-    """2, 3, 5, 6 or 7; or rank, the rank test (11) over the workspace of a robot."""
+    """2, 3, 5, 6 or 7; rank, the rank test (11) over the workspace of a robot; or crossing, three
+    ways to follow a figure of eight."""
     robot: str = ""
-    """Name of the robot, for rank; by default five_bar."""
+    """Name of the robot, or its URDF or MJCF file, for rank; by default five_bar."""
+    file_options: FileOptions = NO_OPTIONS
     set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Set any parameter of the robot, for rank, as name=value; repeat for more."""
     plot: Path | None = None
@@ -38,21 +41,23 @@ class FigureCommand:
     def run(self) -> None:
         """Simulate or compute, then draw and print."""
         check_plot(self.plot)
-        result = self._rank() if self.name == RANK else self._repeated()
-        if self.json:
-            print(json.dumps(finite(result), indent=2, ensure_ascii=False))
-        else:
-            print(_rank_text(result) if self.name == RANK else _text(result))
+        others = {RANK: (self._rank, _rank_text), CROSSING: (self._crossing, _crossing_text)}
+        compute, as_text = others.get(self.name, (self._repeated, _text))
+        result = compute()
+        print(
+            json.dumps(finite(result), indent=2, ensure_ascii=False)
+            if self.json
+            else as_text(result)
+        )
 
     def _repeated(self) -> dict[str, Any]:
         from onpath.models.studies.paper_figures import FIGURES, figure_summary
 
         known = {str(number): figure for number, figure in FIGURES.items()}
         if self.name not in known:
-            names = ", ".join([*known, RANK])
+            names = ", ".join([*known, RANK, CROSSING])
             raise ValueError(f"figure {self.name}: expected one of {names}")
-        if self.robot or self.set:
-            raise ValueError(f"figure {self.name} has the paper's robot and settings")
+        self._check_fixed("the paper's robot and settings")
         figure = known[self.name]
         runs = figure.runs()
         if self.plot:
@@ -62,13 +67,29 @@ class FigureCommand:
                 draw_paper_figure(figure, runs, path)
         return figure_summary(figure, runs)
 
+    def _check_fixed(self, what: str) -> None:
+        if self.robot or self.set:
+            raise ValueError(f"figure {self.name} has {what}")
+
+    def _crossing(self) -> dict[str, Any]:
+        from onpath.app.exports.crossing_figure import crossing_summary, draw_crossing_figure
+        from onpath.models.studies.crossing import crossing_runs, planned
+
+        self._check_fixed("its own robot and settings")
+        experiment = planned()
+        runs = crossing_runs(experiment)
+        if self.plot:
+            with whole_file(self.plot) as path:
+                draw_crossing_figure(experiment, runs, path)
+        return crossing_summary(runs)
+
     def _rank(self) -> dict[str, Any]:
         from onpath.app.exports.rank_figure import draw_rank_figure, rank_summary
         from onpath.models.control.settable import changed
         from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
         from onpath.models.systems.parameter_specs import unknown_name
 
-        name = self.robot or FIVE_BAR.name
+        name = self.file_options.name_of(self.robot) or FIVE_BAR.name
         if name not in ROBOTS:
             raise unknown_name(name, list(ROBOTS), what="robot")
         entry = ROBOTS[name]
@@ -104,6 +125,21 @@ def _rank_text(result: dict[str, Any]) -> str:
         f"    with the end-point at home  {result['home']:g}",
         f"    largest in the path's plane {result['largest']:g}",
     ]
+    return "\n".join(lines)
+
+
+def _crossing_text(result: dict[str, Any]) -> str:
+    from onpath.models.studies.crossing import WAYS
+
+    lines = ["From rest at the crossing of a path, in three ways"]
+    for key, numbers in result["runs"].items():
+        first = numbers["first_jump_s"]
+        when = "" if first is None else f", the first after {first:.2f} s"
+        lines += [
+            f"  {WAYS[key]}",
+            f"    jumps of the closest point  {numbers['jumps']}{when}",
+            f"    along the path at the end   {numbers['theta_at_end_rad']:.2f} rad",
+        ]
     return "\n".join(lines)
 
 

@@ -5,15 +5,21 @@ from __future__ import annotations
 import gc
 import logging
 import sys
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 from urllib.parse import urlsplit
 
 import tyro
 
+from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
+
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
+    from onpath.models.paths.path_design import PathDesign
+    from onpath.models.systems.catalogue import RobotEntry
 
 SHORTEST_HANG = 1.0  # [s]
 
@@ -28,6 +34,9 @@ class Serve:
     """Port to listen on."""
     open: bool = False
     """Open the lab in the default browser."""
+    robot: str = "five_bar"
+    """Robot with which a lab begins: its name, or its URDF or MJCF file."""
+    file_options: FileOptions = NO_OPTIONS
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
@@ -39,11 +48,16 @@ class Serve:
     most_labs: int = 100_000
     """If the database holds more labs, the least recently used are deleted, but none in use."""
     classroom: bool = False
-    """Open a class, and print a code for the students and a key for the teacher. With teachers'
-    keys in the environment, ONPATH_TEACHER_KEY, each has a class with an address of its own."""
+    """Open a class, and print its address for the students and a key for the teacher; both stay the
+    same. With teachers' keys in the environment, ONPATH_TEACHER_KEY, each has a class instead."""
     privacy_url: str = ""
     """Address of your privacy notice, https://example.org/privacy, shown where a nickname is asked
     for."""
+    path: str | None = None
+    """The path of new labs, or @FILE with options, as for onpath experiment."""
+    course_url: str = ""
+    """Address of the course as pages (onpath export site), https://example.org/course, to which
+    browsers without WebGL are led."""
     origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
     trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
@@ -66,6 +80,8 @@ class Serve:
             raise ValueError(f"--hang-seconds {self.hang_seconds:g}: expected 1 or more, or 0")
         if self.privacy_url and not _is_web_address(self.privacy_url):
             raise ValueError(f"--privacy-url {self.privacy_url}: expected https://… or http://…")
+        if self.course_url and not _is_web_address(self.course_url):
+            raise ValueError(f"--course-url {self.course_url}: expected https://… or http://…")
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         try:
             return self._serve()
@@ -80,23 +96,35 @@ class Serve:
         logging.getLogger("websockets").setLevel(max(level, logging.WARNING))
         check_viser()  # before the other imports, which may fail with another viser
 
+        from onpath.app.classroom.class_opening import given_keys, open_classes
         from onpath.app.server.lab_server import serve
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
+        from onpath.models.systems.catalogue import ROBOTS
+        from onpath.models.systems.parameter_specs import unknown_name
 
+        robot = self.file_options.name_of(self.robot)
+        if robot not in ROBOTS:
+            raise unknown_name(robot, list(ROBOTS), "robot")
+        keys = given_keys()
+        classrooms = open_classes(keys) if self.classroom else []
         try:
             serve(
                 self.host,
                 self.port,
                 self.lessons,
                 database_url(self.database),
+                robot=ROBOTS[robot],
                 open_browser=self.open and self.socket is None,
-                classrooms=self._classrooms(),
+                classrooms=classrooms,
+                ready=partial(print_classes, classrooms, key_is_known=bool(keys)),
                 most_clients=self.most_clients,
                 retention=Retention(self.keep_days, self.most_labs),
                 hang_seconds=self.hang_seconds,
                 privacy_url=self.privacy_url,
+                path=self._path(ROBOTS[robot]),
+                course_url=self.course_url,
                 allowed_origins=self.origin,
                 trusted_proxies=self.trusted_proxy,
                 unix_socket=self.socket,
@@ -106,17 +134,22 @@ class Serve:
             return 1
         return None
 
-    def _classrooms(self) -> list[Classroom]:
-        """Open the classes, if any are wanted, and print how to join them."""
-        from onpath.app.classroom.class_opening import given_keys, open_classes
+    def _path(self, entry: RobotEntry) -> PathDesign | None:
+        """The path of new labs; None: the usual one."""
+        from onpath.app.cli.path_option import path_name, read_path
+        from onpath.models.paths.path_design import from_curve, presets
+        from onpath.models.studies.experiments import check_path, path_remark
 
-        keys = given_keys()
-        if not self.classroom:
-            return []
-        classrooms = open_classes(keys)
-        for room in classrooms:
-            _print_class(room, self.origin[0] if self.origin else "")
-        return classrooms
+        if self.path is None:
+            return None
+        if self.path in presets():
+            return presets()[self.path]
+        robot = entry.make(entry.parameters())
+        curve = read_path(self.path, robot)
+        check_path(robot, curve, f"--path {path_name(self.path)}")
+        if remark := path_remark(curve):
+            print(f"onpath: {remark}", file=sys.stderr)
+        return from_curve(curve)
 
 
 def _is_web_address(text: str) -> bool:
@@ -129,14 +162,36 @@ def _is_web_address(text: str) -> bool:
     return plain and parts.scheme in ("http", "https") and bool(parts.hostname)
 
 
-def _print_class(room: Classroom, site: str) -> None:
-    """Print the class code, with the class's address or else with the teacher's key."""
+def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: bool) -> None:
+    """Print the address of each class, in a terminal as a QR code, too, and its code.
+
+    Args:
+        site: the address at which other devices open the lab.
+        key_is_known: whether the teacher's key has been given; if not, it is printed.
+    """
     from onpath.app.common.access_codes import shown
+    from onpath.app.common.qr_code import qr_text
+    from onpath.app.server.site_address import is_local
     from onpath.app.viser_adapter.addresses import class_address
 
-    if room.has_address:
-        print(f"class code:    {room.code.upper()}     at {site}{class_address(room.code)}")
-    else:
-        print(f"class code:    {room.code.upper()}     for the students, under Class")
-        print(f"teacher's key: {shown(room.key)}     under Class, Teacher; tell it nobody")
+    for number, room in enumerate(classrooms, start=1):
+        address = f"{site}{class_address(room.code)}"
+        of = f"     of teacher's key {number}" if len(classrooms) > 1 else ""
+        print(f"class:         {address}     class code {room.code.upper()}{of}")
+        if is_local(site):
+            print("               Only this computer can open it: --host 0.0.0.0 lets others in.")
+        elif len(classrooms) == 1 and _is_terminal(code := qr_text(address)):
+            print(code)
+        if not key_is_known:
+            key = shown(room.key)
+            print(f"teacher's key: {key}     there, under Class, Teacher; tell it nobody")
     sys.stdout.flush()
+
+
+def _is_terminal(text: str) -> bool:
+    """Whether a text can be shown in a terminal."""
+    try:
+        text.encode(sys.stdout.encoding or "ascii")
+    except UnicodeEncodeError:
+        return False
+    return sys.stdout.isatty()

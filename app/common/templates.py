@@ -3,14 +3,15 @@
 Colours are those of the palette; a dark page replaces some of them, see
 assets/page/dark_colours.css.
 
-`Markup` is made only in `phrase`, `inlined`, `styled` and `json_block` and, from a lesson's
-words, by `lessons.safe_html.safe`.
+`Markup` is made only in `phrase`, `inlined`, `math_font`, `part_of_page` and `json_block` and, from
+a lesson's words, by `lessons.safe_html.safe`.
 """
 
 from __future__ import annotations
 
 import json
 import re
+from base64 import b64encode
 from functools import cache
 from types import SimpleNamespace
 
@@ -36,7 +37,7 @@ def environment() -> Environment:
     )
     colours = {n: c for n, c in vars(palette).items() if isinstance(c, palette.Colour)}
     shown = {n: f"var(--op-{n.lower()}, {c.hex})" for n, c in colours.items()}
-    made.globals = {"palette": SimpleNamespace(**shown), "phrase": phrase}
+    made.globals = {"palette": SimpleNamespace(**shown), "phrase": phrase, "math_font": math_font}
     return made
 
 
@@ -72,8 +73,21 @@ def inlined(asset: str) -> Markup:
     return Markup(asset_path(asset).read_text("utf-8"))
 
 
-def styled(template: str, /, **values: object) -> Markup:
-    """A style template, rendered to be put into a page verbatim."""
+def math_font(address: str = "") -> Markup:
+    """The style of formulas, in a font of ours that a browser loads when it meets the first one.
+
+    Args:
+        address: where the page finds the font; by default it is in the style.
+    """
+    if not address:
+        font = asset_path("web/math.woff2").read_bytes()
+        address = f"data:font/woff2;base64,{b64encode(font).decode()}"
+    face = f"font-family: 'STIX Two Math'; src: url({address}) format('woff2');"
+    return Markup(f"@font-face {{ {face} }}\nmath {{ font-family: 'STIX Two Math', math; }}")
+
+
+def part_of_page(template: str, /, **values: object) -> Markup:
+    """A template, rendered to be put into a page verbatim."""
     return Markup(render(template, **values))
 
 

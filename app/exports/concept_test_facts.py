@@ -44,7 +44,7 @@ class ConceptTestResults:
         return len(questions(self.lesson))
 
 
-def told_tests(run: LessonState) -> ConceptTestResults | None:
+def results_of(run: LessonState) -> ConceptTestResults | None:
     """A student's results; None if the course has no test, or none has been handed in."""
     if not run.course.tests:
         return None

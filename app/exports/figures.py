@@ -126,6 +126,9 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
     frame = experiment.robot().frame
     path = 1e3 * experiment.curve().plan.at(np.linspace(-np.pi, np.pi, 400))
     axes.plot(*path.T, color="0.75", linewidth=6, solid_capstyle="round", label="path")
+    given = experiment.curve().given
+    if given is not None:
+        axes.plot(*(1e3 * given.T), color="0.5", linewidth=0.8, linestyle="--", label="given")
     for run in runs:
         z = 1e3 * frame.planar(run.fields["y"])
         axes.plot(

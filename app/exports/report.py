@@ -10,7 +10,7 @@ from datetime import datetime
 
 from onpath.app.common.access_codes import shown
 from onpath.app.common.templates import render
-from onpath.app.exports.concept_test_facts import told_tests
+from onpath.app.exports.concept_test_facts import results_of
 from onpath.app.exports.curve_words import curve_words, number
 from onpath.app.exports.report_facts import (
     Chapter,
@@ -104,7 +104,7 @@ def report(run: LessonState, code: str, made: datetime) -> bytes:
         made=made.strftime(words("report.date")),
         records=[_record(chapter, words) for chapter in chapters(run)],
         gone=sorted(name for name in run.progress.notes if not run.course.has(name)),
-        told=told_tests(run),
+        results=results_of(run),
         words=words,
     )
     return (page + "\n").encode("utf-8", "replace")

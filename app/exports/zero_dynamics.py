@@ -1,4 +1,4 @@
-"""Results of `onpath zero-dynamics`: exponents against alpha and number of modes."""
+"""Results of `onpath zero-dynamics`: exponents at rest, and against alpha and number of modes."""
 
 from __future__ import annotations
 
@@ -8,9 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from onpath.models.control.settable import changed, specs
+from onpath.models.control.forecast import LEAST_RANK, growth_rate, zero_dynamics_at
+from onpath.models.control.poles import Channel
+from onpath.models.control.rank_test import rank_number
+from onpath.models.control.settable import changed, specs, with_values
+from onpath.models.errors import CodedError
 from onpath.models.systems.beam import MOST_MODES, beam_modes
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
+from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.zero_dynamics import HIGHEST_ALPHA, flexible_zero_dynamics, natural_rate
 
 TABLE_ALPHAS = (-1.0, 0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
@@ -114,22 +119,18 @@ def critical_map(parameters: FlexibleParameters, count: int = 13) -> tuple[np.nd
 
 def as_json(result: Study) -> dict[str, Any]:
     """Data for `--json`: numbers with nine digits, null where nothing is unstable."""
-
-    def finite(value: float) -> float | None:
-        return float(f"{value:.9g}") if math.isfinite(value) else None
-
     rows = zip(result.critical, result.fastest, strict=True)
     return {
         "plant": result.parameters.plant,
         "rho_kg_m": result.parameters.rho,
         "zeta_of_every_mode": result.parameters.zeta,
         "at_m": list(result.at),
-        "unit_1_s": finite(result.unit),
+        "unit_1_s": _nine(result.unit),
         "modes": {
             str(modes): {
-                "critical_alpha": finite(critical),
+                "critical_alpha": _nine(critical),
                 "largest_real_part_1_s": {
-                    f"{alpha:g}": finite(value)
+                    f"{alpha:g}": _nine(value)
                     for alpha, value in zip(result.alphas, fastest, strict=True)
                 },
             }
@@ -155,3 +156,122 @@ def as_table(result: Study) -> str:
         limit = f"{critical:.4f}" if math.isfinite(critical) else "none"
         lines.append(f"{modes:5d}  {limit:>14s}" + "".join(f"{value:12.2f}" for value in row))
     return "\n".join(lines)
+
+
+# Any robot with fewer motors than coordinates
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotStudy:
+    """The zero dynamics of a robot at rest, by the model of its controller.
+
+    Attributes:
+        robot: its name.
+        at: place of the end-point in the path's plane, [m].
+        exponents: [1/s], by decreasing real part.
+        rate: their largest real part, [1/s], and 0 if they are neutral.
+        alphas: shape (a,); empty for a robot without a parameter alpha.
+        fastest: largest real part for each alpha, shape (a,), [1/s].
+        critical: alpha above which it is positive; infinity if it never is.
+    """
+
+    robot: str
+    at: tuple[float, float]
+    exponents: np.ndarray
+    rate: float
+    alphas: np.ndarray
+    fastest: np.ndarray
+    critical: float
+
+
+def robot_study(
+    entry: RobotEntry, assignments: dict[str, str], at: tuple[float, float]
+) -> RobotStudy | str:
+    """The study of a robot, or a sentence if it has no zero dynamics.
+
+    Raises:
+        ValueError: an unknown parameter or a bad value; the end-point is out of reach; the
+            decoupling matrix is singular there, or the robot is not in equilibrium.
+    """
+    parameters = with_values(entry.parameters(), assignments)
+    robot = entry.make(parameters)
+    system = robot.core.system
+    if system.n == system.m:
+        return f"{entry.name} has a motor for each of its coordinates, and no zero dynamics"
+    if system.m != system.p:
+        return f"{entry.name} has more motors than outputs: its zero dynamics are not computed"
+    if not robot.margin(np.array(at)) > 0:
+        raise ValueError(f"the end-point is out of reach at ({at[0]:g}, {at[1]:g}) m")
+    q = robot.rest(robot.frame.lift(np.array(at)))
+    if not rank_number(robot, parameters, q, by_model=True) > LEAST_RANK:
+        raise CodedError("forecast.singular")
+    rate = growth_rate(robot, parameters, q)
+    if rate is None:
+        raise CodedError("forecast.no_rest")
+    model, zero = robot.model(parameters), zero_dynamics_at(robot, parameters, q)
+    alphas, fastest, critical = np.zeros(0), np.zeros(0), math.inf
+    if "alpha" in system.parameter_names:
+        alphas = np.array(TABLE_ALPHAS)
+        fastest = zero.exponents(q, zero.with_alpha(model, alphas))[:, 0].real
+        critical = zero.critical_alpha(q, model)
+    return RobotStudy(
+        robot=entry.name,
+        at=at,
+        exponents=zero.exponents(q, model)[0],
+        rate=rate,
+        alphas=alphas,
+        fastest=fastest,
+        critical=critical,
+    )
+
+
+def robot_json(result: RobotStudy) -> dict[str, Any]:
+    """Data for `--json`: numbers with nine digits, null where nothing is unstable or singular."""
+    data: dict[str, Any] = {
+        "robot": result.robot,
+        "at_m": list(result.at),
+        "exponents_1_s": [[_nine(x.real), _nine(x.imag)] for x in result.exponents.tolist()],
+        "growth_rate_1_s": _nine(result.rate),
+    }
+    if result.alphas.size:
+        rates = zip(result.alphas, result.fastest, strict=True)
+        data["critical_alpha"] = _nine(result.critical)
+        data["largest_real_part_1_s"] = {f"{alpha:g}": _nine(rate) for alpha, rate in rates}
+    return data
+
+
+def robot_table(result: RobotStudy) -> str:
+    """The study of a robot as text."""
+    poles = Channel("zero dynamics", result.exponents, stable=False, integral=False)
+    y1, y2 = (1e3 * each for each in result.at)
+    lines = [
+        f"zero dynamics of {result.robot} at rest, end-point held at ({y1:g}, {y2:g}) mm of the"
+        f" path's plane",
+        f"exponents [1/s]: {poles.pole_words()}",
+        _stability(result.rate),
+    ]
+    if result.alphas.size:
+        limit = f"{result.critical:.4f}" if math.isfinite(result.critical) else "none"
+        lines += [
+            "",
+            f"critical alpha: {limit}",
+            "largest real part of the exponents [1/s]",
+            "".join(f"{f'alpha={alpha:g}':>12s}" for alpha in result.alphas),
+            "".join(
+                f"{rate:12.2f}" if math.isfinite(rate) else f"{'singular':>12s}"
+                for rate in result.fastest
+            ),
+        ]
+    return "\n".join(lines)
+
+
+def _stability(rate: float) -> str:
+    if rate > 0:
+        return f"unstable: the internal motion grows tenfold in {math.log(10) / rate:.2g} s"
+    if rate == 0:
+        return "neutral: the internal motion goes on for ever"
+    return f"stable: the internal motion decays to a tenth in {math.log(10) / -rate:.2g} s"
+
+
+def _nine(value: float) -> float | None:
+    return float(f"{value:.9g}") if math.isfinite(value) else None

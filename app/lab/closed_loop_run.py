@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from operator import is_
 
@@ -28,6 +28,7 @@ from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
+from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
@@ -49,6 +50,8 @@ class ClosedLoopRun:
 
     Args:
         store: provides its loops.
+        refuse: is given the error of a law that cannot be used with the robot and the inputs; the
+            side then gets a new lab's law.
 
     Attributes:
         side: name of the side.
@@ -69,8 +72,10 @@ class ClosedLoopRun:
         parameters: Parameters,
         curve: Curve,
         start: Start = ON_PATH,
+        refuse: Callable[[ValueError], None] = lambda _: None,
     ) -> None:
         self._store, self.robot, self._made_with = store, robot, parameters
+        self._refuse = refuse
         self.side, self.law, self.is_typed = side, law, is_text(law)
         self.diverged: Diverged | None = None
         self._inputs: tuple[Parameters, Curve, Push] | None = None
@@ -113,8 +118,11 @@ class ClosedLoopRun:
 
     def change_robot(self, robot: Robot, parameters: Parameters, curve: Curve, push: Push) -> None:
         """Go on from the present state as another robot with the same states and these inputs."""
+        before = self.kind
         self.robot, self._made_with, self._inputs = robot, parameters, None
         self.configure(parameters, curve, push)
+        if self.law != before.controller:
+            self._go_on_from(self.state, before)
 
     def _go_on_from(self, state: Array, kind: Kind) -> None:
         """Go on from the state of a loop of some kind.
@@ -294,16 +302,28 @@ class ClosedLoopRun:
         """
         parameters, curve, push = inputs
         if (new := kind_of(self.law, parameters, curve, push)) != before:
-            self.kind: Kind = new
+            self.kind: Kind = self._possible(new, inputs)
             self._loop: Loop | None = None
-            self._layouts = loop_layouts(self.robot.system, new)
+            self._layouts = loop_layouts(self.robot.system, self.kind)
             self.log: Layout = self._layouts.log
         if same:
             self.settings = pushed(self._layouts, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, self._layouts, parameters, curve, push)
-        if before is not None:
+        if before is not None and before.controller != self.law:
+            self._go_on_from(self.state, before)
+        elif before is not None:
             self._prime(before)
+
+    def _possible(self, kind: Kind, inputs: tuple[Parameters, Curve, Push]) -> Kind:
+        """The kind of loop, or that under a new lab's law if the law has an error there."""
+        try:
+            self._store.check(self.robot, kind)
+        except ValueError as error:
+            self._refuse(error)
+            self.law, self.is_typed = DEFAULT_LAWS[self.side], False
+            return kind_of(self.law, *inputs)
+        return kind
 
     def _prime(self, before: Kind) -> None:
         """Fill the queue of delayed torques if the loop of this kind did not keep it."""

@@ -267,14 +267,14 @@ class Lab:
             self.show_message(message)
 
     def show_faults(self) -> None:
-        """Report robots that have just stopped, and typed laws that could not be used."""
-        faults, refusals = self.session.faults, self.session.law_changes.refusals
+        """Report robots that have just stopped, and laws that cannot be used or compiled."""
+        faults, remarks = self.session.faults, self.session.law_changes.remarks
         caution = self._foreseen()
         if caution != self._caution:
             self._caution = caution
             self.clear_message()
-        while refusals:
-            self.show_message(self.words.sentence(refusals.pop(0)), "warning")
+        while remarks:
+            self.show_message(self.words.sentence(remarks.pop(0)), "warning")
         if faults:
             faults.clear()
             self.show_message(self.fault_words("say.stopped"), "error")

@@ -312,7 +312,7 @@ class LessonRun(LessonState):
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
     """Set the lab up for a step, but keep the magnification of the drawn deflection."""
-    lab.set_up(setup_of(lesson, index, lab.session.exaggeration))
+    lab.set_up(setup_of(lesson, index))
     lab.session.editor.select(None)
 
 

@@ -175,6 +175,11 @@ class PathEditor:
         self._past.clear()
         self._future.clear()
 
+    def mark(self, faults: list[Fault]) -> None:
+        """Mark the faults of a path in whose place another one is followed."""
+        self.faults = faults
+        self.version += 1
+
     def clear_faults(self) -> None:
         """Clear the marks of the last refused edit."""
         if self.faults:

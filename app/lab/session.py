@@ -215,6 +215,7 @@ class Session:
             for run in runs:
                 run.configure(parameters, curve, pushes[run.side], leg, now)
             moving = [(run, run.loop()) for run in runs if run.diverged is None]
+            self.law_changes.remark_on(moving)
             part = Ticks(
                 runs=moving,
                 count=count,
@@ -289,6 +290,7 @@ class Session:
                 parameters=self.parameters,
                 curve=curve,
                 start=start,
+                refuse=self.law_changes.remarks.append,
             )
             for side, law in laws.items()
         }

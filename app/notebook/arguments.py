@@ -78,7 +78,8 @@ def curve_of(name: str, path: Any) -> Curve:
     if isinstance(path, Curve):
         return path
     if not isinstance(path, str):
-        raise ValueError(f"{name}: onpath.through(points) makes a path of points")
+        ways = "onpath.through(points) makes a path of points, onpath.path_from(file) of a file"
+        raise ValueError(f"{name}: {ways}")
     return curve_from_text(path)
 
 

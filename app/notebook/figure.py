@@ -15,17 +15,19 @@ from onpath.app.notebook.arguments import curve_of
 from onpath.app.notebook.simulate import by_declared_names, entry_named
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
-from onpath.models.studies.experiments import forecast_text, on_path
+from onpath.models.studies.experiments import forecast_text, on_path, path_remark
 from onpath.models.studies.unused import unused_text
+from onpath.models.systems.robots import RobotEntry
 
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 
 
 def figure(
     file: str | Path,
-    robot: str = "five_bar",
+    robot: str | RobotEntry = "five_bar",
     laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
     paths: Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
     *,
@@ -43,7 +45,7 @@ def figure(
 
     Args:
         file: the file to write, such as "figure.html".
-        robot: one of `onpath.robots()`.
+        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
         laws: one or two of `onpath.laws()`, or laws of one's own.
         paths: paths to choose from, beginning with the first: names of `onpath.paths()`, texts or
             curves as for `onpath.simulate`, or a mapping from names to them.
@@ -85,10 +87,10 @@ def figure(
         choices = [choices]
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
-    given = by_declared_names(parameters, entry_named(robot), figure)
+    given = by_declared_names(parameters, entry := entry_named(robot), figure)
     values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
     choice = chosen(
-        robot,
+        entry.name,
         laws,
         paths=curves,
         values=values,
@@ -98,7 +100,8 @@ def figure(
     )
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
     laws = choice.every_law
-    for text in (unused_text(first, laws, given), forecast_text(first, laws)):
+    remarks = [path_remark(raised(each, choice.parameters)) for each in curves.values()]
+    for text in (*remarks, unused_text(first, laws, given), forecast_text(first, laws)):
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:

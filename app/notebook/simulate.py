@@ -24,9 +24,9 @@ from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS, law_name
 from onpath.models.control.settable import specs, values_of
 from onpath.models.errors import CodedError
+from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
+from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
-from onpath.models.paths.curve_faults import own_faults
-from onpath.models.paths.curve_fit import deviation_remark, fitted
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
@@ -37,7 +37,7 @@ from onpath.models.systems.parameter_specs import Spec, unknown_name
 
 
 def simulate(
-    robot: str = "five_bar",
+    robot: str | RobotEntry = "five_bar",
     path: Curve | str = "circle",
     law: str = "path_following",
     *,
@@ -57,7 +57,7 @@ def simulate(
     """Simulate one robot under one control law, as `onpath experiment` does.
 
     Args:
-        robot: one of `onpath.robots()`.
+        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
         path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
             "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
             [m].
@@ -96,9 +96,9 @@ def simulate(
             start.
 
     Warns:
-        UserWarning: a parameter that is given, but has no effect in this run, such as K4 with
-            task="speed"; or what is foreseen for a robot with fewer motors than coordinates, such
-            as unstable zero dynamics.
+        UserWarning: a path that crosses itself; a parameter that is given, but has no effect in
+            this run, such as K4 with task="speed"; or what is foreseen for a robot with fewer
+            motors than coordinates, such as unstable zero dynamics.
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -144,6 +144,7 @@ def simulate(
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, law))
     remarks = (
+        experiments.path_remark(chosen.curve()),
         unused_text(chosen, [law], given),
         experiments.forecast_text(chosen, [law]),
         experiments.never_held(chosen, run.trajectory),
@@ -175,24 +176,25 @@ def laws() -> dict[str, str]:
 
 
 def paths() -> dict[str, str]:
-    """Names of the preset paths with the length of each, and why it is refused, if it is.
+    """Names of the preset paths with the length of each, and what to know about it.
 
     >>> import onpath
     >>> onpath.paths()["circle"]
     'closed, 314 mm'
     >>> onpath.paths()["figure of eight"]
-    'closed, 429 mm, refused: the path crosses itself: at a crossing it has two directions'
+    'closed, 429 mm; the path crosses itself: at the crossing, the closest point is not unique'
     """
     return {name: _measured(design) for name, design in presets().items()}
 
 
 def _measured(design: PathDesign) -> str:
     shape = "closed" if design.curve.closed else "open"
-    refused = "".join(f", refused: {fault.reason}" for fault in own_faults(design.curve))
-    return f"{shape}, {design.curve.length() * 1e3:.0f} mm{refused}"
+    remark = experiments.path_remark(design.curve)
+    length = f"{shape}, {design.curve.length() * 1e3:.0f} mm"
+    return f"{length}; {remark}" if remark else length
 
 
-def parameters(robot: str = "five_bar") -> dict[str, str]:
+def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
     """Names of a robot's parameters with default, range and unit, or options, and description.
 
     Raises:
@@ -247,29 +249,46 @@ def segment(start: ArrayLike, end: ArrayLike) -> Curve:
     return through(np.stack(ends), closed=False)
 
 
-def through(points: ArrayLike, closed: bool = True) -> Curve:
+def through(
+    points: ArrayLike, closed: bool = True, *, corners: str = SMOOTH, radius: float = RADIUS
+) -> Curve:
     """A smooth path with 12 harmonics that fits points, shape (n, 2), [m].
 
-    It rounds corners and swings out between points that are far apart: its `deviation` is its
-    largest distance from the straight lines between the points, [m]; beyond 4 mm there is a
-    warning.
+    It swings out between points that are far apart: its `deviation` is its largest distance from
+    the straight lines between the points, [m]; beyond 4 mm there is a warning.
+
+    Args:
+        points: shape (n, 2), [m].
+        closed: whether the last point is joined to the first.
+        corners: "smooth" for a spline through the points, or "round" for straight lines between
+            them, with arcs in the place of corners.
+        radius: of these arcs, [m].
 
     Raises:
         ValueError: too few points, non-finite numbers, or all points coincide.
+
+    Warns:
+        UserWarning: a large deviation; and the smallest radius of a path with rounded corners.
+
+    >>> import onpath
+    >>> onpath.through([[0.05, 0], [0, 0.05], [-0.05, 0], [0, -0.05]], corners="round", radius=0.03)
+    <closed path, 231 mm long, 75 x 75 mm>
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
-    curve = fitted(given, closed)
-    if remark := deviation_remark(curve):
+    read = path_through(given, Placing(corners=corners, radius=radius, closed=closed))
+    for remark in read.remarks:
         warnings.warn(str(remark), stacklevel=2)
-    return curve
+    return read.curve
 
 
-def entry_named(robot: str) -> RobotEntry:
-    """The robot of this name.
+def entry_named(robot: str | RobotEntry) -> RobotEntry:
+    """The robot of this name, or the robot itself.
 
     Raises:
         ValueError: there is none; the message lists the nearest names.
     """
+    if isinstance(robot, RobotEntry):
+        return robot
     _check_name(robot, ROBOTS, "robot")
     return ROBOTS[robot]
 

@@ -32,15 +32,15 @@ class SureAndWhy:
     """
 
     def __init__(self, gui: viser.GuiApi, block: Prediction, words: Words) -> None:
-        unsaid = words("answer.not_said")
-        self._sure = {unsaid: "", **{words(f"sure.{sure}"): sure for sure in SURENESS}}
-        menu = gui.add_dropdown(words("answer.how_sure"), list(self._sure), initial_value=unsaid)
+        no_answer = words("answer.not_said")
+        self._sure = {no_answer: "", **{words(f"sure.{sure}"): sure for sure in SURENESS}}
+        menu = gui.add_dropdown(words("answer.how_sure"), list(self._sure), initial_value=no_answer)
         self._menu, self._why = menu, None
-        self._reasons: dict[str, int | None] = {unsaid: None}
+        self._reasons: dict[str, int | None] = {no_answer: None}
         self._reasons |= {reason: i for i, reason in enumerate(block.reasons)}
         because = words("answer.because")
         if block.reasons:
-            self._why = gui.add_dropdown(because, list(self._reasons), initial_value=unsaid)
+            self._why = gui.add_dropdown(because, list(self._reasons), initial_value=no_answer)
         elif block.why:
             self._why = gui.add_text(because, "", multiline=True)
         self.handles: list[Any] = [menu]

@@ -38,7 +38,13 @@ INVITATIONS = (
     Invitation("let_go", lambda shown: not shown.held, "h"),
     Invitation("pull", lambda shown: shown.grabbed is not None),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
+    Invitation("lesson", lambda shown: shown.key.in_lesson, "o"),
 )
+
+
+def end_first_minute(client: viser.ClientHandle) -> None:
+    """Record in the browser that all invitations have been shown."""
+    client.local_storage.set_item(KEPT_AS, str(len(INVITATIONS)))
 
 
 class FirstMinute:
@@ -73,7 +79,7 @@ class FirstMinute:
         words, invitation = self._words, INVITATIONS[self._next]
         return render(
             "panel/invitation.html",
-            said=words(f"invite.{invitation.name}"),
+            text=words(f"invite.{invitation.name}"),
             button=words(f"invite.{invitation.name}_button") if invitation.key else "",
             key=invitation.key,
             end=len(INVITATIONS),

@@ -166,7 +166,7 @@ class LessonEnd:
                 block=block,
                 answer=answer,
                 truth=truth,
-                said=description,
+                description=description,
                 second=notes.second.get(key),
                 unknown=key in notes.unknown,
             )

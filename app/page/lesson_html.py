@@ -58,12 +58,17 @@ def text(content: str) -> str:
 
 def remark(sentence: str, italic: bool = False) -> str:
     """A sentence of the interface."""
-    return render("lesson/remark.html", said=sentence, italic=italic)
+    return render("lesson/remark.html", sentence=sentence, italic=italic)
+
+
+def watch(told: str) -> str:
+    """What to look at during a run."""
+    return render("lesson/watch.html", told=told)
 
 
 def next_act(words: Words) -> str:
     """The remark after a prediction; the page brings the button that follows it into view."""
-    return render("lesson/next_act.html", said=words("lesson.committed"))
+    return render("lesson/next_act.html", message=words("lesson.committed"))
 
 
 def asked(block: Sketch) -> str:
@@ -125,7 +130,9 @@ def open_question(block: OpenQuestion, text: str, words: Words) -> str:
     )
 
 
-def told(block: Prediction, answer: Answer | None, words: Words, unknown: bool = False) -> str:
+def confidence(
+    block: Prediction, answer: Answer | None, words: Words, unknown: bool = False
+) -> str:
     """How sure the student is of a prediction, and why; empty if neither is given.
 
     Args:

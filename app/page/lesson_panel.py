@@ -256,12 +256,14 @@ class LessonPanel:
     def _add_reasons(self, block: Prediction, run: LessonView) -> None:
         """How sure the student was, and why, if the student has said so."""
         unknown = isinstance(block, Sketch) and run.is_unknown()
-        if reasons := page.told(block, run.answer(), run.words, unknown):
+        if reasons := page.confidence(block, run.answer(), run.words, unknown):
             self._html(reasons)
 
     def _add_run(self, run: LessonView) -> None:
         """The prediction next to the measured result, and the button that runs the experiment."""
         found, truth = run.prediction(), run.truth
+        if run.step is not None and run.step.watch and not run.waits:
+            self._html(page.watch(run.step.watch))
         if run.playing:
             self._html(page.remark(run.words("lesson.playing"), italic=True))
         else:

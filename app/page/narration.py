@@ -66,7 +66,8 @@ class Narration:
         stopped = bool(snapshot.stopped) and level == "error"
         plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
         frame = self._frame(level, running, snapshot.held, stopped, plays)
-        remedy = _earlier_settings(snapshot, self._words) if stopped or level == "replay" else ""
+        shows_remedy = (stopped or level == "replay") and not _in_lesson(snapshot)
+        remedy = _earlier_settings(snapshot, self._words) if shows_remedy else ""
         voice = self._voice(snapshot, captions) if self._preferences["speaks"] else ""
         tones = _tones(snapshot) if self._preferences["sounds"] else ""
         shown = frame, snapshot.message, voice, tones, remedy
@@ -128,6 +129,11 @@ def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     state = "held" if snapshot.held else "running"
     robots = spoken(captions, side_titles(snapshot.laws, words), words) or words("spoken.on_path")
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {robots}"
+
+
+def _in_lesson(snapshot: Snapshot) -> bool:
+    """Whether a lesson is open; good settings may be the answer to one of its tasks."""
+    return isinstance(snapshot, PageSnapshot) and bool(snapshot.lesson.progress.lesson)
 
 
 def _earlier_settings(snapshot: Snapshot, words: Words) -> str:

@@ -12,7 +12,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
-from onpath.app.page.first_minute import FirstMinute
+from onpath.app.page.first_minute import FirstMinute, end_first_minute
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.narration import Narration
@@ -37,6 +37,7 @@ from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
+from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.page_release import clear_page
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -44,6 +45,8 @@ from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
+UPRIGHT_KEY = "upright"
+"""Where a browser keeps whether the panel is below the scene; see assets/page/portrait.js."""
 
 
 class Page:
@@ -71,10 +74,8 @@ class Page:
         self._preferences = Preferences(client)
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
-        self._is_phone = self._is_narrow()
-        if not self._is_phone:
-            client.gui.main_panel.dock_right()
-            client.gui.main_panel.set_width(CONTROL_WIDTH)
+        self._narrow: bool | None = None  # not laid out yet
+        self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
 
@@ -90,7 +91,7 @@ class Page:
 
     def show(self, snapshot: PageSnapshot | Motion) -> None:
         """Show a snapshot. Called on the simulation thread while the page is ready."""
-        if self._key(snapshot) != self._built:
+        if self._key(snapshot) != self._built or self._wanted_narrow != self._narrow:
             self._renew(snapshot)
             return
         with self._channel:
@@ -164,10 +165,11 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        stage = stage_of(robot, DARK if self._context.dark else LIGHT)
         stripped = self._has_strip(first)
-        hooks = _hooks(post, robot)
-        self._scene = Scene(self._client, stage, hooks, words, titled=not stripped)
+        self._lay_out()
+        tones = DARK if self._context.dark else LIGHT
+        stage = stage_of(robot, tones, self._context.plain)
+        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=not stripped)
         self._scene.build(first)
         one_at_a_time.rest()
         self._overlays = Overlays(
@@ -176,7 +178,7 @@ class Page:
             robot=robot,
             switches=self._switches,
             submit=self._rebuilds.submit,
-            is_narrow=self._is_phone,
+            is_narrow=bool(self._narrow),
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
@@ -192,9 +194,18 @@ class Page:
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
         self._build_panels(first, words, post)
-        page_actions = {"view": self.reset_view, "summary": self._narration.ask_summary}
+        page_actions = {
+            "view": self.reset_view,
+            "summary": self._narration.ask_summary,
+            "lesson": lambda: self._open_first_lesson(post),
+        }
         add_keys(self._client.gui, words, post, page_actions)
         self._building = self.is_outdated = False
+
+    def _open_first_lesson(self, post: Post) -> None:
+        """Open the first lesson, to which the invitations of the first minute lead."""
+        end_first_minute(self._client)
+        post(c.OpenLesson(next(iter(self._context.course.lessons), "")))
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui = self._client.gui
@@ -203,7 +214,7 @@ class Page:
             self._build_free_lab(controls, first, words, post)
             return
         lesson_tab = None
-        if self._is_narrow():  # a single panel with tabs: the lesson first, then the lab
+        if self._narrow:  # a single panel with tabs: the lesson first, then the lab
             tabs = gui.add_tab_group()
             lesson_tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
             step_tab = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
@@ -331,9 +342,20 @@ class Page:
         )
         self._parts.append(plot)
 
+    def _lay_out(self) -> None:
+        """Put the panel beside the scene unless the window is narrow: it is below it then."""
+        if self._narrow is not False and not self._wanted_narrow:
+            self._client.gui.main_panel.dock_right()
+            self._client.gui.main_panel.set_width(CONTROL_WIDTH)
+        self._narrow = self._wanted_narrow
+
     def _is_narrow(self) -> bool:
         camera = self._client.camera
         return camera.image_width < NARROW * camera.image_height
+
+    def _heard_upright(self, kept: str) -> None:
+        """Note whether the window is upright now. A browser's value is not trusted."""
+        self._wanted_narrow = {"yes": True, "no": False}.get(kept, self._is_narrow())
 
     def _frame_camera(self) -> None:
         """Refit the camera to both robots when the aspect ratio of the view changes.
@@ -350,8 +372,9 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
+            ask_item(self._client, UPRIGHT_KEY, self._heard_upright)
             below = 0.0 if self._step_plot is None else self._step_plot.share
-            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._is_phone else below)))
+            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._narrow else below)))
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

@@ -15,10 +15,10 @@ class ClassSeat:
 
     Attributes:
         join: joins with the class code and a nickname; raises ValueError with a message. Returns
-            the address of the class if its pages are elsewhere.
+            the address of the class if its page is elsewhere, where a nickname is asked for.
         leave: leaves the class but stays in the lab.
         teach: opens the teacher's page, given the key; see `join`.
-        code: the class code, if the page's address has it.
+        code: the class code, if the page's address has it; else a student types it.
     """
 
     join: Callable[[str, str], str]
@@ -40,6 +40,7 @@ class PageContext:
         enter: opens the lab of a code; raises ValueError with a message.
         seat: the lab's place in the class, or None without a class.
         dark: whether the browser asks for dark pages.
+        plain: whether the browser draws in software, so that the scene must be quickly drawn.
         privacy_url: the address of the site's privacy notice; empty if it has none.
         ticket: opens the page's data channel; empty if it has none.
     """
@@ -51,5 +52,6 @@ class PageContext:
     enter: Callable[[str], None]
     seat: ClassSeat | None = None
     dark: bool = False
+    plain: bool = False
     privacy_url: str = ""
     ticket: str = ""

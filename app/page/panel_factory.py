@@ -8,13 +8,14 @@ from typing import Protocol
 import viser
 
 from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
-from onpath.app.page.panels.flexible_panel import FlexiblePanel
+from onpath.app.page.panels.flexible_panel import Exaggeration, FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.law_panel import LawPanel
@@ -89,6 +90,7 @@ class PanelFactory:
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
         self._scene, self._context = scene, context
+        self._files = PathReader(words.language)
 
     def everything(self, first: PageSnapshot) -> list[Part]:
         """Build all panels."""
@@ -171,6 +173,7 @@ class PanelFactory:
             "laws": lambda: LawPanel(gui, words, post, first),
             "copy": lambda: self._copy(first),
             "flexible": lambda: self._flexible(first),
+            "larger": lambda: Exaggeration(gui, words, post, first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
             "wall": lambda: WallPanel(gui, words, post, first),
             "start": lambda: StartPanel(gui, words, post, first=first, show=self._scene.show_start),
@@ -196,7 +199,13 @@ class PanelFactory:
 
         with self._gui.add_folder(self._words("controls.editor"), expand_by_default=expanded):
             return PathPanel(
-                self._gui, self._words, self._post, first=first, draw=draw, show_zone=shade
+                self._gui,
+                self._words,
+                self._post,
+                first=first,
+                draw=draw,
+                show_zone=shade,
+                files=self._files,
             )
 
     def _flexible(self, first: PageSnapshot) -> Part | None:

@@ -12,22 +12,15 @@ from onpath.lessons.words import Words
 
 @dataclass(slots=True)
 class TeacherChoices:
-    """Selections on one teacher's page, kept when the page is rebuilt.
+    """Selections on one teacher's page, kept when the page is rebuilt; see also `Display`.
 
     Attributes:
-        lesson, step: where the displayed prediction is asked.
-        shown: whether the answers themselves are shown, and not only their number.
-        revealed: whether the truth is shown as well.
         followed: session code of the student whose lab is shown; empty for the teacher's own lab.
         message: the outcome of deleting a student.
         picked: numbers of the sketches to show; empty for all.
         numbered: sketches in order of arrival, by lesson, step and round; `picked` counts them.
     """
 
-    lesson: str = ""
-    step: int = 0
-    shown: bool = True
-    revealed: bool = False
     followed: str = ""
     message: str = ""
     picked: tuple[int, ...] = ()
@@ -39,6 +32,8 @@ class TeacherContext:
     """The context of one teacher's page.
 
     Attributes:
+        address: where students join the class.
+        is_local: whether only this machine can open it.
         progress: the teacher's own progress through the lessons.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
@@ -49,6 +44,8 @@ class TeacherContext:
 
     classroom: Classroom
     chosen: TeacherChoices
+    address: str
+    is_local: bool
     progress: Callable[[], Progress]
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]

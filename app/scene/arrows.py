@@ -14,16 +14,17 @@ if TYPE_CHECKING:
     import viser
 
 SHORTEST = 2e-3
-"""Arrows shorter than this are not drawn [m]."""
+"""Arrows shorter than this are usually not drawn [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class ArrowShape:
-    """Dimensions of an arrow that is longer than its head, [m]."""
+    """Dimensions of an arrow that is longer than its head, and the shortest that is drawn, [m]."""
 
     shaft_radius: float
     head_radius: float
     head_length: float
+    shortest: float = SHORTEST
 
     def sizes(self, length: float) -> dict[str, float]:
         """viser's sizes for an arrow of this length, [m]; a short one is a smaller head alone."""
@@ -59,7 +60,7 @@ class Arrows:
                 f"{name}_{i}",
                 arrow[None],
                 colour.linear,
-                visible=_length(arrow) >= SHORTEST,
+                visible=_length(arrow) >= shape.shortest,
                 shaft_radius=size["shaft_radius"],
                 head_radius=size["head_radius"],
                 head_length=size["head_length"],
@@ -72,7 +73,7 @@ class Arrows:
         """Draw the arrows, see `points`; one that is not finite is hidden."""
         for node, arrow in zip(self.nodes, points, strict=True):
             length = _length(arrow)
-            seen = length >= SHORTEST  # false for NaN
+            seen = length >= self._shape.shortest  # false for NaN
             if seen:
                 update_node(node, points=arrow[None], **self._shape.sizes(length))
             if node.visible != seen:

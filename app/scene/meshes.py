@@ -15,8 +15,9 @@ from onpath.assets import asset_path
 PARTS = "parts.npz"
 LINK_THICKNESS = 0.012
 GRIP = (0.02, 0.009, 0.02)  # half-axes of the area at an end-point that can be grabbed [m]
-FLOOR_DEPTH = 0.17  # default depth of the floor below the base pivot [m]
-RAIL = (0.0125, 0.0165)  # inner and outer edge of a brake's jaws, from its middle [m]
+ARROWHEAD = (0.013, 0.0215, 0.0065)  # of a grip: begin and end from its middle, half width [m]
+FLOOR_DEPTH = 0.115  # default depth of the floor below the base pivot [m]
+RAIL = (0.0125, 0.0185)  # inner and outer edge of a brake's rails, from its middle [m]
 WALL = (0.13, 0.04)  # length of the drawn part of a wall, and its depth behind the surface [m]
 
 
@@ -51,12 +52,21 @@ def ball(radius: float) -> Mesh:
 
 
 def grip() -> Mesh:
-    """A lens about an end-point, deep enough to be picked before a control point inside it.
+    """The front of a lens about an end-point, with arrowheads that say that it can be pulled.
 
-    The scene then decides which of the two is selected.
+    It is deep enough to be picked before a control point inside it. The scene then decides which
+    of the two is selected.
     """
     unit = part("ball")
-    return Mesh(unit.vertices * GRIP, unit.faces)
+    lens, front = unit.vertices * GRIP, (unit.vertices[unit.faces, 1] < 1e-6).all(axis=1)
+    begin, end, half = ARROWHEAD
+    right = np.array([(end, 0.0), (begin, half), (begin, -half)])
+    turns = [np.array([(c, -s), (s, c)]) for c, s in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+    flat = np.concatenate([right @ turn for turn in turns])
+    sheets = [np.insert(flat, 1, -GRIP[1] - depth, axis=1) for depth in (0.0, 0.001)]
+    heads = np.concatenate(sheets)  # two layers: where it is translucent, denser than the lens
+    faces = np.arange(len(heads)).reshape(-1, 3) + len(lens)
+    return Mesh(np.concatenate([lens, heads]), np.concatenate([unit.faces[front], faces]))
 
 
 def base(height: float = FLOOR_DEPTH) -> Mesh:

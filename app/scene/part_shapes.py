@@ -22,8 +22,8 @@ from onpath.app.scene.meshes import FLOOR_DEPTH, LINK_THICKNESS, PARTS, RAIL, WA
 from onpath.assets import asset_path
 
 SHARP = np.radians(30.0)  # sharper edges are not smoothed
-ROUND = 32  # points of a full circle
-SMALL_ROUND = 24  # points of the circle of a small part, of which there are many
+ROUND = 24  # points of a full circle
+SMALL_ROUND = 16  # points of the circle of a small part, of which there are many
 TOWARDS_VIEWER = rotation_matrix(np.pi / 2, [1.0, 0.0, 0.0])  # turns the axis z to -y
 
 Profile = Sequence[tuple[float, float]]
@@ -109,7 +109,7 @@ def link() -> Trimesh:
 
 def blade() -> Trimesh:
     """A piece of a thin upright strip from x = 0 to 1, slightly longer, so that pieces overlap."""
-    return crisp(plate(rectangle((-0.03, -0.011), (1.03, 0.011)), (-0.0022, 0.0022), 0.0008))
+    return crisp(plate(rectangle((-0.03, -0.016), (1.03, 0.016)), (-0.0012, 0.0012), 0.0004))
 
 
 def bearing() -> Trimesh:
@@ -166,17 +166,34 @@ def cross() -> Trimesh:
     return crisp(*(plate(arm @ way, (-0.06, 0.06), 0.02) for way in (turn, turn.T)))
 
 
-def jaws(half: float) -> Trimesh:
-    """Two bars at both sides of an end-point, joined at their ends, `half` long to either side."""
+def jaws(half: float) -> list[Trimesh]:
+    """Rails at both sides of an end-point, `half` long to either side, and what presses them."""
     inner, outer = RAIL
-    corners = [
-        ((inner, -half), (outer, half)),
-        ((-outer, -half), (-inner, half)),
-        ((-outer, half), (outer, half + 0.006)),
-        ((-outer, -half - 0.006), (outer, -half)),
+    back, screw, end = outer + 0.014, outer + 0.021, outer + 0.027
+    jaw = np.array([(outer, -0.022), (outer, 0.022), (back, 0.011), (back, -0.011)])
+    outlines = [
+        rectangle((inner, -half), (outer, half)),
+        jaw,
+        rectangle((back, -0.005), (screw, 0.005)),
+        rectangle((screw, -0.015), (end, 0.015)),
     ]
     layers = (-0.014, -0.001)  # in front of the path, on both sides of the pen
-    return crisp(*(plate(rectangle(low, high), layers, 0.001) for low, high in corners))
+    mirror = np.array([-1.0, 1.0])
+    both = [*outlines, *(outline * mirror for outline in outlines)]
+    return [plate(outline, layers, 0.001) for outline in both]
+
+
+def guide() -> Trimesh:
+    """What holds an end-point, and lets it slide along z between its rails."""
+    return crisp(*jaws(0.045))
+
+
+def clamp() -> Trimesh:
+    """What leaves an end-point no way to move: jaws from all four sides."""
+    across = jaws(RAIL[0])
+    for solid in across:
+        solid.apply_transform(rotation_matrix(np.pi / 2, [0.0, 1.0, 0.0]))
+    return crisp(*jaws(RAIL[0]), *across)
 
 
 WALL_LAYERS = (-0.016, -0.002)  # away from the viewer, so that the path stays visible [m]
@@ -239,11 +256,9 @@ def finger(
 
 def all_parts() -> dict[str, Trimesh]:
     """All parts by name."""
-    made = [link, blade, bearing, motors, base, pedestal, turntable, cross, hand]
+    made = [link, blade, bearing, motors, base, pedestal, turntable, cross, hand, guide, clamp]
     return {
         **{make.__name__: make() for make in [*made, wall_body, wall_lines]},
-        "guide": jaws(0.055),  # slides along z with an end-point between its rails
-        "clamp": jaws(0.013),  # leaves an end-point no way to move
         "ball": icosphere(subdivisions=2),
     }
 

@@ -47,12 +47,14 @@ class PathNodes:
         self._points: viser.BatchedMeshHandle | None = None
         self._hidden = False
         self._marks: viser.BatchedMeshHandle | None = None
+        self._given: viser.LineSegmentsHandle | None = None
 
     def draw(self, path: PathView) -> None:
         """Update the nodes to show a path."""
         self._draw_curve(path.points)
         self._draw_points(path)
         self._draw_marks(path.refused)
+        self._draw_given(path.given)
 
     def _everywhere(self, points: np.ndarray) -> np.ndarray:
         """Points of a robot's frame at each robot, in the world, shape (k n, 3), [m]."""
@@ -95,6 +97,17 @@ class PathNodes:
         self._hidden = hidden
         if self._points is not None:
             self._points.visible = not hidden
+
+    def _draw_given(self, points: np.ndarray) -> None:
+        """Draw the line that the path was fitted to, if it is far from it."""
+        if self._given is not None:
+            self._given.remove()
+            self._given = None
+        if len(points) > 1:
+            pieces = np.stack([points[:-1], points[1:]], axis=1).reshape(-1, 3)
+            segments = self._everywhere(pieces).reshape(-1, 2, 3)
+            colour = palette.WARNING.rgb
+            self._given = self._scene.add_line_segments("/path/given", segments, colour)
 
     def _draw_marks(self, refused: np.ndarray) -> None:
         if self._marks is not None:

@@ -14,10 +14,14 @@ from onpath.app.scene.stage import Stage
 
 UNSEEN = 1e-5
 """Differences up to this are not drawn [m, N]."""
-PLACED = ("bars", "parts", "tips")
+PLACED = ("bars", "parts", "tips", "bodies")
 """Fields that are world positions; the others are directions, lengths and forces."""
 OF_BARS = ("bars", "quaternions", "lengths")
-"""Fields with one row for each bar: first the links of all robots, then the pieces of strips."""
+"""Fields with one row for each bar: first the links of all robots, then the pieces of strips, then
+the straight strips."""
+
+OF_BODIES = ("bodies", "attitudes")
+"""Fields with one row for each moving body: first the first one of all robots, then the second."""
 
 
 class Poses(Struct, frozen=True, eq=False):
@@ -92,7 +96,9 @@ def _layout(stage: Stage, counts: Counts) -> _Layout:
         width, before = prod(rest), len(order)
         places = [(i, row) for i in range(len(bases)) for row in range(rows)]
         if name in OF_BARS:
-            places.sort(key=lambda place: place[1] >= counts.links)
+            places.sort(key=lambda place: (place[1] >= counts.links) + (place[1] >= counts.bars))
+        if name in OF_BODIES:
+            places.sort(key=lambda place: place[1])
         for i, row in places:
             at = i * counts.size + start + row * width
             order.extend(range(at, at + width))

@@ -23,10 +23,13 @@ if TYPE_CHECKING:
 
 NEGLIGIBLE = 1e-6
 """Changes of lengths, rotations and forces below this are not drawn [m, N]."""
-FORCE = ArrowShape(shaft_radius=0.0032, head_radius=0.0085, head_length=0.018)
+FORCE = ArrowShape(shaft_radius=0.0032, head_radius=0.0085, head_length=0.018, shortest=0.004)
 TRACE_SEGMENTS = 120
 TRACE_DEPTHS = (0.012, 0.002)
 """Depth of the trace behind the path, and of older laps behind newer ones [m]."""
+
+TAPERED, GHOST = 0.55, 0.4
+"""Widths of a flexible strip at its end, and of the straight one, which an unbent strip hides."""
 
 # Scales of the bearing's mesh, which also serves as pen and as the discs of a marker.
 BEARING = (1.25, 1.0, 1.25)
@@ -45,19 +48,20 @@ def fading(colour: palette.Colour, wall: palette.Colour, count: int = TRACE_SEGM
     return np.stack([line[:-1], line[1:]], axis=1)
 
 
-def link_scales(lengths: np.ndarray) -> np.ndarray:
+def link_scales(lengths: np.ndarray, widths: np.ndarray | float = 1.0) -> np.ndarray:
     """Per-axis scales of the link's mesh, shape (n, 3)."""
-    return np.column_stack([lengths, np.ones_like(lengths), np.ones_like(lengths)])
+    return np.column_stack([lengths, np.ones_like(lengths), widths * np.ones_like(lengths)])
 
 
 def bar_colours(side: str, counts: Counts) -> np.ndarray:
     """Linear colours of a robot's bars, shape (n, 3): every other link is behind and darker.
 
-    Pieces of a flexible strip are in front.
+    Pieces of a flexible strip are in front and lighter.
     """
     front = palette.OF_SIDE[side]
-    back = front.toward(palette.INK, 0.25)
-    return np.stack([(back if each else front).linear for each in counts.behind])
+    back, strip = front.toward(palette.INK, 0.25), front.toward(palette.WHITE, 0.35)
+    links = [back if each else front for each in counts.behind[: counts.links]]
+    return np.stack([each.linear for each in [*links, *[strip] * counts.strip]])
 
 
 def part_looks(
@@ -104,6 +108,7 @@ class Bars:
     Args:
         rows: of these bars in `Poses`.
         colours: linear colours of these bars, shape (k, 3).
+        widths: of these bars, relative to the mesh's.
     """
 
     def __init__(
@@ -114,10 +119,11 @@ class Bars:
         rows: slice,
         colours: np.ndarray,
         poses: Poses,
+        widths: np.ndarray | float = 1.0,
     ) -> None:
-        self._rows = rows
+        self._rows, self._widths = rows, widths
         self._lengths = poses["lengths"][rows]
-        scales = link_scales(self._lengths)
+        scales = link_scales(self._lengths, widths)
         self.node = add_copies(scene, name, mesh, poses["bars"][rows], colours, scales=scales)
 
     def update_lengths(self, poses: Poses) -> None:
@@ -125,13 +131,43 @@ class Bars:
         lengths = poses["lengths"][self._rows]
         if difference(lengths, self._lengths) > 1e-4:
             self._lengths = lengths
-            update_node(self.node, batched_scales=link_scales(lengths))
+            update_node(self.node, batched_scales=link_scales(lengths, self._widths))
 
     def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
         """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
         return [
             (self.node, "batched_positions", poses.place("bars", self._rows)),
             (self.node, "batched_wxyzs", poses.place("quaternions", self._rows)),
+        ]
+
+
+class Body:
+    """One moving body of all robots, as copies of its mesh.
+
+    Args:
+        number: of the body.
+        sides: of the robots.
+    """
+
+    def __init__(
+        self,
+        scene: viser.SceneApi,
+        number: int,
+        mesh: meshes.Mesh,
+        sides: Sequence[str],
+        poses: Poses,
+    ) -> None:
+        self._rows = slice(number * len(sides), (number + 1) * len(sides))
+        tints = [palette.OF_SIDE[side] for side in sides]
+        colours = [tint.toward(palette.INK, 0.2) if number % 2 else tint for tint in tints]
+        inks = np.stack([colour.linear for colour in colours])
+        self.node = add_copies(scene, f"/bodies/{number}", mesh, poses["bodies"][self._rows], inks)
+
+    def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
+        """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
+        return [
+            (self.node, "batched_positions", poses.place("bodies", self._rows)),
+            (self.node, "batched_wxyzs", poses.place("attitudes", self._rows)),
         ]
 
 
@@ -159,7 +195,12 @@ class RobotNodes:
         self._bases = bases = stage.bases
         self._force_scale = stage.force_scale
         self._drawn = poses
-        self._bars = self._add_bars(scene, counts, poses)
+        bodies = [
+            Body(scene, number, mesh, list(bases), poses)
+            for number, mesh in enumerate(stage.bodies)
+        ]
+        self._bars = [] if bodies else self._add_bars(scene, counts, poses)
+        self._solids = [*(bars.node for bars in self._bars), *(body.node for body in bodies)]
         self._parts = self._add_parts(scene, poses)
         self._turns = np.tile(IDENTITY, (len(poses["turns"]), 1))
         self.grips = add_copies(
@@ -167,8 +208,8 @@ class RobotNodes:
             "/grips",
             meshes.grip(),
             poses["tips"],
-            np.stack([palette.OF_SIDE[side].linear for side in bases]),
-            opacity=0.22,
+            np.stack([palette.OF_SIDE[side].toward(palette.INK, 0.5).linear for side in bases]),
+            opacity=0.42,
         )
         self._traces = _add_traces(scene, stage)
         self._trace_origins = _trace_origins(stage.origins)
@@ -180,7 +221,7 @@ class RobotNodes:
         self._acting = False
         self._moving = NodeGroup(
             [
-                *(moving for bars in self._bars for moving in bars.properties(poses)),
+                *(moving for each in (*self._bars, *bodies) for moving in each.properties(poses)),
                 (self._parts, "batched_positions", poses.place("parts")),
                 (self.grips, "batched_positions", poses.place("tips")),
             ]
@@ -190,7 +231,7 @@ class RobotNodes:
 
     def _add_bars(self, scene: viser.SceneApi, counts: Counts, poses: Poses) -> list[Bars]:
         links = slice(len(self._bases) * counts.links)
-        strips = slice(links.stop, None)
+        strips = slice(links.stop, len(self._bases) * counts.bars)
         is_link = np.arange(counts.bars) < counts.links
         colours_of_robots = [bar_colours(side, counts) for side in self._bases]
         bars = [
@@ -212,6 +253,21 @@ class RobotNodes:
                     rows=strips,
                     colours=np.concatenate([colours[~is_link] for colours in colours_of_robots]),
                     poses=poses,
+                    widths=np.tile(np.linspace(1.0, TAPERED, counts.strip), len(self._bases)),
+                )
+            )
+        if counts.marks:
+            straight = slice(strips.stop, None)
+            grey = np.tile(palette.MUTED.linear, (len(self._bases) * counts.marks, 1))
+            bars.append(
+                Bars(
+                    scene,
+                    "/straight",
+                    mesh=meshes.part("blade"),
+                    rows=straight,
+                    colours=grey,
+                    poses=poses,
+                    widths=GHOST,
                 )
             )
         return bars
@@ -269,7 +325,7 @@ class RobotNodes:
     def hide(self, hidden: bool) -> None:
         """Hide all moving nodes except the forces, or show them again."""
         for node in (
-            *(bars.node for bars in self._bars),
+            *self._solids,
             self._parts,
             self.grips,
             self._traces,

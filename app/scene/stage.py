@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
+from onpath.app.scene.ground import FADING, KEY_LIGHT, RADIUS, painted_ground
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.app.scene.tones import LIGHT, Tones
 from onpath.app.viser_adapter.frame_channel import update_node
+from onpath.app.viser_adapter.images import add_png
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.arrays import Array
@@ -25,10 +27,14 @@ if TYPE_CHECKING:
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.8
 """Aspect ratio below which the panel covers a window's lower part; see assets/page/portrait.js."""
-GROUND = 1.6
-"""Radius of the visible ground, up to the horizon [m]."""
+DOWN = np.array([0.0, 1.0, 0.0, 0.0])
+"""Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
-TITLE, AIM = (0.0, 0.036), (0.047, 0.026)
+HIGHER = 0.3
+"""How much higher than the middle the robots are, as a share of half of the room that is left."""
+TEXT = 0.022
+"""Usual height of text in the scene [m]."""
+TITLE, AIM = (0.0, 0.03), (0.037, 0.022)
 """Lines above a robot: offset below the title's position, and height, [m]."""
 
 
@@ -68,7 +74,9 @@ class Stage:
         sheet: low and high corner (x, z), and y, of the sheet for a freehand stroke.
         motors: joints that are drawn as motors.
         parts: fixed parts, with colours.
+        bodies: shapes of the moving bodies; empty: bars and joints are drawn.
         tones: colours that depend on the background.
+        plain: whether the scene is built for browsers that draw in software: with a painted shadow.
     """
 
     bases: dict[str, np.ndarray]
@@ -89,6 +97,8 @@ class Stage:
     motors: tuple[int, ...]
     parts: Callable[[], list[tuple[str, Mesh, palette.Colour]]]
     tones: Tones = LIGHT
+    bodies: tuple[Mesh, ...] = ()
+    plain: bool = False
 
     @property
     def origins(self) -> np.ndarray:
@@ -162,6 +172,7 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
     aside = (insets.left - insets.right) / width * tan_x * distance
     above = (insets.bottom - insets.top) / height * tan_y * distance
+    above += HIGHER * max(tan_y * free_y * (distance - reach_z) - reach_y, 0.0)
     target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)
 
@@ -175,15 +186,26 @@ def set_initial_camera(server: viser.ViserServer, stage: Stage) -> None:
 
 
 def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHandle]:
-    """Add floor, lights and the robots' bases to a client's scene; returns the bases."""
-    _add_lights(scene)
+    """Add ground, lights and the robots' bases to a client's scene; returns the bases."""
+    _add_lights(scene, casts_shadow=not stage.plain)
+    if stage.plain:
+        _add_painted_ground(scene, stage)
+    else:
+        _add_ground(scene, stage)
+    return [
+        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
+        for part, mesh, colour in stage.parts()
+    ]
+
+
+def _add_ground(scene: viser.SceneApi, stage: Stage) -> None:
     scene.add_grid(
         "/stage/floor",
         plane="xy",
         infinite_grid=True,
         fade_from="origin",
-        fade_distance=GROUND,
-        fade_strength=1.6,
+        fade_distance=RADIUS,
+        fade_strength=FADING,
         cell_size=0.05,
         section_size=0.2,
         cell_color=stage.tones.cells.rgb,
@@ -193,13 +215,17 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHa
         shadow_opacity=0.5,
         position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],
     )
-    return [
-        add_copies(scene, f"/stage/{part}", mesh, stage.origins, colour)
-        for part, mesh, colour in stage.parts()
-    ]
 
 
-def _add_lights(scene: viser.SceneApi) -> None:
+def _add_painted_ground(scene: viser.SceneApi, stage: Stage) -> None:
+    solids = tuple(mesh for _, mesh, _ in stage.parts())
+    origins = tuple(map(tuple, stage.origins.tolist()))
+    picture = painted_ground(solids, origins, stage.floor, stage.tones.floor)
+    middle = stage.origins.mean(0) + [0.0, 0.0, stage.floor]
+    add_png(scene, "/stage/floor", picture, (2 * RADIUS, 2 * RADIUS), middle, DOWN)
+
+
+def _add_lights(scene: viser.SceneApi, casts_shadow: bool) -> None:
     """A studio: one light that casts shadows, from the left above, a soft one, one from behind."""
     scene.configure_environment_map(None)
     scene.configure_default_lights(enabled=False)
@@ -207,7 +233,7 @@ def _add_lights(scene: viser.SceneApi) -> None:
         "/stage/sky", sky_color=(255, 255, 255), ground_color=(205, 200, 196), intensity=2.2
     )
     scene.add_light_directional(
-        "/stage/key", intensity=2.9, position=(-0.9, -0.7, 1.25), cast_shadow=True
+        "/stage/key", intensity=2.9, position=KEY_LIGHT, cast_shadow=casts_shadow
     )
     scene.add_light_directional("/stage/rim", intensity=0.8, position=(0.6, 0.8, 0.5))
 
@@ -217,7 +243,7 @@ def add_text(
     name: str,
     text: str,
     position: np.ndarray,
-    size: float = 0.026,
+    size: float = TEXT,
     below: float = 0.0,
 ) -> viser.LabelHandle:
     """Add text of height `size`, `below` lower than a position, [m]."""
@@ -239,7 +265,7 @@ class ChangingText:
         scene: viser.SceneApi,
         name: str,
         position: np.ndarray,
-        size: float = 0.026,
+        size: float = TEXT,
         below: float = 0.0,
     ) -> None:
         self.label = add_text(scene, name, "", position, size, below)

@@ -9,6 +9,7 @@ import numpy as np
 
 from onpath.app.common import palette
 from onpath.app.scene import meshes
+from onpath.app.scene.body_meshes import BodyMeshes, body_meshes
 from onpath.app.scene.plane_picture import zone_picture
 from onpath.app.scene.pointer_projection import DragPlane
 from onpath.app.scene.stage import Stage
@@ -20,9 +21,9 @@ from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.robots import Robot
 
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
-LARGEST_PATH = 0.1
+LARGEST_PATH = 0.075
 """Usual extent of paths from their centre, for which the view has room [m]."""
-ASIDE, ABOVE, BELOW = 0.045, 0.11, 0.05
+ASIDE, ABOVE, BELOW = 0.03, 0.095, 0.05
 """Margins beside the bars, above them for the title, and between them and the floor [m]."""
 THIN = 0.03
 """Half of the depth of robots in the vertical plane [m]."""
@@ -31,13 +32,14 @@ Parts = list[tuple[str, meshes.Mesh, palette.Colour]]
 
 
 @lru_cache(maxsize=64)
-def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
-    """The stage of a robot, with the colours of a light or of a dark scene."""
+def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
+    """The stage of a robot, with the colours of a light or of a dark scene; see `Stage.plain`."""
     drawing = robot.drawing
     low, high = (np.array(corner) for corner in drawing.box or _box(robot))
-    floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02)
+    shapes = None if robot.chain is None else body_meshes(robot.chain)
+    floor = min(-meshes.FLOOR_DEPTH, float(low[2]) + 0.02) if shapes is None else shapes.floor
     middle = float(low[0] + high[0]) / 2
-    apart = float(high[0] - low[0]) + 0.05 if drawing.apart is None else drawing.apart
+    apart = float(high[0] - low[0]) if drawing.apart is None else drawing.apart
     plane = _path_plane(robot)
     pulls = {IN_PATH_PLANE: plane}
     if robot.system.p > 2 and plane.normal[:2].any():
@@ -54,14 +56,16 @@ def stage_of(robot: Robot, tones: Tones = LIGHT) -> Stage:
         reach=robot.reach,
         axes=_axes(robot),
         zone=lambda: zone_picture(stage_of(robot), robot),
-        title=np.array(drawing.title or (middle, 0.0, high[2] - 0.033)),
+        title=np.array(drawing.title or (middle, 0.0, high[2] - 0.025)),
         note=np.array(drawing.note or (middle, 0.0, floor + 0.06)),
         force_scale=drawing.force_scale,
         sheet=drawing.sheet
         or ((low[0] + 0.01, floor - 0.01), (high[0] - 0.01, high[2] - 0.1), -0.06),
         motors=drawing.motors,
-        parts=lambda: _parts(drawing, floor, tones),
+        parts=lambda: _parts(drawing, floor, tones, shapes),
         tones=tones,
+        bodies=() if shapes is None else shapes.moving,
+        plain=plain,
     )
 
 
@@ -92,13 +96,19 @@ def _box(robot: Robot) -> tuple[Array, Array]:
     symbols = ca.SX.sym("q", robot.system.n)
     bars = ca.Function("bars", [symbols], [ca.densify(robot.skeleton(symbols, ca.SX(1))[0])])
     points = np.vstack([bars(joints).full().T for joints in q] + [np.zeros((1, 3))])
+    if robot.chain is not None:
+        points = np.vstack([points, body_meshes(robot.chain).corners(robot.chain, q)])
     low, high = points.min(axis=0), points.max(axis=0)
+    if robot.chain is not None:
+        return low - [ASIDE, ASIDE, BELOW], high + [ASIDE, ASIDE, ABOVE]
     low[2] = min(low[2] - BELOW, -meshes.FLOOR_DEPTH) - 0.02
     return low - [ASIDE, THIN, 0.0], high + [ASIDE, THIN, ABOVE]
 
 
-def _parts(drawing: Drawing, floor: float, tones: Tones) -> Parts:
+def _parts(drawing: Drawing, floor: float, tones: Tones, shapes: BodyMeshes | None) -> Parts:
     """Fixed parts that support the robot."""
+    if shapes is not None:
+        return [("base", shapes.base, tones.frame)]
     if drawing.base == "pedestal":
         return [
             ("pedestal", meshes.part("pedestal"), tones.frame),

@@ -29,12 +29,14 @@ class Arrival:
         kept: values by key; "" where there is none.
         address: the client's, as the limits on connections count it.
         place: of its page; see `app.viser_adapter.addresses`.
+        language: the supported language that its browser prefers.
     """
 
     client: viser.ClientHandle
     kept: Kept
     address: str
     place: str
+    language: str
 
 
 MOST, MOST_EACH = 300, 100  # clients that have not answered, in total and per address
@@ -69,7 +71,7 @@ class Arrivals:
         connection = connection_of(self._server, number)
         if connection is None:  # disconnected already
             return
-        address, place = connection.address, connection.place
+        address, place, language = connection.address, connection.place, connection.language
         surplus = self._silent.add(number, address)
         if surplus is not None:
             self._silent.discard(surplus)  # its page may connect again; then it is the newest
@@ -79,7 +81,9 @@ class Arrivals:
         def answered(key: str, value: str) -> None:
             kept[key] = value
             if len(kept) == len(self._keys) and self._silent.discard(number):
-                arrival = Arrival(client, kept, address, place)
+                arrival = Arrival(
+                    client=client, kept=kept, address=address, place=place, language=language
+                )
                 run_in_thread(self._server, partial(self._let_in, arrival))
 
         for key, by_class in self._keys.items():

@@ -8,27 +8,26 @@ from onpath.app.classroom.admission import Admission
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.page.page_context import ClassSeat
 from onpath.app.server.class_service import ClassService
-from onpath.app.viser_adapter.addresses import CLASS, class_address, class_code_in
+from onpath.app.viser_adapter.addresses import CLASS, class_code_in, class_link
 
 
 class ClassDirectory:
-    """One class for all pages, or several classes with an address each.
+    """Classes by their places; pages at other places are in no class.
 
     Args:
-        classrooms: one, or several that have addresses.
         serve: starts the service of a class at a place.
     """
 
     def __init__(
         self, classrooms: Iterable[Classroom], serve: Callable[[Classroom, str], ClassService]
     ) -> None:
-        self._rooms = {f"{CLASS}/{r.code}" if r.has_address else "": r for r in classrooms}
+        self._rooms = {f"{CLASS}/{room.code}": room for room in classrooms}
         self._services = {place: serve(room, place) for place, room in self._rooms.items()}
         self._door = Admission()
 
     def at(self, place: str) -> ClassService | None:
         """The service of the class at a place; None if there is none."""
-        return self._services.get("") or self._services.get(place)
+        return self._services.get(place)
 
     def stored_as(self, place: str) -> str:
         """The name in the database of the class at a place; empty if it has none."""
@@ -55,9 +54,11 @@ class ClassDirectory:
         codes = {room.code: room for room in self._rooms.values()}
         keys = {room.key: room for room in self._rooms.values()}
         return ClassSeat(
-            join=lambda typed, _: class_address(self._door.check_code(typed, codes, code)),
+            join=lambda typed, _: class_link(self._door.check_code(typed, codes, code), place),
             leave=lambda: None,
-            teach=lambda typed: class_address(keys[self._door.check_key(typed, keys, code)].code),
+            teach=lambda typed: class_link(
+                keys[self._door.check_key(typed, keys, code)].code, place
+            ),
             code=class_code_in(place),
         )
 

@@ -17,11 +17,12 @@ from onpath.app.page.page_context import ClassSeat
 from onpath.app.page.teacher_context import TeacherChoices, TeacherContext
 from onpath.app.server.followed_lab import FollowedLab
 from onpath.app.server.lab_registry import LabRegistry
+from onpath.app.server.site_address import is_local
 from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import storage_key
+from onpath.app.viser_adapter.addresses import class_address, storage_key
 from onpath.models.errors import CodedError
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
@@ -31,8 +32,8 @@ class ClassService:
     """A class of one server process.
 
     Args:
-        place: of its page, see `app.viser_adapter.addresses`; empty if the class has every page.
-        records: store students' data, which a teacher may delete, and a class with a place.
+        place: of its page, see `app.viser_adapter.addresses`.
+        records: store the class, and students' data, which a teacher may delete.
         keeper: stores a student's lab on joining.
         lost: called with the clients of the class when another process has taken it over.
     """
@@ -41,12 +42,12 @@ class ClassService:
         self,
         classroom: Classroom,
         sessions: LabRegistry,
-        place: str = "",
+        place: str,
         records: Records | None = None,
         keeper: WriteBehind | None = None,
         lost: Callable[[set[int]], None] = lambda _: None,
     ) -> None:
-        self._class, self._sessions, self._place = classroom, sessions, place
+        self._class, self._sessions = classroom, sessions
         self._records, self._keeper, self._lost = records, keeper, lost
         self._clients = set[int]()
         self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
@@ -54,7 +55,7 @@ class ClassService:
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._class_keeper: ClassKeeper | None = None
-        if place and records is not None:
+        if records is not None:
             self._class_keeper = ClassKeeper(classroom, records, self._give_up)
             self._class_keeper.rounds.start()
 
@@ -128,7 +129,7 @@ class ClassService:
             join=join,
             leave=lambda: self._class.leave(code),
             teach=teach,
-            code=self._class.code if self._place else "",
+            code=self._class.code,
         )
 
     def teaches(self, client: int) -> bool:
@@ -143,13 +144,14 @@ class ClassService:
         return FollowedLab(self._class, teacher[1], self._lab)
 
     def teaching(
-        self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None]
+        self, client: viser.ClientHandle, lab: Lab, reopen: Callable[[], None], site: str
     ) -> TeacherContext | None:
         """The teacher's page; None for other clients.
 
         Args:
             lab: the teacher's own lab, whose open lesson is closed.
             reopen: rebuilds the client's page.
+            site: address of the site for students.
         """
         teacher, followed = self._teachers.get(client.client_id), self.followed(client.client_id)
         if teacher is None or followed is None:
@@ -170,6 +172,8 @@ class ClassService:
         return TeacherContext(
             classroom=self._class,
             chosen=chosen,
+            address=f"{site}{class_address(self._class.code)}",
+            is_local=is_local(site),
             progress=lambda: lab.lessons.progress,
             why_still=followed.why_still,
             send_setup=send_setup,

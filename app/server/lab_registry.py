@@ -80,11 +80,12 @@ class LabRegistry:
     _making: threading.Lock = field(default_factory=threading.Lock)
     _throttle: Throttle = field(default_factory=Throttle)
 
-    def join(self, client: int, known: str | None) -> RegisteredLab:
+    def join(self, client: int, known: str | None, language: str = "") -> RegisteredLab:
         """The session of a new client.
 
         Args:
             known: the list of codes stored in the browser, as returned by `remembered`.
+            language: of a lab that has to be made; empty for the default.
         """
         codes = CODE.findall(known[:200]) if known else []
         refusal: NotKept | None = None
@@ -96,7 +97,7 @@ class LabRegistry:
                         return entry
         except NotKept as error:
             refusal = error
-        entry = self._made(new_code())
+        entry = self._made(new_code(), language=language)
         if refusal is not None:
             entry.stands_in = True
             lab = entry.scheduled.lab
@@ -194,7 +195,7 @@ class LabRegistry:
                 self._opening.discard(code)
                 self._lock.notify_all()
 
-    def _made(self, code: str, state: LabState | None = None) -> RegisteredLab:
+    def _made(self, code: str, state: LabState | None = None, language: str = "") -> RegisteredLab:
         """A new lab, or a restored one. Made one at a time, to spare the simulation.
 
         Raises:
@@ -202,6 +203,8 @@ class LabRegistry:
         """
         with self._making:
             lab = self.make()
+            if language:
+                lab.lessons.set_language(language)
             try:
                 if state is not None:
                     put_back(lab, state)

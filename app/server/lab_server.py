@@ -6,7 +6,7 @@ import logging
 import signal
 import time
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -19,6 +19,7 @@ from onpath.app.common.access_codes import normalised
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
+from onpath.app.exports import path_upload
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.build_queue import BuildQueue, one_at_a_time
@@ -33,12 +34,15 @@ from onpath.app.server.arrivals import Arrival, Arrivals
 from onpath.app.server.built_in_course import built_in_course
 from onpath.app.server.class_directory import ClassDirectory
 from onpath.app.server.class_service import TEACHER_KEY, ClassService
+from onpath.app.server.heap import limit_heap
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.page_data import PageData
+from onpath.app.server.robot_shapes import prepare_shapes
+from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.tab_visibility import TabVisibilities
-from onpath.app.server.warm_up import warm_up
+from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
@@ -46,19 +50,29 @@ from onpath.app.storage.expiry import Expiry, Retention
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
-from onpath.app.viser_adapter.addresses import storage_key
+from onpath.app.viser_adapter.addresses import class_address, storage_key
 from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.data_channel import DataChannel
+from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.problems import LessonError
-from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.models.paths.path_design import PathDesign
+from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 log = logging.getLogger(__name__)
+SITE_KEY = "site"  # where the browser has opened the site; see assets/page/address.js
 DARK_KEY = "dark"  # whether the browser prefers dark pages; see assets/page/dark.js
+QUALITY_KEY = "quality"  # whether it draws in software; see assets/page/quality.js
 STORAGE_KEY = "onpath_sessions"
-ASKED = {STORAGE_KEY: True, TEACHER_KEY: True, DARK_KEY: False}  # see `Arrivals`
+ASKED = {  # see `Arrivals`
+    STORAGE_KEY: True,
+    TEACHER_KEY: True,
+    DARK_KEY: False,
+    QUALITY_KEY: False,
+    SITE_KEY: False,
+}
 MOST_CLIENTS = 64
 ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
@@ -73,11 +87,13 @@ class LabServer:
         store: compiles and keeps the loops.
         course: the lessons; the built-in ones if None.
         records: where labs are stored; None stores nothing.
-        classrooms: the classes that students may join: one, or several with addresses.
+        classrooms: the classes that students may join.
         most_clients: maximum number of clients; others wait. A teacher is always admitted.
         retention: how long labs are kept, and how many; defaults to that of the command line.
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
+        robot: with which a new lab begins.
+        path: the path of new labs; see `new_lab`.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -96,10 +112,14 @@ class LabServer:
         retention: Retention | None = None,
         hang_seconds: float = 0.0,
         privacy_url: str = "",
+        robot: RobotEntry = FIVE_BAR,
+        path: PathDesign | None = None,
         **listening: Any,
     ) -> None:
+        listening.setdefault("limits", Limits(max_upload_bytes=2 * path_upload.MOST_BYTES))
         self._store, self._privacy_url = store, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
+        self._origins: Sequence[str] = listening.get("allowed_origins", ())
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
         self.simulation = SimulationThread()
@@ -117,7 +137,7 @@ class LabServer:
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons))
+        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, robot, path))
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
@@ -125,10 +145,11 @@ class LabServer:
         self._classes = ClassDirectory(classrooms, self._class_service)
         self._places = dict[int, str]()
         self._views = dict[int, LabFeed]()
-        self._dark = set[int]()  # clients that prefer dark pages
+        self._seen = dict[int, str]()  # where clients have opened the site
+        self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
         self._newcomers = BuildQueue(self.server)
         self._tabs = TabVisibilities(self.server)
-        set_initial_camera(self.server, stage_of(FIVE_BAR.make(FIVE_BAR.parameters())))
+        set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
         self.server.on_client_disconnect(self._disconnected)
         self._start()
@@ -162,6 +183,15 @@ class LabServer:
         shown = f"[{shown}]" if ":" in shown else shown
         return f"http://{shown}:{self.server.get_port()}"
 
+    @property
+    def site(self) -> str:
+        """The address at which other devices open the lab, as far as the server knows."""
+        if self._origins:
+            return self._origins[0]
+        if self._socket is not None:
+            return ""
+        return reachable_site(self.server.get_host(), self.server.get_port())
+
     def stop(self) -> None:
         """Stop the server and all its threads."""
         self._watchdog.stop()
@@ -173,6 +203,7 @@ class LabServer:
         for view in list(self._views.values()):
             view.close()
         exports.process.stop()
+        path_upload.process.stop()
         self.server.stop()
         if self._expiry is not None:
             self._expiry.stop()
@@ -215,18 +246,18 @@ class LabServer:
             disconnect(self.server, {number})
             self._disconnected(client)
             return
-        if kept[DARK_KEY] == "yes":
-            self._dark.add(number)
+        self._seen[number] = kept[SITE_KEY]
+        self._looks[number] = kept[DARK_KEY] == "yes", kept[QUALITY_KEY] == "plain"
         teaches = service is not None and service.teaches(number)
-        enter = partial(self._entered, client, kept[STORAGE_KEY])
+        enter = partial(self._entered, client, kept[STORAGE_KEY], arrival.language)
         self._room.admit(client, enter, arrival.address, always=teaches)
         if number not in self.server.get_clients():
             self._disconnected(client)
 
-    def _entered(self, client: viser.ClientHandle, known: str | None) -> None:
+    def _entered(self, client: viser.ClientHandle, known: str | None, language: str) -> None:
         """Give a newly admitted client its session, if it is still connected."""
         if client.client_id in self.server.get_clients():
-            entry = self.sessions.join(client.client_id, known)
+            entry = self.sessions.join(client.client_id, known, language)
             self._newcomers.submit(client, partial(self._show, client, entry, known))
 
     def _show(self, client: viser.ClientHandle, entry: RegisteredLab, known: str | None) -> None:
@@ -260,9 +291,11 @@ class LabServer:
             if service
             else self._classes.seat_elsewhere(place, code)
         )
-        teaching = service.teaching(client, lab, reopen) if service else None
+        site = site_for_students(self._seen.get(number, ""), self.site)
+        teaching = service.teaching(client, lab, reopen, site) if service else None
         keeps = self._records is not None and not self._records.warning
         data = PageData(self._channel, lab)
+        dark, plain = self._looks.get(number, (False, False))
         context = PageContext(
             code=code,
             post=lab.post,
@@ -270,7 +303,8 @@ class LabServer:
             keep_days=self._retention.days if keeps else 0,
             enter=partial(self._enter, client),
             seat=seat,
-            dark=number in self._dark,
+            dark=dark,
+            plain=plain,
             privacy_url=self._privacy_url,
             ticket=data.ticket,
         )
@@ -321,7 +355,8 @@ class LabServer:
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._tabs.forget(client.client_id)
-        self._dark.discard(client.client_id)
+        self._seen.pop(client.client_id, None)
+        self._looks.pop(client.client_id, None)
         self.sessions.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
             service.gone(client.client_id)
@@ -340,6 +375,8 @@ def serve(
     database: str | None = None,
     open_browser: bool = False,
     classrooms: Sequence[Classroom] = (),
+    robot: RobotEntry = FIVE_BAR,
+    ready: Callable[[str], None] = lambda _: None,
     **listening: Any,
 ) -> None:
     """Serve the lab until Ctrl-C or SIGTERM.
@@ -348,13 +385,15 @@ def serve(
         lessons: folder of the user's own lessons.
         database: URL of the database of labs; defaults to a file of the user's. If it is given, or
             if the server is behind a proxy, it must be usable; otherwise memory may replace it.
-        classrooms: see `LabServer`.
+        classrooms, robot: see `LabServer`. Loops of a robot from a file are compiled first.
+        ready: called when browsers may come, with the address at which other devices open the lab.
         listening: further arguments of `LabServer`.
 
     Raises:
         LessonError: a lesson has errors.
         NotKept: the database cannot be used.
     """
+    limit_heap()
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
@@ -363,6 +402,9 @@ def serve(
     if records.warning:
         log.warning("%s", records.warning)
     store = LoopCache()
+    if robot.source is not None:
+        compile_loops(store, robot)
+        prepare_shapes(robot.source.chain)
     lab = LabServer(
         host,
         port,
@@ -370,6 +412,7 @@ def serve(
         course=course,
         records=records,
         classrooms=classrooms,
+        robot=robot,
         **listening,
     )
     try:
@@ -377,8 +420,10 @@ def serve(
             signal.signal(number, _end)
         warm_up(store, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
+        ready(lab.site)
         if open_browser:
-            webbrowser.open(lab.address)
+            first = class_address(classrooms[0].code) if classrooms else ""
+            webbrowser.open(f"{lab.address}{first}")
         while True:  # a signal may go to another thread and then does not wake this one
             time.sleep(LOOK)
     except KeyboardInterrupt:

@@ -8,14 +8,27 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
-from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.paths.path_design import PathDesign
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 
 
-def new_lab(store: LoopCache, course: Course) -> Lab:
-    """A lab whose robots all start slowly; lessons and files keep the usual speed."""
-    lab = Lab(store, course=course)
+def new_lab(
+    store: LoopCache, course: Course, robot: RobotEntry = FIVE_BAR, path: PathDesign | None = None
+) -> Lab:
+    """A lab whose robots all start slowly; lessons and files keep the usual speed.
+
+    Args:
+        robot: the robot at first.
+        path: the path at first, which this robot must be able to follow; None: the robot's circle.
+    """
+    lab = Lab(store, robot, course)
     session = lab.session
     for name, entry in ROBOTS.items():
         session.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))
     session.set_parameters(session.earlier.pop(session.entry.name).parameters)
+    if path is not None:
+        session.editor.commit(path)
+        session.editor.settle()
+        session.editor.forget_edits()
+        session.reset()
     return lab

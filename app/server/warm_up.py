@@ -5,6 +5,7 @@ Anything that is needed earlier is read or imported where it is needed.
 
 from __future__ import annotations
 
+import logging
 import mimetypes
 import time
 from collections.abc import Callable
@@ -21,7 +22,9 @@ from onpath.app.lab.session import Session
 from onpath.assets.messages import languages
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
+from onpath.models.systems.robots import RobotEntry
 
+log = logging.getLogger(__name__)
 LATER = (
     "onpath.app.scene.strokes.sketch_board",
     "scipy.interpolate",
@@ -66,6 +69,18 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()
     return thread
+
+
+def compile_loops(store: LoopCache, entry: RobotEntry) -> None:
+    """Compile the loops that a new lab with a robot needs, before anybody waits for them.
+
+    Until its loop is compiled, a robot with many joints would take much of each frame.
+    """
+    runs = Session(store, entry).runs.values()
+    loops = [(run.robot, replace(run.kind, free=free)) for run in runs for free in (True, False)]
+    for i, (robot, kind) in enumerate(loops, 1):
+        log.info("compiling %s: %d of %d", entry.label, i, len(loops))
+        store.make(robot, kind)
 
 
 def _succeeds(part: Callable[[], None]) -> bool:

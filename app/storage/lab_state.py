@@ -11,7 +11,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.former import with_paths_of_today
 from onpath.app.lab.setups.setup import Setup
-from onpath.app.lab.setups.stored import from_data, to_data, without_absent_laws
+from onpath.app.lab.setups.stored import (
+    from_data,
+    to_data,
+    without_absent_laws,
+    without_absent_robots,
+)
 from onpath.lessons.progress import Progress, read_progress
 
 SAVE_INTERVAL = 60  # frames between checks for changes
@@ -84,10 +89,11 @@ def put_back(lab: Lab, state: LabState) -> None:
     Raises:
         ValueError: the state is invalid; the lab is then unchanged.
     """
-    data, absent = without_absent_laws(state.get("setup"))
+    data, gone = without_absent_robots(state.get("setup"))
+    data, absent = without_absent_laws(data)
     setup, refused = with_paths_of_today(from_data(data))
     progress = read_progress(state.get("lessons"))
-    before = without_absent_laws(state.get("before"))[0]
+    before = without_absent_laws(without_absent_robots(state.get("before"))[0])[0]
     earlier = with_paths_of_today(from_data(before))[0] if before else None
     lab.set_up(setup)
     lab.lessons.resume(progress, earlier, lab)
@@ -97,6 +103,8 @@ def put_back(lab: Lab, state: LabState) -> None:
         messages.append(lab.words("say.path_of_then", reasons=reasons))
     if absent:
         messages.append(lab.words("say.laws_of_then", names=", ".join(absent)))
+    if gone:
+        messages.append(lab.words("say.robots_of_then", names=", ".join(gone)))
     if messages:
         lab.show_message(" ".join(messages), "warning")
 

@@ -33,6 +33,12 @@ def class_address(code: str) -> str:
     return f"/{CLASS}/{code}/"
 
 
+def class_link(code: str, place: str) -> str:
+    """The address of a class's page, relative to the page at a place."""
+    up = "../.." if place else "."
+    return f"{up}{class_address(code)}"
+
+
 def place_of(path: str) -> str:
     """The place in a path, "c/CODE" or "l/NAME"; empty if there is none."""
     found = _PLACE.match(path)

@@ -19,6 +19,7 @@ from websockets.http11 import Request
 
 from onpath.app.common.allowance import Allowance
 from onpath.app.viser_adapter.message_filter import Limits
+from onpath.assets.messages import preferred
 
 _log = logging.getLogger("websockets.server")
 
@@ -202,6 +203,12 @@ class CountedConnection(ServerConnection):
         self.logger = self.protocol.logger = logging.LoggerAdapter(_log, {})  # holds no connection
         self._connections = connections
         self.peer = self.address = self.place = ""
+
+    @property
+    def language(self) -> str:
+        """The supported language that the browser prefers."""
+        accepted = self.request.headers.get_all("Accept-Language") if self.request else []
+        return preferred(",".join(accepted))
 
     @override
     def connection_made(self, transport: asyncio.BaseTransport) -> None:

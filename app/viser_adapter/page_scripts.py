@@ -12,18 +12,26 @@ from onpath.assets import asset_path
 from onpath.assets.messages import catalogue, languages
 
 ELEMENTS = {".js": b"script", ".css": b"style"}
+SAID = (
+    *("connect.silent", "connect.lost", "connect.picture_lost"),
+    *("connect.no_webgl", "connect.no_webgl_why", "connect.course", "connect.course_link"),
+)
+"""Messages of browser_words.js."""
 TITLES = b"<title>Viser</title>", b"<title>OnPath</title>"
 
 
-def add_scripts(response: Response | None, more: bytes = b"") -> Response | None:
+def add_scripts(
+    response: Response | None, course_url: str = "", more: bytes = b""
+) -> Response | None:
     """Insert our scripts into a response if it is viser's page; leave all others unchanged.
 
     Args:
+        course_url: see `words`.
         more: elements to insert after those of assets/page.
     """
     if response and response.headers.get("Content-Type", "").startswith("text/html"):
         packed = response.headers.get("Content-Encoding") == "gzip"
-        response.body = _page(bytes(response.body), packed, more)
+        response.body = _page(bytes(response.body), packed, course_url, more)
         del response.headers["Content-Length"]
         response.headers["Content-Length"] = str(len(response.body))
     return response
@@ -39,7 +47,7 @@ def with_scripts(page: bytes, scripts: bytes) -> bytes:
 
 
 @cache
-def our_scripts() -> bytes:
+def our_scripts(course_url: str = "") -> bytes:
     """The words that the scripts need before the lab sends any, then all files of assets/page.
 
     Each is a <script> or <style> element; the files are in alphabetical order.
@@ -47,19 +55,27 @@ def our_scripts() -> bytes:
     files = sorted(file for file in asset_path("page").iterdir() if file.suffix in ELEMENTS)
     elements = [(ELEMENTS[file.suffix], file.read_bytes()) for file in files]
     parts = [b"<%b>\n%b</%b>\n" % (name, text, name) for name, text in elements]
-    return b"".join([words(), *parts])
+    return b"".join([words(course_url), *parts])
 
 
-def words() -> bytes:
-    """The message of connection.js in every language, as an element with JSON."""
-    messages = {code: catalogue(code).text("connect.silent", {}) for code in languages()}
+def words(course_url: str = "") -> bytes:
+    """The messages of browser_words.js in every language, as an element with JSON.
+
+    Args:
+        course_url: address of the course as pages without a server; empty if there is none.
+    """
+    messages = {
+        code: {key.partition(".")[2]: catalogue(code).text(key, {}) for key in SAID}
+        | {"course_url": course_url}
+        for code in languages()
+    }
     text = msgspec.json.encode(messages).replace(b"<", b"\\u003c")
     return b'<script id="op-words" type="application/json">%b</script>\n' % text
 
 
 @lru_cache(maxsize=4)
-def _page(body: bytes, packed: bool, more: bytes) -> bytes:
+def _page(body: bytes, packed: bool, course_url: str, more: bytes) -> bytes:
     """The page with our scripts. Cached, because viser serves the same bytes every time."""
     page = gzip.decompress(body) if packed else body
-    page = with_scripts(page.replace(*TITLES, 1), our_scripts() + more)
+    page = with_scripts(page.replace(*TITLES, 1), our_scripts(course_url) + more)
     return gzip.compress(page, mtime=0) if packed else page

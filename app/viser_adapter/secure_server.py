@@ -71,6 +71,7 @@ def make_server(
     trouble: Callable[[], str] = str,
     elsewhere: Callable[[str], bool] = lambda _: False,
     channel: DataChannel | None = None,
+    course_url: str = "",
     scripts: bytes = b"",
     verbose: bool = False,
 ) -> viser.ViserServer:
@@ -86,6 +87,7 @@ def make_server(
         health, trouble: see `RequestFilter`.
         elsewhere: whether another process serves a place; a websocket there is answered 502.
         channel: the data channels of the pages, if they have any.
+        course_url: see `page_scripts.words`.
         scripts: elements for the head of the page; see `add_scripts`.
 
     Raises:
@@ -112,6 +114,7 @@ def make_server(
         to_place=to_place,
         elsewhere=elsewhere,
         channel=DataChannel() if channel is None else channel,
+        course_url=course_url,
         scripts=scripts,
     ):
         server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
@@ -222,6 +225,7 @@ def _guarded_serve(
     to_place: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
     channel: DataChannel,
+    course_url: str,
     scripts: bytes,
 ) -> Iterator[None]:
     """Install our checks in the one call of `websockets.serve` that viser makes.
@@ -243,7 +247,7 @@ def _guarded_serve(
                 return connection.respond(*answer)
             if response := to_place(connection, request):
                 return response
-            return add_scripts(process_request(connection, request), scripts)
+            return add_scripts(process_request(connection, request), course_url, scripts)
 
         options |= _options(limits)
         finish = partial(_finish, requests)

@@ -1,27 +1,27 @@
-// Tells users who wait in vain that the lab does not answer, in the browser's language, since the page
-// has no texts yet. viser's worker reports when it has connected, and when the connection has ended.
+// Tells users who wait in vain that the lab does not answer, and at once when a connection is lost, in the
+// language of the page, or the browser's while the page has no texts yet. viser's worker reports when it
+// has connected, and when the connection has ended.
 (() => {
   "use strict";
 
-  const PATIENCE = 10000;  // [ms]
+  const PATIENCE = 10000;  // [ms] until the first connection
+  const MOVES = 1500;  // [ms], within which the page of a lab that moves to another process reconnects
 
-  const words = JSON.parse(document.getElementById("op-words").textContent);
   const box = document.createElement("p");
-  box.id = "op-silent";
+  box.className = "op-notice";
   box.setAttribute("role", "alert");
-  let waiting = setTimeout(tell, PATIENCE);
+  let waiting = setTimeout(tell, PATIENCE, "silent");
 
-  function tell() {
-    const own = navigator.languages.map((language) => language.split("-")[0]);
-    box.lang = own.find((language) => language in words) ?? "en";
+  function tell(what) {
+    box.lang = ownWords.language();
     document.body.append(box);
-    box.textContent = words[box.lang];
+    box.textContent = ownWords.text()[what];
   }
 
   function hear({ data }) {
     if (data?.type !== "connected" && data?.type !== "closed") return;
     if (data.type === "closed") {  // repeated at every attempt
-      waiting ||= setTimeout(tell, PATIENCE);
+      waiting ||= setTimeout(tell, MOVES, "lost");
       return;
     }
     clearTimeout(waiting);

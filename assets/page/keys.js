@@ -18,6 +18,7 @@
     ['input[type="radio"]', [...ARROWS, ...PRESS]],
     ['button, summary, [role="button"], input[type="checkbox"]', PRESS],
   ];
+  const TYPED = "input, textarea, select, [contenteditable]";
   const TICKED = 'input[type="checkbox"], input[type="radio"]';
 
   // In a box of several lines, Enter presses the button below it, and Shift+Enter begins a new line. viser
@@ -30,6 +31,13 @@
     if (below !== undefined) setTimeout(() => below.click(), TYPED_GOES);
   }
 
+  // A letter of another alphabet counts as the Latin one on its key, since shortcuts are Latin letters.
+  function latin(event) {
+    const other = event.key.length === 1 && /\p{L}/u.test(event.key) && !/[a-z]/i.test(event.key);
+    const found = other && !event.altKey ? /^Key([A-Z])$/.exec(event.code) : null;
+    return found ? found[1].toLowerCase() : event.key;
+  }
+
   function isOwn(control, key) {
     const found = OWN.find(([selector]) => control.matches(selector));
     return found !== undefined && found[1].includes(key);
@@ -37,9 +45,11 @@
 
   // viser's hotkeys treat every <input> as a text field. A checkbox has no use for letters, so they are
   // dispatched again as if nothing had the focus.
-  function tellAgain(event) {
+  function tellAgain(event, key = event.key) {
     event.stopImmediatePropagation();
-    const again = new KeyboardEvent(event.type, event);
+    const { type, code, repeat, ctrlKey, metaKey, altKey, shiftKey } = event;
+    const init = { key, code, repeat, ctrlKey, metaKey, altKey, shiftKey, bubbles: true, cancelable: true };
+    const again = new KeyboardEvent(type, init);
     if (!document.body.dispatchEvent(again)) event.preventDefault();
   }
 
@@ -51,7 +61,8 @@
       event.preventDefault();
       if (!event.repeat) pressBelow(control);
     } else if (isOwn(control, event.key)) event.stopImmediatePropagation();
-    else if (control.matches(TICKED) && event.key !== "Tab") tellAgain(event);
+    else if (control.matches(TICKED) && event.key !== "Tab") tellAgain(event, latin(event));
+    else if (latin(event) !== event.key && !control.matches(TYPED)) tellAgain(event, latin(event));
   });
 
   document.addEventListener("keydown", (event) => {

@@ -5,6 +5,7 @@
 
   const AGAIN = 8000;  // [ms], between announcements that differ only in numbers
   const REST = 1500;  // [ms], between any two
+  const STAYS = 8000, PER_LETTER = 60;  // [ms] that a notice stays, unless it is pointed at
 
   const upright = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)");
   const text = document.createElement("span");
@@ -26,7 +27,7 @@
   region.id = "op-voice";
   region.setAttribute("aria-live", "polite");
 
-  let spoken = "", wanted = "", spokenAt = -AGAIN, waiting = 0, said = "", told = "0";
+  let spoken = "", wanted = "", spokenAt = -AGAIN, waiting = 0, leaving = 0, said = "", told = "0";
 
   function sense(said) {
     return said.replace(/\d+/g, "");
@@ -50,7 +51,17 @@
     box.dataset.level = level;
     box.dataset.place = level === "replay" && upright.matches ? "top" : "bottom";
     box.hidden = said === "";
+    clearTimeout(leaving);
+    if (level === "info" || level === "warning") leave(STAYS + PER_LETTER * said.length);
     boxesOverScene.place();
+  }
+
+  // Errors stay until they are over; other notices leave by themselves.
+  function leave(after) {
+    leaving = setTimeout(() => {
+      if (box.matches(":hover, :focus-within")) leave(STAYS);
+      else box.hidden = true;
+    }, after);
   }
 
   function look() {

@@ -13,6 +13,13 @@
   const NARROW = 0.8;
   const upright = ask.call(window, `${TELEPHONE}, ${PORTRAIT}`);
 
+  // The lab asks for the entry whenever the scene's shape changes; see UPRIGHT_KEY in app/page/page.py.
+  function keep() {
+    try {
+      localStorage.setItem("viser-user:upright", upright.matches ? "yes" : "no");
+    } catch {}  // of a browser without storage, the lab knows the shape of the scene
+  }
+
   function isNarrow() {
     const scene = document.querySelector("canvas[data-engine]");
     return upright.matches || scene !== null && scene.clientWidth < NARROW * scene.clientHeight;
@@ -36,5 +43,9 @@
   }
 
   new MutationObserver(look).observe(document, { childList: true, subtree: true });
-  upright.addEventListener("change", look);
+  upright.addEventListener("change", () => {
+    keep();
+    look();
+  });
+  keep();
 })();

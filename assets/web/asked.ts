@@ -3,8 +3,8 @@
 import { made } from "./controls"
 import type { BlockData, PageData } from "./lesson_data"
 import { said } from "./words"
-import type { Notes } from "./notes"
 import { accepted } from "./own"
+import type { Student } from "./student"
 
 /** The order of the options for a student, which is always the same. */
 export function ordered(list: Element, student: string, question: string): void {
@@ -25,9 +25,8 @@ export function judged(page: PageData, element: Element, right: number, own: num
 }
 
 /** Make a question answerable. */
-export function ask(
-    page: PageData, element: HTMLElement, block: BlockData, key: string, notes: Notes, changed: () => void,
-): void {
+export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): void {
+    const { notes } = student
     const told = element.querySelector<HTMLElement>(".verdict")!
     const after = element.querySelector<HTMLDetailsElement>(".after")!
     after.hidden = true
@@ -57,17 +56,14 @@ export function ask(
         if (block.kind === "quiz") {
             const chosen = element.querySelector<HTMLInputElement>("input:checked")
             if (!chosen) return
-            notes.quiz[key] = Number(chosen.value)
-            notes.first[key] ??= notes.quiz[key]
+            student.chooses(key, Number(chosen.value))
         } else if (block.kind === "number") {
             const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
             if (!Number.isFinite(given)) return void (told.textContent = said(page, "lesson.no_number"))
-            notes.numbers[key] = given
-            notes.first[key] ??= given
-        } else if (input.value.trim()) notes.written[key] = input.value.trim().slice(0, 1000)
+            student.gives(key, given)
+        } else if (input.value.trim()) student.writes(key, input.value.trim().slice(0, 1000))
         else return
         show()
-        changed()
     })
 }
 

@@ -38,6 +38,10 @@ export function notes(simulation: Simulation): string {
         const time = written(data, side.ticks * data.dt, 1)
         return reason ? said(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
     })
+    if (followed.doubts.length) {
+        const reasons = followed.doubts.map(key => said(data, key)).join("; ")
+        lines.push(said(data, "say.ambiguous", { reasons }))
+    }
     if (followed.fault) {
         const length = written(data, followed.fault.length ?? 0, 0)
         const reasons = followed.fault.reasons.map(key => said(data, key, { length })).join("; ")

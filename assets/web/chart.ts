@@ -29,7 +29,7 @@ export interface Axes {
     bottom: number
     top: number
     /** A value with a name, such as the distance from the centre of a circle to it. */
-    mark?: { value: number; label: string }
+    mark?: { value: number; label: string } | undefined
 }
 
 const MARGIN = { left: 42, right: 14, top: 22, bottom: 24 }
@@ -115,7 +115,12 @@ export class Chart {
         if (this.hint) letters(ink, this.hint, (this.x(this.from) + this.x(this.until)) / 2, this.sheet.height / 2, tones().yours, tones().paper)
     }
 
-    private readonly way = ({ times, values }: Curve): Pixel[] => times.map((time, i) => [this.x(time), this.y(values[i]!)])
+    /** The visible part of a curve. */
+    private way({ times, values }: Curve): Pixel[] {
+        const [first, last] = [Math.max(firstAfter(times, this.from) - 1, 0), firstAfter(times, this.until) + 1]
+        return times.slice(first, last).map((time, i) => [this.x(time), this.y(values[first + i]!)])
+    }
+
     private shade(ink: CanvasRenderingContext2D): void {
         const { from, until, axes } = this
         ink.font = FONT
@@ -204,13 +209,14 @@ export class Chart {
         const { spans, lines, axes, from, until, texts } = this
         ink.textAlign = "center"
         spans.forEach((span, i) => {
-            const end = Math.min(spans[i + 1]?.from ?? Infinity, until)
+            const end = spans[i + 1]?.from ?? Infinity
+            if (span.from > until || end < from) return
             for (const line of lines) {
-                const first = firstAfter(line.times, Math.max(span.from, from)), last = firstAfter(line.times, end)
+                const first = firstAfter(line.times, span.from), last = firstAfter(line.times, end)
                 let peak = -1
                 for (let k = first; k < last; k++) if (peak < 0 || Math.abs(line.values[k]!) > Math.abs(line.values[peak]!)) peak = k
                 const value = line.values[peak]
-                if (value === undefined || Math.abs(value) < LEAST_PEAK * (axes.top - axes.bottom)) continue
+                if (value === undefined || line.times[peak]! < from || line.times[peak]! > until || Math.abs(value) < LEAST_PEAK * (axes.top - axes.bottom)) continue
                 const text = written(texts, value, Math.abs(value) < 100 ? 1 : 0)
                 const half = ink.measureText(text).width / 2 + 2
                 const x = this.x(line.times[peak]!), y = Math.max(this.y(value) - 12, MARGIN.top - 6)
@@ -291,6 +297,7 @@ export class Chart {
     private table(): HTMLElement {
         const { texts } = this
         const body = made("div", "wide")
+        body.tabIndex = 0 // so that keys scroll it
         const details = made("details", "table", made("summary", "", said(texts, "chart.table")), body)
         details.addEventListener("toggle", () => body.replaceChildren(...(details.open ? [this.rows()] : [])))
         return details

@@ -31,6 +31,8 @@ export interface SideText {
     /** Its colours: 0 is the left robot's, 1 the right one's. */
     side: 0 | 1
     title: string
+    /** A shorter title, for the lines of a chart. */
+    name: string
     text: string
     caption: string
 }

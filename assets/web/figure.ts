@@ -65,6 +65,12 @@ export class Figure {
         simulation.changed("state")
     }
 
+    /** Show on the robots what a symbol means; nothing if it is empty. */
+    light(symbol: string): void {
+        for (const picture of [...this.views, ...this.lenses]) picture.lit = symbol
+        this.engine.simulation.changed("state")
+    }
+
     /** Advance by a number of ticks, independently of the clock. */
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 

@@ -12,6 +12,8 @@ type Texts<Name extends string> = Record<Name, string>
 export interface SideData { law: number; side: 0 | 1 }
 
 export interface LawData extends Texts<"title" | "text"> {
+    /** Of the robot under this law in a lesson's texts. */
+    name?: string
     aim: "theta" | "theta_ref"
     byClock: boolean
     linear: boolean
@@ -20,6 +22,7 @@ export interface LawData extends Texts<"title" | "text"> {
 
 export interface PathData extends Texts<"label" | "kind" | "fit"> {
     closed: boolean
+    doubts: string[]
     points: Point[]
     table: number[]
     grid: number[]

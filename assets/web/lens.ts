@@ -3,12 +3,15 @@
 import { made, tell } from "./controls"
 import { shown, type Engine, type PathShape, type SideSample, type Vector } from "./engine"
 import { arrow, disc, letters, niceStep, Sheet, stroke, tones, type Pixel } from "./ink"
+import type { Point } from "./figure_data"
+import { drawShapes, shapesOf } from "./symbols"
 import { said, significant, written, type Texts } from "./words"
 
 const FACTORS = [1.5, 3, 6, 12, 20]
-const FITS = 0.7 // of the radius: what is to be seen is within
-const CLOSER = 0.5 // the same before the lens goes closer
+const FITS = 0.62 // of the radius: what is to be seen is within
+const CLOSER = 0.45 // the same before the lens goes closer
 const HIGHER = 0.92 // of the radius: the middle of what is to be seen is above the bar
+const LOWEST = 1.55 // of the radius: names are above the bar
 const PATIENCE = 900 // [ms] for which it could have gone closer
 const GLIDE = 120 // [ms], in which most of a change of scale is done
 const TRACE = 2 // [s]
@@ -22,6 +25,8 @@ type View = readonly [Vector, Vector]
 
 export class Lens {
     readonly element: HTMLElement
+    /** The symbol that is shown; may be empty. */
+    lit = ""
     /** Pixels of the picture around the lens for a metre, of which factors are multiples. */
     scale = 1000
     private readonly sheet: Sheet
@@ -39,6 +44,7 @@ export class Lens {
         const tone = engine.texts[side]!.side
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
         engine.on(() => (this.stale = true), ended)
+        this.read(shown(engine).sides[side]!)
     }
 
     draw(now = performance.now()): void {
@@ -67,6 +73,9 @@ export class Lens {
         ink.clip()
         this.grid(ink, middle, radius)
         this.things(ink, sample, pixel, radius)
+        if (this.lit) this.light(ink, sample, view, ([x, y]) => [
+            radius + (x - middle[0]) * this.drawn, HIGHER * radius - (y + middle[1]) * this.drawn,
+        ])
         this.bar(ink, radius)
         ink.restore()
         ink.lineWidth = 3
@@ -157,15 +166,27 @@ export class Lens {
             }
     }
 
+    /** Show what a symbol means, in the plane in which the lens looks. */
+    private light(ink: CanvasRenderingContext2D, sample: SideSample, [right, up]: View, pixel: (point: Point) => Point): void {
+        const { path } = this.engine
+        const flat = (point: Vector): Point => [dot(point, right), dot(point, up)]
+        const pushed = sample.tip.map((each, k) => each + FORCE * sample.force[k]! / this.drawn)
+        const seen = {
+            tip: flat(sample.tip), closest: flat(sample.closest), reference: sample.reference && flat(sample.reference),
+            pushed: flat(pushed), outline: (path.lines[0] ?? []).map(flat), closed: path.closed, arm: null,
+        }
+        drawShapes(ink, shapesOf(this.lit, seen), pixel, tones().selected)
+    }
+
     /** A name beside a point, on the side that the end-point is not on. */
     private name(ink: CanvasRenderingContext2D, text: string, at: Pixel, tip: Pixel, radius: number, colour: string): void {
         const { width } = ink.measureText(text)
         const half = (y: number) => Math.sqrt(Math.max(0, radius ** 2 - (Math.abs(y - radius) + 7) ** 2)) - 5
-        const fits = (x: number, y: number) => x >= radius - half(y) && x + width <= radius + half(y)
+        const fits = (x: number, y: number) => y < LOWEST * radius && x >= radius - half(y) && x + width <= radius + half(y)
         const away = at[1] > tip[1] ? 18 : -18
         const sides = at[0] < tip[0] ? [-13 - width, 13] : [13, -13 - width]
         const tried: Pixel[] = [...sides.map((x): Pixel => [at[0] + x, at[1]]), [at[0] - width / 2, at[1] + away], [radius - width / 2, at[1] + away]]
-        const [x, y] = tried.find(place => fits(...place)) ?? [radius - width / 2, at[1] - away]
+        const [x, y] = tried.find(place => fits(...place)) ?? [Math.min(Math.max(at[0], 0.7 * radius), 1.3 * radius) - width / 2, at[1] - away]
         ink.textAlign = "left"
         letters(ink, text, x, y, colour, tones().paper)
     }

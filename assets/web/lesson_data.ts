@@ -133,6 +133,8 @@ export interface StepData {
 export interface PageData {
     words: Record<string, string>
     lesson: string
+    /** What each symbol of the lesson means. */
+    symbols: Record<string, string>
     scorm?: "1.2" | "2004" | null
     figures: SiteFigure[]
     steps: StepData[]

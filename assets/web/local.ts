@@ -45,7 +45,7 @@ export class LocalEngine implements Engine {
         const { sides, data } = this.simulation
         return sides.map((each, i) => {
             const title = this.simulation.title(i)
-            return { side: each.data.side, title, text: each.does().text, caption: caption(each, data) }
+            return { side: each.data.side, title, name: each.does().name ?? title, text: each.does().text, caption: caption(each, data) }
         })
     }
 

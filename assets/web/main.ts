@@ -8,14 +8,15 @@ import type { FigureData } from "./figure_data"
 import { gradeOf } from "./grade"
 import { Kernels } from "./kernels"
 import { showLab } from "./lab"
-import { LessonPage } from "./lesson"
 import type { PageData } from "./lesson_data"
+import { Player } from "./player"
 import { said } from "./words"
 import { packed, unpacked } from "./packed"
 import { LocalProgress, type Tell } from "./progress"
 import { ScormProgress } from "./scorm"
 import { Simulation } from "./simulation"
 import { StartPage } from "./start"
+import { shapesOf } from "./symbols"
 
 async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
     place.replaceChildren() // the text for browsers without scripts
@@ -47,8 +48,8 @@ function showPage(page: PageData): void {
     }
     const local = new LocalProgress(tell)
     const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local
-    const site = page.lesson ? new LessonPage(page, progress) : new StartPage(page, local)
-    Object.assign(window, { site, judge, gradeOf, packed, unpacked }) // for tests
+    const site = page.lesson ? new Player(page, progress) : new StartPage(page, local)
+    Object.assign(window, { site, judge, gradeOf, packed, unpacked, shapesOf }) // for tests
 }
 
 const source = document.getElementById("data")

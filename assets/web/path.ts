@@ -26,6 +26,8 @@ export class Path {
     edited = false
     /** Why the last edit went no further. */
     fault: Fault | null = null
+    /** What is ambiguous about the path that is kept: keys of messages. */
+    doubts = this.data.doubts
     private progress = 1
     /** Control points and curve before an edit, as shown, and as tried. */
     private readonly kept = [this.kernels.put(this.flat), this.kernels.put(this.data.table)] as const
@@ -83,7 +85,11 @@ export class Path {
     }
 
     /** Keep the result of an edit. */
-    readonly finish = () => this.take(this.shown, this.kept)
+    finish(): void {
+        this.take(this.shown, this.kept)
+        if (this.edited) this.doubts = this.ambiguities()
+    }
+
     /** Move the followed curve towards the shown one; returns whether it moves. */
     advance(seconds: number): boolean {
         if (this.progress >= 1) return false
@@ -151,22 +157,31 @@ export class Path {
         const fault: Fault = { reasons: [], marks: [] }
         numbers.fill(0, work, work + 4)
         this.scan("check", work, this.tried[1], rows, samples + 1)
+        edit.checks.forEach((name, k) => {
+            const bad = Array.from({ length: samples }, (_, i) => rows + row * i).filter(each => numbers[each + 3 + k])
+            if (!bad.length) return
+            fault.marks.push(...bad.map(place => this.spot(place)))
+            fault.reasons.push(`fault.${name}`)
+        })
+        return fault.reasons.length ? fault : null
+    }
+
+    /** Whether strands of the kept curve cross or are too close to each other. */
+    private ambiguities(): string[] {
+        const { work, rows, edit } = this
+        const { numbers } = this.kernels
+        const { row, samples } = edit
+        let [near, crosses] = [false, false]
+        numbers.fill(0, work, work + 4)
+        this.scan("check", work, this.kept[1], rows, samples + 1)
         const length = numbers[rows + row * samples + 2]!
         for (let i = 0, next = rows + row; i < samples - 1; i++, next += row) {
             numbers.set([0, 0, 0, 0, length], work)
             this.scan("strands", work, next - row, next, samples - 1 - i)
-            if (numbers[work]) numbers[next - 1] = 1
-            if (numbers[work + 1]) fault.marks.push(this.spot(work + 2))
+            if (numbers[work]) near = true
+            if (numbers[work + 1]) crosses = true
         }
-        const crosses = fault.marks.length > 0
-        edit.checks.forEach((name, k) => {
-            const bad = Array.from({ length: samples }, (_, i) => rows + row * i).filter(each => numbers[each + 3 + k])
-            if (!bad.length || (crosses && name === "narrow")) return
-            fault.marks.push(...bad.map(place => this.spot(place)))
-            fault.reasons.push(`fault.${name}`)
-        })
-        if (crosses) fault.reasons.push("fault.crosses")
-        return fault.reasons.length ? fault : null
+        return crosses ? ["fault.crosses"] : near ? ["fault.narrow"] : []
     }
 
     private take(from: readonly [number, number], to = this.shown): void {

@@ -9,6 +9,7 @@ import { Chart, type Axes, type Span } from "./chart"
 import { Drawing } from "./drawing"
 import { local } from "./numbers"
 import { radiusOf } from "./strip"
+import type { Student } from "./student"
 
 export interface Prediction {
     /** Number of the step that asks, and of the block in it. */
@@ -31,8 +32,16 @@ export function elementOf(prediction: Prediction): HTMLElement {
     return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
 }
 
+/** The parts of a prediction that stand elsewhere on the page than its question. */
+export interface Form {
+    commit: HTMLButtonElement
+    /** Where a curve is drawn; null if there is nothing to draw. */
+    board: HTMLElement | null
+}
+
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
-export function predict(page: PageData, prediction: Prediction, notes: Notes, changed: () => void): void {
+export function predict(page: PageData, prediction: Prediction, student: Student): Form {
+    const { notes } = student
     const element = elementOf(prediction)
     const key = String(prediction.step)
     const { data } = prediction
@@ -41,6 +50,11 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
     const asked = element.querySelector<HTMLElement>(".committing")!
     element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
     let answer: Answer = {}
+    const answers = () => {
+        commit.disabled = answer.times === undefined && answer.option === undefined
+        element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
+    }
+    let board: HTMLElement | null = null
     let committed = () => {}
     commit.disabled = true
     if (data.kind === "sketch") {
@@ -56,19 +70,20 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
         const drawing = new Drawing(chart, () => {
             const { times, values } = chart.ghost ?? {}
             answer = times && values ? { times: [...times], values: [...values] } : {}
-            commit.disabled = !times
-            told.textContent = said(page, times ? "lesson.drawn" : "lesson.draw_first")
+            answers()
+            told.textContent = said(page, times ? "lesson.drawn" : "site.draw_first")
             hint()
             chart.draw()
         })
-        asked.before(chart.element)
+        board = chart.element
+        told.textContent = said(page, "site.draw_first")
         committed = () => (drawing.open = false)
     } else
         element.addEventListener("change", event => {
             const input = event.target as HTMLInputElement
             if (input.type !== "radio") return
             answer = { option: Number(input.value) }
-            commit.disabled = false
+            answers()
         })
     const show = () => {
         const kept = notes.answers[key]
@@ -81,14 +96,13 @@ export function predict(page: PageData, prediction: Prediction, notes: Notes, ch
         if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
     }
     const finish = (own: Answer) => {
-        notes.answers[key] = own
+        student.predicts(prediction.step, own)
         show()
-        changed()
     }
     commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
-    element.querySelector(".leave")!.addEventListener("click", () => finish({}))
     element.addEventListener("skip", () => notes.answers[key] ?? finish({}))
     show()
+    return { commit, board }
 }
 
 /** How a prediction compares with what happened. */

@@ -143,6 +143,8 @@ export class Side {
     readonly aim = (): Point => this.aimed(this.does().aim)
     /** The reference point, even if the law does not aim at it. */
     readonly reference = (): Point => this.aimed("theta_ref")
+    /** The point of the path that is closest to the end-point. */
+    readonly closest = (): Point => this.aimed("theta")
     /** The deflection of a flexible link's tip, [m], and the energy in the link, [J]. */
     readonly measured = (): Point => this.point("measured", this.field("q"), this.field("v"))
     /** The end of the arrow of the force. */

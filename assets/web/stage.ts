@@ -54,6 +54,11 @@ export class Stage {
         this.into.replaceChildren()
     }
 
+    /** Show on the robots what a symbol means; nothing if it is empty. */
+    light(symbol: string): void {
+        this.figure.light(symbol)
+    }
+
     run(on: boolean): void {
         this.figure.engine.act({ do: "run", on })
     }

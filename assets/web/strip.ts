@@ -2,23 +2,29 @@
 
 import { Chart, firstAfter, type Line, type Span } from "./chart"
 import { made } from "./controls"
-import { shown, type Engine, type Sample, type Vector } from "./engine"
+import { shown, type Engine, type Vector } from "./engine"
 import { niceStep } from "./ink"
 import { said, written, type Texts } from "./words"
 
 const SECONDS = 10 // on the axis
 const TOPS = [10, 20, 30, 40, 60, 80, 100, 150, 200, 300, 400, 600, 800, 1000] // [mm]
 const FILLED = 0.94 // of the height, from which the scale grows
+const [MINUTE, SPARE] = [60, 5] // [s], that are kept, and what is dropped at once
 const ROUND = 5e-4 // by how much the radius of a circle may vary
 const SPOKEN = 500 // [ms] between two values for a screen reader
 const STEPS: Record<string, number> = { ArrowLeft: -0.1, ArrowDown: -0.1, ArrowRight: 0.1, ArrowUp: 0.1, PageDown: -1, PageUp: 1 }
 
 export class Strip {
     readonly chart: Chart
-    readonly handle = made("div", "handle")
+    readonly handle = made("div", "handle", made("span", ""))
     private stale = true
-    private spoken = 0
+    private spoken = -Infinity
     private first = 0 // of the axis, while one looks back
+    private readonly times: number[] = []
+    private readonly values: number[][] = [] // [mm], of each robot
+    private readonly kinds: (Span["kind"] | null)[] = []
+    private most = 0 // [mm]
+    private forgets = false // whether the curves begin anew
     private dragged: { pointer: number; x: number } | null = null
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal) {
@@ -29,9 +35,11 @@ export class Strip {
         this.scale()
         engine.on(change => {
             this.stale = true
-            if (change === "history" || change === "path") this.scale()
+            if (change === "history") [this.forgets, this.most] = [true, 0]
+            if (change === "history" || change === "path") this.scale(change === "history" ? 0 : this.chart.axes.top)
         }, ended)
         this.hand()
+        this.grip(-Infinity)
     }
 
     /** Draw what has changed. */
@@ -45,37 +53,52 @@ export class Strip {
         this.grip(now)
     }
 
-    /** Begin with the radius of a circle and a little more. */
-    private scale(): void {
+    /** The radius of a circle and a little more, but not less than before in a run. */
+    private scale(least = 0): void {
         const { chart, engine, texts } = this
         const radius = radiusOf(engine.path.lines[0] ?? [])
-        const least = radius ? 1.15e3 * radius : TOPS[0]!
-        const top = TOPS.find(each => each >= least) ?? least
+        const wanted = Math.max(radius ? 1.15e3 * radius : 0, least)
+        const top = TOPS.find(each => each >= wanted) ?? wanted
         const mark = radius ? { value: 1e3 * radius, label: said(texts, "chart.centre") } : undefined
-        chart.axes = { ...chart.axes, top, ...(mark ? { mark } : { mark: undefined }) } as Chart["axes"]
+        chart.axes = { ...chart.axes, top, mark }
     }
 
     private follow(): void {
-        const { chart, engine } = this
+        const { chart, engine, times, kinds } = this
         const { past } = engine.state
         const end = engine.present.time
         if (past === null) this.first = Math.max(0, end - SECONDS)
         else if (past < this.first || past > this.first + SECONDS) this.first = Math.max(0, past - SECONDS / 2)
-        const samples = engine.since(-Infinity)
-        const all = end > (samples[samples.length - 1]?.time ?? -1) ? [...samples, engine.present] : samples
-        const times = all.map(sample => sample.time)
+        this.record()
         chart.from = this.first
         chart.until = this.first + SECONDS
         chart.at = shown(engine).time
-        chart.spans = spansOf(all)
-        const begin = Math.max(firstAfter(times, chart.from) - 1, 0), seen = times.slice(begin)
-        chart.lines = engine.texts.map(({ title, side }, i): Line => {
-            const values = all.slice(begin).map(({ sides }) => 1e3 * sides[i]!.distance)
-            return { name: title, tone: `side${side}`, dashed: side === 1, times: seen, values }
+        chart.spans = spansOf(times, kinds)
+        chart.lines = engine.texts.map(({ name, side }, i): Line => {
+            return { name, tone: `side${side}`, dashed: side === 1, times, values: this.values[i]! }
         })
-        const most = chart.lines.reduce((found, { values }) => values.reduce((a, b) => (b > a ? b : a), found), 0)
         const { axes } = chart
-        if (most > FILLED * axes.top) axes.top = TOPS.find(each => FILLED * each >= most) ?? niceStep(most / FILLED)
+        if (this.most > FILLED * axes.top) axes.top = TOPS.find(each => FILLED * each >= this.most) ?? niceStep(this.most / FILLED)
+    }
+
+    /** Add what is new to the curves, and the present at their ends. */
+    private record(): void {
+        const { engine, times, kinds } = this
+        if (this.forgets) this.shorten(times.length)
+        else if (times.length) this.shorten(1, true)
+        this.forgets = false
+        for (const { time, sides } of [...engine.since(times[times.length - 1] ?? -Infinity), engine.present]) {
+            times.push(time)
+            kinds.push(sides.some(side => side.held) ? "held" : sides.some(side => side.pulled) ? "pulled" : null)
+            sides.forEach(({ distance }, i) => (this.values[i] ??= []).push(1e3 * distance))
+            this.most = Math.max(this.most, ...sides.map(({ distance }) => 1e3 * distance))
+        }
+        const oldest = times[times.length - 1]! - MINUTE
+        if (times[0]! < oldest - SPARE) this.shorten(firstAfter(times, oldest))
+    }
+
+    private shorten(by: number, last = false): void {
+        for (const each of [this.times, this.kinds, ...this.values]) each.splice(last ? each.length - by : 0, by)
     }
 
     /** Put the handle where it belongs, and say what is there. */
@@ -83,9 +106,9 @@ export class Strip {
         const { handle, chart, engine, texts } = this
         const sample = shown(engine)
         handle.style.transform = `translateX(${chart.x(sample.time).toFixed(1)}px)`
-        if (now < this.spoken + SPOKEN && engine.state.past === null) return
+        if (now && now < this.spoken + SPOKEN && engine.state.past === null) return
         this.spoken = now
-        const values = engine.texts.map(({ title }, i) => `${title} ${written(texts, 1e3 * sample.sides[i]!.distance, 1)} mm`).join(", ")
+        const values = engine.texts.map(({ name }, i) => `${name} ${written(texts, 1e3 * sample.sides[i]!.distance, 1)} mm`).join(", ")
         const told = {
             "aria-valuemin": (engine.since(-Infinity)[0]?.time ?? 0).toFixed(1),
             "aria-valuemax": engine.present.time.toFixed(1),
@@ -136,17 +159,14 @@ export class Strip {
 }
 
 /** When something acted. */
-export function spansOf(samples: readonly Sample[]): Span[] {
+function spansOf(times: readonly number[], kinds: readonly (Span["kind"] | null)[]): Span[] {
     const found: Span[] = []
-    for (const { time, sides } of samples) {
-        const kind = sides.some(side => side.held) ? "held" : sides.some(side => side.pulled) ? "pulled" : null
-        const last = found[found.length - 1]
-        const goes = last?.until === Infinity
-        if (goes && last.kind !== kind) last.until = time
-        if (kind && !(goes && last.kind === kind)) found.push({ from: time, until: Infinity, kind })
-    }
-    const last = found[found.length - 1]
-    if (last?.until === Infinity) last.until = samples[samples.length - 1]!.time
+    let last: Span["kind"] | null = null
+    kinds.forEach((kind, i) => {
+        if (last && kind !== last) found[found.length - 1]!.until = times[i]!
+        if (kind && kind !== last) found.push({ from: times[i]!, until: times[times.length - 1]!, kind })
+        last = kind
+    })
     return found
 }
 

@@ -1,12 +1,11 @@
-// The tasks of a step, checked against its record twice a second.
+// The tasks of a step: how far they are done, looked at twice a second.
 
 import { made } from "./controls"
-import { judge, statistic, type Verdict } from "./checks"
+import type { Verdict } from "./checks"
 import type { PageData, TaskData } from "./lesson_data"
 import { said } from "./words"
-import type { Notes } from "./notes"
 import { general } from "./numbers"
-import type { Recorded } from "./recorded"
+import type { Student } from "./student"
 
 export class Task {
     private passedIn = -1 // number of the run
@@ -16,36 +15,25 @@ export class Task {
         private readonly page: PageData,
         private readonly element: HTMLElement,
         private readonly data: TaskData,
-        private readonly notes: Notes,
-        private readonly changed: (line: string) => void,
+        private readonly student: Student,
+        private readonly passed: () => void,
     ) {
         this.show([])
     }
 
-    follow(simulation: Recorded): void {
-        if (!this.data.checks) return
-        const record = simulation.record()
-        const verdicts = judge(this.data.checks, record, this.page.words)
-        const passed = verdicts.every(verdict => verdict.passed)
-        if (passed) this.pass(simulation)
-        if (passed || this.passedIn !== record.run) this.show(verdicts)
-        if (passed) this.passedIn = record.run
-    }
-
-    private pass(simulation: Recorded): void {
-        const { tasks } = this.notes
-        const { best, id } = this.data
-        const record = simulation.record()
-        const value = best ? (statistic(record, "follower", best, "max", record.times.map(() => true)) ?? 0) : 0
-        const first = tasks[id] === undefined
-        if (!first && value >= tasks[id]!) return
-        tasks[id] = Math.round(1e3 * value) / 1e3
-        this.changed(first ? said(this.page, "lesson.passed") : "")
+    follow(): void {
+        const before = this.student.notes.tasks[this.data.id]
+        const result = this.student.result(this.data)
+        if (!result) return
+        const passed = result.verdicts.every(verdict => verdict.passed)
+        if (passed || this.passedIn !== result.run) this.show(result.verdicts)
+        if (passed) this.passedIn = result.run
+        if (passed && before === undefined) this.passed()
     }
 
     private show(verdicts: Verdict[]): void {
-        const { page, element, data, notes } = this
-        const best = notes.tasks[data.id]
+        const { page, element, data } = this
+        const best = this.student.notes.tasks[data.id]
         const passed = best === undefined ? "" : data.best ? `: ${general(best, 3).replace(".", page.words["point"]!)}` : " "
         const text = JSON.stringify([verdicts, passed])
         if (text === this.shown) return

@@ -4,12 +4,15 @@ import type { Side } from "./side"
 import type { FigureData, Point } from "./figure_data"
 import { arrow, disc, Sheet, stroke, tones } from "./ink"
 import type { Path } from "./path"
+import { drawShapes, shapesOf, type Seen } from "./symbols"
 
 const FAINT = 0.4 // how opaque the trace is
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
 const TIE = 8 // [px] by which a point must be nearer than the tip, unless it is selected
 
 export class View {
+    /** The symbol that is shown; may be empty. */
+    lit = ""
     readonly canvas: HTMLCanvasElement
     private readonly sheet: Sheet
     scale = 1 // pixels for a metre
@@ -57,6 +60,18 @@ export class View {
         this.robot(ink)
         this.marker(ink)
         this.force(ink)
+        if (this.lit) drawShapes(ink, shapesOf(this.lit, this.seen(path)), this.pixel, colours.selected)
+    }
+
+    private seen(path: Path): Seen {
+        const { side, data: { sizes } } = this
+        const [base, elbow, short] = points(side.picture().slice(4 * sizes.bars))
+        const isFiveBar = sizes.bars === 4 && sizes.joints === 4
+        return {
+            tip: side.tip(), closest: side.closest(), reference: side.does().aim === "theta_ref" ? side.reference() : null,
+            pushed: side.arrow(), outline: points(path.outline), closed: path.data.closed,
+            arm: isFiveBar ? [base!, elbow!, short!] : null,
+        }
     }
 
     /** Let the figure's box fill the canvas. */

@@ -7,6 +7,7 @@
 
 robot-follower = Bahnfolger
 robot-tracker = Nachläufer
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = Abstand zur Bahn
 quantity-lag = Abstand zum laufenden Punkt
@@ -109,7 +110,7 @@ lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
-lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel in der Mitte, von links nach rechts, oder mit Zahlen.
+lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel, von links nach rechts, oder mit Zahlen.
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
 lesson-drawn = Zeichne noch einmal, oder lege dich fest.
 lesson-numbers = Lieber mit Zahlen zeichnen
@@ -270,7 +271,7 @@ class-stored = Dein Labor speichert, und deine Lehrkraft sieht unter deinem Spit
 class-privacy = Datenschutzerklärung
 class-join = Der Klasse beitreten
 class-leave = Die Klasse verlassen
-class-elsewhere = Diese Klasse hat eine eigene Seite: Öffne sie
+class-elsewhere = Die Seite dieser Klasse öffnen
 class-member = Du bist als { $name } in der Klasse. Die Lehrkraft sieht, wo du in den Lektionen bist, und dein Labor.
 class-teacher = Lehrkraft…
 class-key = Schlüssel der Lehrkraft
@@ -284,11 +285,14 @@ class-step = Die Lehrkraft hat diesen Schritt für dich geöffnet.
 class-step_elsewhere = Die Lehrkraft hat diesen Schritt für dich geöffnet. Die Lektion, in der du warst, steht unter „Lektionen“, wie du sie verlassen hast.
 class-step_again = Die Lehrkraft stellt diese Frage noch einmal. Besprich sie zuerst mit jemandem neben dir.
 class-ask_again = Nach einer Diskussion noch einmal fragen
-class-show_answers = Antworten der Klasse zeigen
+class-show_answers = Antworten zeigen
+class-lead = Für die ganze Klasse
 class-first = Erste Antwort
 class-second = Nach der Diskussion
 class-unknown = { $count } haben eine frühere Fassung der Frage beantwortet; was sie gewählt haben, lässt sich nicht mehr sagen.
-class-code_for_all = Gib diesen Code unter „Klasse“ ein:
+class-open_address = Öffne diese Adresse und gib einen Spitznamen ein:
+class-only_here = Nur dieser Rechner kann sie öffnen. Für andere starte mit --host 0.0.0.0.
+class-qr = QR-Code dieser Adresse
 class-count = { $count } in der Klasse
 class-name = Spitzname
 class-lesson = Lektion
@@ -302,6 +306,11 @@ class-free = Freies Labor
 class-nobody = Noch ist niemand beigetreten.
 class-follow = Zusehen bei
 class-own_lab = Mein eigenes Labor
+class-rename = Umbenennen
+class-rename_hint = Höchstens 24 Zeichen; die Person sieht ihn auch
+class-renamed = Umbenannt.
+class-remove = Aus der Klasse nehmen
+class-removed = Herausgenommen. Das Labor geht ohne die Klasse weiter und kann wieder beitreten.
 class-delete = Diese Person löschen
 class-delete_sure = { $name } aus der Klasse löschen, und das Labor mit allem, was davon gespeichert ist: Vorhersagen, gezeichnete Kurven, Antworten, Aufgaben? Das lässt sich nicht rückgängig machen. Eine offene Seite beginnt mit einem neuen Labor.
 class-deleted = Gelöscht.
@@ -313,6 +322,9 @@ class-unfreeze = Alle Labore weiterlaufen lassen
 class-push_setup = Meinen Aufbau an alle senden
 class-push_code = Diesen Code an alle senden
 class-push_step = Diesen Schritt bei allen öffnen
+class-back = Zurück für alle
+class-next = Weiter für alle
+class-next_step = Weiter für alle: { $step }
 class-sent =
     { $count ->
         [0] Noch ist niemand in der Klasse.
@@ -323,7 +335,7 @@ class-standing_setup = Wer beitritt, bekommt den Aufbau, den du zuletzt gesendet
 class-standing_step = Wer beitritt, kommt zu dem Schritt, den du zuletzt geöffnet hast: { $lesson }, Schritt { $step }.
 class-push_end = Nicht mehr an alle senden, die beitreten
 class-predictions = Vorhersagen
-class-truth = Zeigen, was wirklich geschieht
+class-truth = Wirklichkeit zeigen
 class-no_prediction = In diesem Schritt gibt es nichts vorherzusagen.
 class-no_truth = Was wirklich geschieht, ist noch nicht bekannt: Es muss erst in einem Labor geschehen sein.
 class-predicted = Vorhersagen
@@ -337,7 +349,7 @@ class-ended = Die Klasse ist zu Ende. { $count ->
         [0] Niemand war dabei.
         [one] 1 Person war dabei.
        *[other] { $count } Personen waren dabei.
-    } Die nächste Klasse hat einen neuen Code.
+    } Adresse und Code bleiben dieselben.
 class-forget = Die Klasse und ihre Labore löschen
 class-forget_sure = Die Labore aller Personen dieser Klasse löschen, mit allem, was davon gespeichert ist, und die Klasse beenden? Das lässt sich nicht rückgängig machen. Offene Seiten beginnen mit einem neuen Labor.
 class-forgotten =
@@ -434,7 +446,13 @@ aim-theta_ref = zielt auf seinen Sollpunkt
 
 ## Die Seite: was immer da ist
 
+connect-no_webgl = Dieser Browser kann das Labor nicht zeichnen
+connect-no_webgl_why = Die beiden Roboter werden mit WebGL 2 gezeichnet, das in diesem Browser abgeschaltet ist oder fehlt. Oft ist es wieder da, wenn in den Einstellungen des Browsers die „Grafikbeschleunigung“ (oder „Hardwarebeschleunigung“) eingeschaltet und der Browser neu gestartet wird. Vielleicht hat es auch ein anderer Browser.
+connect-course = Die Lektionen brauchen kein WebGL: Den Kurs gibt es auch als Seiten. Wer dieses Labor betreibt, erstellt sie mit „onpath export site course“.
+connect-course_link = Zum Kurs
+connect-picture_lost = Das Bild der Roboter ging verloren; das Labor läuft weiter. Das Bild kommt von selbst zurück; wenn nicht, lade die Seite neu.
 connect-silent = Das Labor antwortet nicht. Läuft es noch? Ein Proxy dazwischen muss Websockets weiterleiten: assets/deploy/README.md zeigt, wie.
+connect-lost = Die Verbindung zum Labor ist abgebrochen. Was du siehst, steht still; die Seite versucht weiter, das Labor zu erreichen.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
 page-keys = Alle Befehle
 page-viewer = Einstellungen der Anzeige
@@ -487,6 +505,8 @@ invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so l
 invite-let_go_button = Lass sie los
 invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Finger oder den Tasten A, D, W, S.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
+invite-lesson = Was geschieht, während ein Roboter zwei Sekunden lang festgehalten wird? Sag es in Lektion 1 voraus, und sieh dann nach.
+invite-lesson_button = Lektion 1 öffnen
 invite-skip = Einführung überspringen
 
 scene-draw = Zeichne die Bahn in einem Zug
@@ -575,8 +595,19 @@ design-path = Bahn
 design-path_hint = Beide Roboter folgen ihr. Ziehe an ihren Punkten im Bild, um sie zu verbiegen.
 design-own = eine eigene Bahn
 design-refused = { $path } (wird abgelehnt)
+design-ambiguous = { $path } (kreuzt sich)
 design-draw = Freihändig zeichnen
 design-draw_hint = Zeichne dann mit der Maus oder dem Finger einen Strich um einen der Roboter. Endet er nahe an seinem Anfang, ist die Bahn geschlossen. Noch einmal drücken beendet das Zeichnen.
+design-files = Aus einer Datei
+design-size = Größe [mm]
+design-size_hint = Die längere Seite der Bahn; 0 lässt die Längen, wie sie in der Datei sind
+design-radius = Radius der Ecken [mm]
+design-radius_hint = Bögen mit diesem Radius ersetzen die Ecken; 0: eine glatte Kurve in ihrer Nähe
+design-open = Offene Bahn
+design-open_hint = Das Ende wird nicht mit dem Anfang verbunden; sonst wie in der Datei, und Punkte werden verbunden
+design-upload = Datei wählen
+design-upload_hint = Punkte (CSV), eine Zeichnung (SVG) oder G-Code, höchstens { $most } MB. Von mehreren Linien wird die längste genommen.
+design-reading = Die Datei wird gelesen.
 design-edit = Ändern
 design-undo = Rückgängig
 design-redo = Wiederholen
@@ -646,9 +677,9 @@ show-labels = Namen, Achsen
 show-labels_hint = Winkel q, Längen ℓ und die Achsen von y, wie in den Bildern 1 und 4 des Artikels
 show-tube = Schlauch
 show-tube_hint = Wo der nächste Punkt der Bahn eindeutig ist: Dort ist der virtuelle Ausgang definiert
-show-grid = Netz (θ, ξ)
+show-grid = Netz längs und quer zur Bahn
 show-grid_hint = Linien quer zur Bahn haben denselben nächsten Punkt, also dasselbe θ; Linien längs der Bahn denselben Abstand ξ.
-show-rank = Rangtest (11)
+show-rank = Wo die Gesetze definiert sind
 show-rank_hint = Wie weit jeder Ort davon entfernt ist, dass der Rang verloren geht und die Regelgesetze nicht mehr definiert sind
 show-errors = Beide Fehler
 show-errors_hint = e (orange) führt zum Punkt des Fahrplans, dem Ring des linken Roboters; d (blau) führt zum nächsten Punkt der Bahn.
@@ -801,6 +832,7 @@ key-slowly = Wenn ein Roboter stehen geblieben ist: seine letzten Augenblicke la
 key-earlier = Wenn ein Roboter stehen geblieben ist: mit den letzten Einstellungen zurücksetzen, mit denen es ging
 key-summary = Sagen, was zu sehen ist
 key-view = Die Ansicht zurücksetzen
+key-lesson = Die erste Lektion öffnen
 
 keyname-space = Leertaste
 keyname-Esc = Esc
@@ -842,6 +874,7 @@ say-stopped = { $robot }: stehen geblieben bei { $time } s: { $reason }. Zurück
 say-slowly = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam.
 say-slowly_larger = { $robot }: stehen geblieben bei { $time } s: { $reason }. Die letzten Augenblicke, langsam; Biegung { $larger }-fach gezeichnet.
 say-refused = Diese Bahn geht nicht: { $reasons }. Die vorige bleibt.
+say-ambiguous = Hinweis: { $reasons }. Diese Gesetze bleiben auf dem Strang, auf dem sie sind; eines, das auf der ganzen Bahn sucht, könnte auf den anderen springen.
 say-deviates = Die Bahn ist glatt: Stellenweise ist sie { $deviation } mm von den Linien zwischen den gegebenen Punkten entfernt.
 say-no_further = Weiter geht die Bahn nicht: { $reasons }.
 say-level_set_ends = Diese Bahn hat keine Niveaumenge: Quer zu ihr wird wieder der Abstand gemessen.
@@ -851,6 +884,7 @@ say-nothing_to_undo = es gibt nichts rückgängig zu machen
 say-nothing_to_redo = es gibt nichts zu wiederholen
 say-select_first = wähle erst einen Kontrollpunkt: Klicke einen an, oder drücke N für den nächsten
 say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht ein übliches Gesetz.
+say-law_interpreted = Dieses Regelgesetz wird interpretiert statt übersetzt, was etwa 30-mal so lange dauert: { $reason }.
 say-looking_back = Das ist die Vergangenheit. Laufen lassen kehrt in die Gegenwart zurück; Von hier aus weiter verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
 say-present = Zurück in der Gegenwart.
@@ -938,6 +972,12 @@ machine-five_bar-text = Zwei Motoren, starre Glieder, ein Stift in einer senkrec
 
 machine-flexible-label = Fünfgelenk mit elastischem Glied
 machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spitze ist nicht dort, wo die Motoren sie haben wollen.
+
+machine-cart_pendulum-label = Wagen mit Pendel
+machine-cart_pendulum-text = Zwei Motoren bewegen einen Stift auf einem Wagen, keiner das Pendel, das an ihm hängt oder auf ihm steht.
+
+machine-rod_gantry-label = Portal mit Stange
+machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stange, die mit dem Stift an ihm hängt.
 
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
@@ -1071,7 +1111,7 @@ parameter-error_weights-label = Fehler im Gewicht
 parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
 parameter-error_gravity-label = Fehler im Gewicht
-parameter-error_gravity-help = um so viel liegen die Gewichte g1 und g2 im Modell des Reglers daneben
+parameter-error_gravity-help = um so viel liegen die Gewichte im Modell des Reglers daneben
 
 parameter-error_M11-label = Fehler in M11
 parameter-error_M11-help = um so viel liegt M11, das Trägheitsmoment an Motor 1, im Modell des Reglers daneben
@@ -1094,11 +1134,31 @@ parameter-d-label = d
 parameter-d-help = Abstand dieser Ebene von der Hüfte, bei y2 = 0
 parameter-centre-label = Mitte y3
 parameter-centre-help = Höhe y3 der Mitte der Bahn
+parameter-posture_stiffness-label = Haltungsfeder
+parameter-posture_stiffness-help = Feder, die die Gelenke zur Ausgangsstellung zieht, soweit das die Spitze nicht bewegt; 0: keine
+
+parameter-posture_damping-label = Haltungsdämpfer
+parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
+
 parameter-payload-label = Last
 parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
 
 parameter-alpha-label = α
-parameter-alpha-help = Anteil der Durchbiegung, den der Regler sieht: 1 die Spitze, 0 das gerade Glied
+parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon
+
+parameter-rod-label = Stange
+parameter-rod-help = Masse der hängenden Stange
+
+parameter-pivot-label = Dämpfung im Gelenk
+parameter-pivot-help = Dämpfung im Drehgelenk, das keinen Motor hat
+
+parameter-pendulum-label = Pendel
+parameter-pendulum-help = ob das Pendel am Wagen hängt oder auf ihm steht
+parameter-pendulum-option-hanging = hängt
+parameter-pendulum-option-upright = steht
+
+parameter-mass-label = Masse
+parameter-mass-help = Masse des Pendels
 
 parameter-law-label = Ausgang
 parameter-law-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
@@ -1197,7 +1257,7 @@ fault-outside = die Bahn verlässt den Arbeitsraum: Dorthin reicht der Arm nicht
 fault-singular = die Bahn kommt einer singulären Stellung zu nahe: Dort ist der Arm gestreckt oder gefaltet und kann sich nicht in jede Richtung bewegen
 fault-bends = die Bahn ist zu scharf gebogen: Eine Biegung braucht mindestens { $radius } mm Radius, sonst ist der nächste Punkt in ihrer Nähe nicht eindeutig
 fault-cusp = die Bahn hat einen Umkehrpunkt, an dem sie keine Richtung hat
-fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung hat sie zwei Richtungen
+fault-crosses = die Bahn kreuzt sich selbst: An der Kreuzung ist der nächste Bahnpunkt nicht eindeutig
 fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinander: Dazwischen ist der nächste Punkt nicht eindeutig
 
 ## Warum ein Roboter stehen geblieben ist (`fault` der Modelle)
@@ -1208,6 +1268,8 @@ stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist di
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
 stop-limit = der Roboter ist nahe an einer singulären Stellung oder am Ende eines Gelenkwegs: Seine Motoren können die Spitze nicht in jede Richtung bewegen
+stop-joint = das Gelenk { $joint } hat seine Grenze von { $limit } überschritten
+stop-joints = ein Gelenk hat seine Grenze überschritten
 stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: Der Zug ist zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
@@ -1218,7 +1280,7 @@ forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne
 forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der Bahn bleibt, wächst die Bewegung der Koordinaten ohne Motor, anfangs alle { $time } s auf das Zehnfache (Exponent { $rate } 1/s)
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
-cause-limit = die Motoren waren an ihrer Grenze von { $limit } N m (anheben oder langsamer fahren)
+cause-limit = die Motoren waren an ihrer Grenze von { $limit } { $unit } (anheben oder langsamer fahren)
 cause-force = eine Kraft von { $force } N wirkte auf ihn
 cause-far = er war dort, wo auf den nächsten Punkt kein Verlass ist
 cause-turned = er drehte sich in einem Regelintervall um { $turned } rad (ein schnellerer Regler hilft)
@@ -1246,6 +1308,7 @@ error-implicit_lines =
     }
 error-implicit_shape = die Lösungen der Gleichung haben eine Form, der eine glatte Bahn nicht folgen kann: Sie läge bis zu { $apart } mm daneben
 error-no_level_set = diese Bahn hat keine Niveaumenge s(y): Eine solche haben hier nur Kreise und Ellipsen, und auf der Kommandozeile Bahnen mit einer Gleichung
+error-level_set_crosses = diese Bahn kreuzt sich selbst: An der Kreuzung hat eine Niveaumenge s(y) keinen Gradienten; folge der Bahn nach ihrem Abstand
 error-level_no_polynomial = mit der Niveaumenge lässt sich einer Bahn nur folgen, wenn ihre Gleichung ein Polynom in z1 und z2 ist; mit dem Abstand jeder Bahn mit einer Gleichung
 error-level_gradient = mit dieser Niveaumenge lässt sich der Bahn nicht folgen: { $beside } mm neben ihr zeigt der Gradient von s nicht mehr von ihr weg, und der Schlauch um die Bahn ist { $tube } mm weit
 error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
@@ -1281,6 +1344,7 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 ## Ablehnungen: ein eingetipptes Regelgesetz (models/control/laws)
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
+error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
@@ -1347,6 +1411,41 @@ error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes is
 error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
 error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
 
+## Bahnen aus Dateien (models/path_files)
+
+say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
+say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
+error-file_size = die Datei ist größer als { $most } MB
+error-file_empty = die Datei ist leer
+error-file_no_text = die Datei ist kein Text
+error-file_described = die Datei beschreibt eine Bahn mit Worten; dazu gibt es keine Optionen
+error-file_points = Zeile { $line }: mehr als { $most } Punkte
+error-file_corners = die Linie hat { $count } Ecken; höchstens { $most } werden abgerundet
+error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
+error-file_part = part { $part }: die Datei hat { $count } Linien
+error-file_option = { $name }: { $value } ist nicht möglich
+error-file_radius = ein Radius gehört zu corners=round
+error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
+error-file_takes_long = das Lesen der Datei hat zu lange gedauert
+error-file_failed = die Datei konnte nicht gelesen werden
+error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
+error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, I, J, R, F und N
+error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
+error-gcode_both = Zeile { $line }: { $text } widersprechen einander
+error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
+error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
+error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
+error-gcode_arc_ends = Zeile { $line }: die Enden des Bogens sind { $first } mm und { $last } mm von seinem Mittelpunkt entfernt
+error-gcode_radius = Zeile { $line }: kein Bogen mit dem Radius { $radius } mm hat diese Enden
+error-svg_not_installed = Zeichnungen brauchen svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = die Datei ist keine SVG-Zeichnung
+error-svg_no_xml = Zeile { $line }, Spalte { $column }: kein XML ({ $reason })
+error-svg_doctype = Zeile { $line }: DOCTYPE und Entitäten werden nicht gelesen; lösche sie
+error-svg_large = Zeile { $line }: die Zeichnung hat mehr als { $most } Elemente, oder { $deepest } ineinander
+error-svg_shape = Zeile { $line }: { $tag } ist hier nicht lesbar ({ $reason })
+
 ## Ablehnungen: Codes zum Teilen und Codes von Laboren
 
 error-share_too_long = Dieser Text ist viel zu lang: Ein Code zum Teilen hat einige Hundert Zeichen.
@@ -1374,6 +1473,7 @@ error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem ne
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
 error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
 error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+say-robots_of_then = Dieses Labor wurde mit Robotern aus Dateien gespeichert, die dieser Server nicht hat: { $names }. Es läuft ohne sie weiter; mit --robot und der Datei sind sie wieder da.
 say-laws_of_then = Dieses OnPath hat diese Gesetze oder Verstärkungen nicht, die mit diesem Labor gespeichert wurden: { $names }. Es läuft ohne sie weiter.
 say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
 say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen: { $reason }
@@ -1382,7 +1482,7 @@ say-lab_kept = Dein Labor ist gespeichert, lässt sich aber gerade nicht öffnen
 
 error-too_many_codes = zu viele falsche Codes: Warte eine Minute
 error-not_the_key = das ist nicht der Schlüssel der Lehrkraft
-error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand
+error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand; vergleiche auch die Adresse dieser Seite
 error-class_full = diese Klasse ist voll
 error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 
@@ -1427,6 +1527,27 @@ transport-go_on_hint = Verwirft, was danach kam. Taste: G
 
 ## Der Kurs als statische Seiten: assets/web, app/exports/site
 
+symbol-lambda = Abstand zur Bahn, mit Vorzeichen
+symbol-xi_1 = Abstand quer zur Bahn, mit Vorzeichen
+symbol-theta = Stelle des nächsten Punktes auf der Bahn
+symbol-theta_r = Stelle des Punktes der Uhr auf der Bahn
+symbol-e = Folgefehler: vom Punkt der Uhr zur Spitze
+symbol-d = Abstand zur Bahn
+symbol-y = Lage der Spitze
+symbol-sigma = die Bahn
+symbol-N = Einheitsnormale der Bahn
+symbol-T = Einheitstangente der Bahn
+symbol-F = Kraft auf die Spitze
+symbol-q_1 = Winkel von Glied 1
+symbol-q_2 = Winkel von Glied 2
+symbol-delta = Winkel am Ellbogen
+symbol-rho = Abstand der Spitze vom Fuß
+symbol-K_1 = Feder quer zur Bahn oder zum Punkt der Uhr
+symbol-K_2 = Dämpfer, der zu K1 gehört
+symbol-K_3 = Integral: zählt den Fehler über die Zeit zusammen
+symbol-K_4 = Feder längs der Bahn
+symbol-K_5 = Dämpfer längs der Bahn: hält das gewünschte Tempo
+site-symbols = Zeichen auf dieser Seite
 site-title = OnPath: Bahnfolgeregelung ist nicht Trajektorienfolgeregelung
 site-intro = Zwei Roboter zeichnen dieselbe Bahn. Einer folgt einem Fahrplan, der andere einer Kurve: Sieh, was geschieht, wenn man sie festhält. Im Kurs sagst du vorher, probierst, siehst und verstehst; alles läuft auf dieser Seite.
 site-lab = Probiere es aus
@@ -1451,13 +1572,18 @@ site-read_done = Gelesen.
 site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
+site-draw_first = Zeichne mit der Maus oder dem Finger in das Diagramm, von links nach rechts. Mit Tasten: Tab führt zu seinen Punkten, und die Pfeile bewegen sie.
+site-to_robots = Roboter
+site-to_text = Text
+site-commit_short = Festlegen
+site-skip_short = Überspringen
 site-again = Die Kurven dieses Laufs sind nicht gespeichert: Lass ihn noch einmal geschehen, um sie zu sehen.
 site-no_platform = Um diese Seite wurde keine Lernplattform gefunden. Dein Fortschritt wird nur in diesem Browser gespeichert.
 site-refused = Die Lernplattform hat deinen Fortschritt nicht angenommen: { $reason }. Was nicht gespeichert ist, geht verloren, wenn du diese Seite schließt.
 site-no_room = Die Lernplattform hat keinen Platz für mehr von deinem Fortschritt: Was du jetzt tust, geht verloren, wenn du diese Seite schließt.
 site-cut = Die Lernplattform speichert höchstens { $most } Zeichen einer Lektion: von deinen längsten Texten nur den Anfang. Sichere eine Kopie, wenn du sie ganz brauchst.
 site-review = Die Lernplattform hat diese Lektion zum Ansehen geöffnet: Nichts von dem, was du jetzt tust, wird gespeichert.
-site-sketch = Tafel zum Zeichnen: { $quantity } [{ $unit }] von 0 bis { $seconds } s. Mit der Maus oder dem Finger, von links nach rechts; oder mit den Zahlen darunter.
+site-sketch = Tafel zum Zeichnen: { $quantity } [{ $unit }] von 0 bis { $seconds } s. Mit der Maus oder dem Finger, von links nach rechts; oder mit Tasten, an seinen Punkten.
 site-done = { $done } von { $all } Schritten gesehen, { $tasks } Aufgaben gelöst
 site-next_lesson = Nächste Lektion: { $title }
 site-end = Das Ende dieser Lektion
@@ -1471,6 +1597,7 @@ site-control-robot = die Wahl des Roboters
 site-control-laws = die Wahl des Gesetzes
 site-control-copy = das Ziehen an nur einem Roboter
 site-control-flexible = Ausgang, Zugebene und Vergrößerung des elastischen Balkens
+site-control-larger = Vergrößerung des elastischen Balkens
 site-control-identify = die Identifikation
 site-control-show = was in der Szene gezeigt wird: Beschriftungen, Schlauch, Koordinaten, Rangtest, beide Fehler, effektive Masse
 site-control-direction = die Richtung des Festhaltens
@@ -1481,3 +1608,65 @@ site-control-path = die Wahl der Bahn
 # The strip below the scene
 
 strip-lost = Keine Verbindung zum Labor; neuer Versuch läuft.
+
+## Roboter aus Dateien
+
+robot_file-at = { $file }, Zeile { $line }, { $element }: { $reason }
+robot_file-absent = { $file }: Diese Datei gibt es nicht
+robot_file-unreadable = { $file } lässt sich nicht lesen: { $reason }
+robot_file-size = { $file } ist größer als { $most }
+robot_file-elements = mehr als { $most } Elemente oder mehr als { $deepest } ineinander
+robot_file-doctype = ein Dokumenttyp wird nicht angenommen, weil er Entities definieren kann: Löschen Sie ihn
+robot_file-xml = das ist kein XML: { $reason }
+robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
+robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
+robot_file-without = { $what } fehlt
+robot_file-name = { $field } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-numbers = { $field } { $value }: erwartet { $count ->
+    [one] wird eine Zahl
+   *[other] werden { $count } Zahlen
+ }
+robot_file-large = { $field } { $value }: Die Zahl ist zu groß
+robot_file-no_link = ein Glied { $name } gibt es nicht
+robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
+robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
+robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
+robot_file-twice = den Namen gibt es schon in Zeile { $line }
+robot_file-many = mehr als { $most } davon
+robot_file-joints = mehr als { $most } Gelenke bewegen sich auf dem Weg zur Spitze: Sperren Sie einige
+robot_file-type = unbekannter Typ { $type }
+robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
+robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
+robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
+robot_file-mass = die Masse { $value } ist negativ
+robot_file-inertia = kein Körper hat diese Trägheit: Ein Trägheitsmoment um irgendeine Achse ist negativ
+robot_file-negative = { $field } ist negativ
+robot_file-limits = die untere Grenze { $low } liegt über der oberen { $high }
+robot_file-axis = eine Achse braucht eine Richtung
+robot_file-shape = eine Form braucht positive Maße unter 100 m
+robot_file-still_tip = die Spitze bewegt sich nicht: Kein Gelenk auf dem Weg zu ihr tut es
+robot_file-no_tip = ein Glied { $tip } gibt es nicht, aber { $names }
+robot_file-which_tip = welches Glied ist die Spitze? Nennen Sie eines mit --tip (in Python tip=…): { $names }
+robot_file-no_joint = ein Gelenk { $joint } gibt es nicht, aber { $names }
+robot_file-pose = { $joint }: { $value } ist keine Stellung
+robot_file-pose_outside = { $joint }: { $value } liegt nicht zwischen den Grenzen { $low } und { $high }
+robot_file-armature = ein Läufer-Trägheitsmoment von { $value } kg m²: erwartet wird 0 bis { $most }
+robot_file-few_joints = { $count ->
+    [one] ein Gelenk bewegt
+   *[other] { $count } Gelenke bewegen
+ } sich auf dem Weg zur Spitze: Nötig sind mindestens { $needed }
+robot_file-no_pose = keine Stellung gefunden, in der die Spitze vor dem Fuß ist und sich in alle Richtungen bewegen kann: Geben Sie eine mit --pose an
+robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose an
+robot_file-circle = aus dieser Stellung sind Kreise bis { $circle } mm möglich, und Bahnen brauchen { $least } mm: Geben Sie eine andere mit --pose an
+robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Trägheit: Geben Sie mit --armature die Trägheit der Motoren an
+robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
+robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
+robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-same_name = { $name } heißt schon ein anderer Roboter
+robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
+robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen
+robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
+robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
+robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
+robot_file-left_out = weggelassen: { $parts }

@@ -9,6 +9,7 @@
 
 robot-follower = Follower
 robot-tracker = Tracker
+robot-under_law = { $robot } ({ $law })
 
 quantity-distance = distance to the path
 quantity-lag = distance to the running point
@@ -111,7 +112,7 @@ lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
-lesson-draw_first = Draw with the mouse or a finger on the board in the middle, from left to right, or with numbers.
+lesson-draw_first = Draw on the board with the mouse or a finger, from left to right, or with numbers.
 lesson-committed = You have committed to your prediction. Now see what happens.
 lesson-drawn = Draw again, or commit.
 lesson-numbers = Draw with numbers instead
@@ -272,7 +273,7 @@ class-stored = Your lab stores, and your teacher sees under your nickname: your 
 class-privacy = Privacy notice
 class-join = Join the class
 class-leave = Leave the class
-class-elsewhere = This class has a page of its own: open it
+class-elsewhere = Open the page of this class
 class-member = You are in the class as { $name }. The teacher sees where you are in the lessons, and your lab.
 class-teacher = Teacher…
 class-key = Teacher's key
@@ -286,11 +287,14 @@ class-step = The teacher has opened this step for you.
 class-step_elsewhere = The teacher has opened this step for you. The lesson that you were in is under “Lessons”, as you left it.
 class-step_again = The teacher asks this question again. Discuss it with your neighbour first.
 class-ask_again = Ask this again, after a discussion
-class-show_answers = Show what the class has answered
+class-show_answers = Show the answers
+class-lead = For the whole class
 class-first = First answer
 class-second = After the discussion
 class-unknown = { $count } answered an earlier version of the question; their choices can no longer be known.
-class-code_for_all = Type this code under “Class”:
+class-open_address = Open this address and type a nickname:
+class-only_here = Only this computer can open it. To let others in, start with --host 0.0.0.0.
+class-qr = QR code of this address
 class-count = { $count } in the class
 class-name = Nickname
 class-lesson = Lesson
@@ -304,6 +308,11 @@ class-free = Free lab
 class-nobody = Nobody has joined yet.
 class-follow = Follow
 class-own_lab = My own lab
+class-rename = Rename
+class-rename_hint = At most 24 characters; the student sees it, too
+class-renamed = Renamed.
+class-remove = Remove from the class
+class-removed = Removed. The lab goes on without the class, and can join again.
 class-delete = Delete this student
 class-delete_sure = Delete { $name } from the class, and the lab with everything that is stored of it: predictions, drawn curves, answers, tasks? It cannot be undone. An open page starts again with a new lab.
 class-deleted = Deleted.
@@ -315,6 +324,9 @@ class-unfreeze = Let all labs go on
 class-push_setup = Send my set-up to all
 class-push_code = Send this share code to all
 class-push_step = Open this step for all
+class-back = Back for all
+class-next = Next for all
+class-next_step = Next for all: { $step }
 class-sent =
     { $count ->
         [0] Nobody is in the class yet.
@@ -339,7 +351,7 @@ class-ended = The class is over. { $count ->
         [0] Nobody was in it.
         [one] 1 student was in it.
        *[other] { $count } students were in it.
-    } The next class has a new code.
+    } Its address and code stay the same.
 class-forget = Delete the class and its labs
 class-forget_sure = Delete the labs of all students of this class, with everything that is stored of them, and end the class? It cannot be undone. Open pages start again with a new lab.
 class-forgotten =
@@ -382,7 +394,13 @@ aim-theta_ref = aims at its reference point
 
 ## The page: what is always there
 
+connect-no_webgl = This browser cannot draw the lab
+connect-no_webgl_why = The two robots are drawn with WebGL 2, which is switched off in this browser or missing. It often comes back when “graphics acceleration” (or “hardware acceleration”) is switched on in the browser's settings and the browser is started again. Another browser may have it, too.
+connect-course = The lessons need no WebGL: the course also exists as pages. Whoever runs this lab makes them with “onpath export site course”.
+connect-course_link = To the course
+connect-picture_lost = The picture of the robots was lost; the lab goes on. The picture comes back by itself; if it does not, load the page again.
 connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
+connect-lost = The connection to the lab is lost. What you see stands still; the page keeps trying to reach the lab.
 page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-viewer = Settings of the viewer
@@ -435,6 +453,8 @@ invite-let_go = One is torn off the path by its clock; the other waits for as lo
 invite-let_go_button = Let them go
 invite-pull = Grab a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
 invite-bend = Bend the path: drag one of its grey points.
+invite-lesson = What happens while a robot is held for two seconds? Predict it in lesson 1, and then see.
+invite-lesson_button = Open lesson 1
 invite-skip = Skip the introduction
 
 scene-draw = Draw the path in one stroke
@@ -523,8 +543,19 @@ design-path = Path
 design-path_hint = Both robots follow it. Drag its points in the scene to bend it.
 design-own = a path of your own
 design-refused = { $path } (is refused)
+design-ambiguous = { $path } (crosses itself)
 design-draw = Draw freehand
 design-draw_hint = Then draw one stroke around a robot, with the mouse or a finger. If it ends near its beginning, the path is closed. Press again to cancel.
+design-files = From a file
+design-size = Size [mm]
+design-size_hint = The larger side of the path; 0 leaves the lengths as they are in the file
+design-radius = Corners’ radius [mm]
+design-radius_hint = Arcs of this radius take the place of corners; 0: a smooth curve near them
+design-open = Open path
+design-open_hint = The end is not joined to the beginning; otherwise as the file says, and points are joined
+design-upload = Choose a file
+design-upload_hint = Points (CSV), a drawing (SVG) or G-code, at most { $most } MB. Of several lines, the longest is taken.
+design-reading = The file is being read.
 design-edit = Edit
 design-undo = Undo
 design-redo = Redo
@@ -594,9 +625,9 @@ show-labels = Labels, axes
 show-labels_hint = Angles q, lengths ℓ and the axes of y, as in the paper's figures 1 and 4
 show-tube = Tube
 show-tube_hint = Where the closest point of the path is unique: the virtual output is defined there
-show-grid = Grid (θ, ξ)
+show-grid = Grid along and across the path
 show-grid_hint = Lines across the path have the same closest point and so the same θ; lines along it the same distance ξ.
-show-rank = Rank test (11)
+show-rank = Where the laws are defined
 show-rank_hint = How far each place is from losing rank, where the control laws are no longer defined
 show-errors = Both errors
 show-errors_hint = e (orange) leads to the timetable's point, the ring of the left robot; d (blue) leads to the closest point of the path.
@@ -747,6 +778,7 @@ key-slowly = After a robot has stopped: show its last moments slowly
 key-earlier = After a robot has stopped: reset with the last settings that worked
 key-summary = Say what is on the screen
 key-view = Reset the view
+key-lesson = Open the first lesson
 
 keyname-space = space
 keyname-Esc = Esc
@@ -845,6 +877,7 @@ say-stopped = { $robot } stopped at { $time } s: { $reason }. Reset starts the r
 say-slowly = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly.
 say-slowly_larger = { $robot } stopped at { $time } s: { $reason }. Its last moments, slowly; bending is drawn { $larger } times as large.
 say-refused = This path is refused: { $reasons }. The previous one is kept.
+say-ambiguous = Note: { $reasons }. These laws go on along the strand on which they are; one that searched the whole path might jump to the other.
 say-deviates = The path is smooth: at some places it is { $deviation } mm away from the lines between the given points.
 say-no_further = The path goes no further: { $reasons }.
 say-level_set_ends = This path has no level set: across it, the distance is measured again.
@@ -854,6 +887,7 @@ say-nothing_to_undo = nothing to undo
 say-nothing_to_redo = nothing to redo
 say-select_first = select a control point first: click one, or press N for the next
 say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
+say-law_interpreted = This law is interpreted instead of compiled, which takes about 30 times as long: { $reason }.
 say-looking_back = This is the past. Run returns to the present; Go on from here discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
 say-present = Back in the present.
@@ -923,7 +957,7 @@ fault-outside = the path leaves the workspace: the arm cannot reach there
 fault-singular = the path comes too near a singular configuration: there the arm is stretched or folded and cannot move in every direction
 fault-bends = the path bends too sharply: a bend needs a radius of at least { $radius } mm, otherwise the closest point on it is not unique nearby
 fault-cusp = the path has a cusp, where it has no direction
-fault-crosses = the path crosses itself: at a crossing it has two directions
+fault-crosses = the path crosses itself: at the crossing, the closest point is not unique
 fault-narrow = two strands of the path are closer to each other than { $least } mm: between them the closest point is not unique
 
 ## Why a robot has stopped (the models' `fault`)
@@ -934,6 +968,8 @@ stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
 stop-limit = the robot is close to a singular configuration or to the end of a joint's travel: its motors cannot move the end-point in every direction
+stop-joint = the joint { $joint } has passed its limit of { $limit }
+stop-joints = a joint has passed its limit
 stop-bent = the link bends too far although its zero dynamics are stable: the pull is too strong, the control too slow or the controller's model too wrong
 stop-unstable = the output is on the path, the inside is not: unstable zero dynamics
 stop-bent_or_unstable = the link bends too far: its zero dynamics are unstable, the pull is too strong, the control too slow or the controller's model too wrong
@@ -944,7 +980,7 @@ forecast-no_rest = the robot cannot rest at the start: its coordinates without a
 forecast-unstable = the zero dynamics are unstable: while the output stays on the path, the motion of the coordinates without a motor grows, at first tenfold every { $time } s (exponent { $rate } 1/s)
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
-cause-limit = the motors were at their limit of { $limit } N m (raise it, or lower the speed)
+cause-limit = the motors were at their limit of { $limit } { $unit } (raise it, or lower the speed)
 cause-force = a force of { $force } N acted on it
 cause-far = it was at a place where the closest point is unreliable
 cause-turned = it turned by { $turned } rad in a control interval (a faster controller helps)
@@ -972,6 +1008,7 @@ error-implicit_lines =
     }
 error-implicit_shape = the solutions of the equation have a shape that a smooth path cannot follow: it is up to { $apart } mm off
 error-no_level_set = this path has no level set s(y): only circles and ellipses have one here, and on the command line paths with an equation
+error-level_set_crosses = this path crosses itself: at the crossing, a level set s(y) has no gradient; follow the path by its distance
 error-level_no_polynomial = only a polynomial of z1 and z2 is followed by its level set; any path with an equation is followed by its distance
 error-level_gradient = the path cannot be followed by this level set: { $beside } mm beside it, the gradient of s no longer points away from it, and the tube around the path is { $tube } mm wide
 error-cannot_follow = { $robot } cannot follow this path: { $reasons }
@@ -999,6 +1036,7 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 ## Refusals: a law that is typed (models/control/laws)
 
 error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
+error-law_fails = { $law } cannot be used here: { $reason } ({ $file }, line { $line })
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
@@ -1065,6 +1103,41 @@ error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
 error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
 
+## Paths from files (models/path_files)
+
+say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-rounded = The tightest bend of the path has a radius of { $radius } mm.
+say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
+error-file_size = the file is larger than { $most } MB
+error-file_empty = the file is empty
+error-file_no_text = the file is not a text
+error-file_described = the file describes a path in words, which takes no options
+error-file_points = line { $line }: more than { $most } points
+error-file_corners = the line has { $count } corners; at most { $most } are rounded
+error-file_no_line = the file has no line that could be a path
+error-file_part = part { $part }: the file has { $count } lines
+error-file_option = { $name }: { $value } is not possible
+error-file_radius = a radius is for corners=round
+error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
+error-file_takes_long = reading the file took too long
+error-file_failed = the file could not be read
+error-points_columns = line { $line }: { $count } columns, of which none are called x and y
+error-points_units = line { $line }: x and y have different units
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
+error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
+error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
+error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
+error-gcode_arc_ends = line { $line }: the arc's ends are { $first } mm and { $last } mm away from its centre
+error-gcode_radius = line { $line }: no arc with the radius { $radius } mm has these ends
+error-svg_not_installed = drawings need svgpathtools: pip install "onpath[svg]"
+error-svg_no_drawing = the file is not an SVG drawing
+error-svg_no_xml = line { $line }, column { $column }: not XML ({ $reason })
+error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete them
+error-svg_large = line { $line }: the drawing has more than { $most } elements, or { $deepest } in each other
+error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
+
 ## Refusals: share codes and session codes
 
 error-share_too_long = This text is much too long: a share code has a few hundred characters.
@@ -1092,6 +1165,7 @@ error-database_tables_newer = its tables ({ $revision }) were made by a newer On
 error-database_newer = it has version { $version } and was made by a newer OnPath, which is needed here
 error-lab_newer = this lab was stored by a newer OnPath
 error-lab_unreadable = the stored state of this lab cannot be read
+say-robots_of_then = This lab was kept with robots from files that this server was not given: { $names }. It goes on without them; start the lab with --robot and the file to have them back.
 say-laws_of_then = This OnPath does not have these laws or gains, which were kept with this lab: { $names }. It goes on without them.
 say-path_of_then = The path kept with this lab is refused today: { $reasons }. The circle is used instead.
 say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
@@ -1100,7 +1174,7 @@ say-lab_kept = Your lab is kept, but cannot be opened now: { $reason }
 
 error-too_many_codes = too many wrong codes: wait a minute
 error-not_the_key = this is not the teacher's key
-error-not_the_class_code = this is not the class code on the projector
+error-not_the_class_code = this is not the class code on the projector; compare the address of this page, too
 error-class_full = this class is full
 error-no_nickname = a nickname has at least one character
 
@@ -1145,6 +1219,27 @@ transport-go_on_hint = Discards what came after. Key: G
 
 ## The course as a static site: assets/web, app/exports/site
 
+symbol-lambda = signed distance to the path
+symbol-xi_1 = signed distance across the path
+symbol-theta = place of the closest point on the path
+symbol-theta_r = place of the clock's point on the path
+symbol-e = tracking error: from the clock's point to the end-point
+symbol-d = distance to the path
+symbol-y = position of the end-point
+symbol-sigma = the path
+symbol-N = unit normal of the path
+symbol-T = unit tangent of the path
+symbol-F = force on the end-point
+symbol-q_1 = angle of link 1
+symbol-q_2 = angle of link 2
+symbol-delta = angle at the elbow
+symbol-rho = distance of the end-point from the base
+symbol-K_1 = spring across the path, or to the clock's point
+symbol-K_2 = damper that belongs to K1
+symbol-K_3 = integral: it adds up the error over time
+symbol-K_4 = spring along the path
+symbol-K_5 = damper along the path: it keeps the wanted speed
+site-symbols = Symbols on this page
 site-title = OnPath: path following is not trajectory tracking
 site-intro = Two robots draw the same path. One follows a timetable, the other a curve: see what happens when they are held back. In the course you predict, try, see and understand; everything runs in this page.
 site-lab = Try it
@@ -1169,13 +1264,18 @@ site-read_done = Read.
 site-no_progress = This file contains no progress in this course.
 site-not_kept = This browser keeps nothing for this page. Your progress lasts until you close it.
 site-skipped = You skipped the prediction. You can still make it here.
+site-draw_first = Draw in the chart with the mouse or a finger, from left to right. With keys: Tab goes to its points, and the arrows move them.
+site-to_robots = Robots
+site-to_text = Text
+site-commit_short = Commit
+site-skip_short = Skip
 site-again = The curves of this run are not kept: let it happen again to see them.
 site-no_platform = No learning platform was found around this page. Your progress is kept in this browser only.
 site-refused = The learning platform did not take your progress: { $reason }. What is not kept is lost when you close this page.
 site-no_room = The learning platform has no room for more of your progress: what you do now is lost when you close this page.
 site-cut = The learning platform keeps at most { $most } characters of a lesson: of your longest texts, only the beginning. Keep a copy if you need them whole.
 site-review = The learning platform opened this lesson for review: nothing of what you do now is kept.
-site-sketch = Board to draw on: { $quantity } [{ $unit }] from 0 to { $seconds } s. With a mouse or a finger, from left to right; or with the numbers below.
+site-sketch = Board to draw on: { $quantity } [{ $unit }] from 0 to { $seconds } s. With a mouse or a finger, from left to right; or with keys, by its points.
 site-done = { $done } of { $all } steps seen, { $tasks } tasks passed
 site-next_lesson = Next lesson: { $title }
 site-end = The end of this lesson
@@ -1189,6 +1289,7 @@ site-control-robot = the choice of the robot
 site-control-laws = the choice of the law
 site-control-copy = pulling one robot alone
 site-control-flexible = output, pull plane and exaggeration of the flexible link
+site-control-larger = exaggeration of the flexible link
 site-control-identify = identification
 site-control-show = what is shown in the scene: labels, tube, coordinates, rank test, both errors, effective mass
 site-control-direction = the direction of the hold
@@ -1199,3 +1300,65 @@ site-control-path = the choice of the path
 # The strip below the scene
 
 strip-lost = No connection to the lab; trying again.
+
+## Robots from files
+
+robot_file-at = { $file }, line { $line }, { $element }: { $reason }
+robot_file-absent = { $file }: there is no such file
+robot_file-unreadable = { $file } cannot be read: { $reason }
+robot_file-size = { $file } is larger than { $most }
+robot_file-elements = more than { $most } elements, or more than { $deepest } within each other
+robot_file-doctype = a document type is not accepted, because it can define entities: delete it
+robot_file-xml = this is not XML: { $reason }
+robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
+robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
+robot_file-without = { $what } is missing
+robot_file-name = { $field } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-numbers = { $field } { $value }: expected { $count ->
+    [one] a number
+   *[other] { $count } numbers
+ }
+robot_file-large = { $field } { $value }: too large a number
+robot_file-no_link = there is no link { $name }
+robot_file-two_parents = the link { $name } already hangs on the joint { $other }
+robot_file-loop = the links form a loop: only trees of links can be simulated
+robot_file-apart = no joint leads here from { $name }: all links of a robot hang together
+robot_file-twice = the name already exists in line { $line }
+robot_file-many = more than { $most } of them
+robot_file-joints = more than { $most } joints move on the way to the tip: lock some
+robot_file-type = unknown type { $type }
+robot_file-free = a { $type } joint on the way to the tip: lock it
+robot_file-mimic = a joint that follows another on the way to the tip: lock it
+robot_file-outside = { $value } is outside of the limits from { $low } to { $high }
+robot_file-mass = the mass { $value } is negative
+robot_file-inertia = no body has this inertia: a moment of inertia about some axis is negative
+robot_file-negative = { $field } is negative
+robot_file-limits = the lower limit { $low } is above the upper limit { $high }
+robot_file-axis = an axis needs a direction
+robot_file-shape = a shape needs positive sizes below 100 m
+robot_file-still_tip = the tip does not move: no joint on the way to it does
+robot_file-no_tip = there is no link { $tip }: there are { $names }
+robot_file-which_tip = which link is the tip? Name one with --tip (in Python, tip=…): { $names }
+robot_file-no_joint = there is no joint { $joint }: there are { $names }
+robot_file-pose = { $joint }: { $value } is not a position
+robot_file-pose_outside = { $joint }: { $value } is not between its limits { $low } and { $high }
+robot_file-armature = an armature of { $value } kg m²: expected 0 to { $most }
+robot_file-few_joints = { $count ->
+    [one] one joint moves
+   *[other] { $count } joints move
+ } on the way to the tip: at least { $needed } are needed
+robot_file-no_pose = no pose was found in which the tip is in front of the base and can move in all directions: give one with --pose
+robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose
+robot_file-circle = from this pose, circles of up to { $circle } mm can be followed, and paths need { $least } mm: give another one with --pose
+robot_file-massless = what the joint { $joint } moves has no mass or inertia: add an armature with --armature
+robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² are enough, --armature { $armature }
+robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
+robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
+robot_file-same_name = { $name } is the name of another robot
+robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
+robot_file-still = the joint { $joint } has no travel between its limits, and stays still
+robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
+robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER)
+robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
+robot_file-refused = <{ $element }> would read other files or run code: leave it out
+robot_file-left_out = left out: { $parts }

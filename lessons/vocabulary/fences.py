@@ -8,7 +8,7 @@ from difflib import get_close_matches
 
 FENCES = ("step", "scene", "script", "predict", "task", "quiz", "number", "open")
 """Blocks of TOML."""
-KNOWN = (*FENCES, "fold", "when")
+KNOWN = (*FENCES, "watch", "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")
 """Programming languages with names similar to those of blocks."""
 FIRST = re.compile(r"[^\W\d_]+")

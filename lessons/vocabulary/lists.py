@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any, get_args
 
 from onpath.lessons.record import PLOTS, QUANTITIES
+from onpath.lessons.symbols import SYMBOLS
 from onpath.lessons.task_schema import During, Stat
 from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS, EVENTS
 from onpath.lessons.words import Words
@@ -26,6 +27,7 @@ def names_markdown() -> str:
         "laws": ((name, law.label) for name, law in LAWS.items()),
         "plots": ((name, words(f"plot.{name}")) for name in PLOTS),
         "drawings, for `show`": ((name, "") for name in DRAWINGS),
+        "symbols": ((name, words(f"symbol.{name}")) for name in SYMBOLS),
         "controls": ((name, "") for name in CONTROLS),
         "quantities": ((name, f"[{unit}]") for name, unit in QUANTITIES.items()),
         "stat": ((name, "") for name in get_args(Stat)),

@@ -13,7 +13,7 @@ from onpath.models.control.laws.path_following import NEAR_TURN
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameters import Parameters, time_step
+from onpath.models.systems.parameters import Parameters, declared, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
 TYPED_LAW = Message("stop.typed_law", {"most": f"{LARGEST_NUMBER:g}"})
@@ -80,7 +80,7 @@ def _causes(
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):
-        causes += _seen(log.unpack(last), parameters, known=bool(causes))
+        causes += _seen(robot, log.unpack(last), parameters, known=bool(causes))
     plant, model = robot.plant(parameters), robot.model(parameters)
     if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
         causes.append(Message("cause.model"))
@@ -112,15 +112,19 @@ def _foreseen_at(
     return foreseen(robot, law, q, parameters)
 
 
-def _seen(last: dict[str, Array], parameters: Parameters, known: bool) -> list[Message]:
+def _seen(
+    robot: Robot, last: dict[str, Array], parameters: Parameters, known: bool
+) -> list[Message]:
     """Causes that show in the last rows before the fault.
 
     Args:
         known: whether the settings alone explain it.
     """
     causes, limit = list[Message](), parameters.torque_limit
-    if limit > 0 and (np.abs(last["u"]).max(1) >= 0.999 * limit).mean() > OFTEN:
-        causes.append(Message("cause.limit", {"limit": f"{limit:g}"}))
+    share = np.abs(last["u"]) / np.array(robot.system.strength)
+    unit = declared(type(parameters))["torque_limit"].unit
+    if limit > 0 and (share.max(1) >= 0.999 * limit).mean() > OFTEN:
+        causes.append(Message("cause.limit", {"limit": f"{limit:g}", "unit": unit}))
     if (force := np.linalg.norm(last["force"], axis=1).max()) > PULLED:
         causes.append(Message("cause.force", {"force": f"{force:.0f}"}))
     turned = np.abs(last["theta_rate"]).max() / parameters.control_rate

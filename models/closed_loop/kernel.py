@@ -38,6 +38,8 @@ from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
 from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
 from onpath.models.control import composite_control as composite
 from onpath.models.control.laws.law import Along, ControlAction, Law, View
+from onpath.models.control.laws.law_error import law_error
+from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.linearization import admissible_along, linearization
@@ -124,16 +126,29 @@ def build_kernel(
         grip: springs of the hand and the brake.
 
     Raises:
-        ValueError: an unknown law, or one that does not suit the robot, or a space curve for a
-            robot that takes none.
+        ValueError: an unknown law, one that does not suit the robot, or one whose code has an
+            error here, of which the message gives file and line; or a space curve for a robot that
+            takes none.
     """
     law = law_named(kind.controller)
     if not law.suits(system) or (kind.law == "composite" and not law.commands_acceleration):
         raise CodedError("error.law_does_not_suit", law=law.label)
     if kind.space:
         frame = _space(system, frame, kind)
+    try:
+        return _kernel(system, frame, kind, law, (substeps, grip))
+    except CodedError:
+        raise
+    except Exception as error:  # only a law's code is not tested with every robot
+        typed = CodedError("error.law_cannot_run") if is_text(law.name) else None
+        raise typed or law_error(law.name, error, law.command) from error
+
+
+def _kernel(
+    system: MechanicalSystem, frame: Frame, kind: Kind, law: Law, plant: tuple[int, forces.Grip]
+) -> Kernel:
     bases = _bases(system, kind, law)
-    advance = _advance(system, frame, kind, law, (substeps, grip), bases)
+    advance = _advance(system, frame, kind, law, plant, bases)
     layouts = loop_layouts(system, kind)
     return Kernel(
         state=layouts.state,
@@ -190,7 +205,7 @@ def _advance(
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = commanded(law, view)
     wanted, memory = _wanted(kind, state, settings, view, command, beam)
-    fresh, acts, saturated = held_torque(kind, state, settings, wanted)
+    fresh, acts, saturated = held_torque(system, kind, state, settings, wanted)
     drive = driven(kind, state, settings, fresh, acts)
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
     summed = _integral(kind, law, state, settings, acts, saturated, command)
@@ -238,7 +253,8 @@ def _wanted(
         along, direction = part.command, part.direction
         base = torque(acceleration - direction * along)
         slope = torque(acceleration - direction * (along - 1)) - base
-        reduced = admissible_along(base, slope, along, settings["torque_limit"])
+        limits = view.system.torque_limits(settings["torque_limit"])
+        reduced = admissible_along(base, slope, along, limits)
         acceleration = acceleration + direction * (reduced - along)
     return torque(acceleration), memory
 

@@ -181,7 +181,7 @@ def commanded(law: Law, view: View) -> ControlAction:
     for name, (given, size) in sizes.items():
         numbers = 0 if given is None else ca.SX(given).numel()
         if numbers != size:
-            raise ValueError(f"{law.name}: its command has {numbers} numbers as {name}, not {size}")
+            raise ValueError(f"its command has {numbers} numbers as {name}, not {size}")
     if odd := sorted(action.memory.keys() - sizes.keys()):
-        raise ValueError(f"{law.name}: its command has {', '.join(odd)}, not in Law.memory")
+        raise ValueError(f"its command has {', '.join(odd)}, not in Law.memory")
     return action

@@ -12,9 +12,9 @@ from onpath.models.systems.system import MechanicalSystem
 
 
 def held_torque(
-    kind: Kind, state: Fields, settings: Fields, wanted: ca.SX
+    system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields, wanted: ca.SX
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
-    """The torque of this tick, with the limit |u_i| <= torque_limit, in steps of torque_step.
+    """The torque of this tick, within the motors' limits, in steps of torque_step.
 
     Args:
         wanted: torque that the control law would apply now, (m, 1), [N m].
@@ -23,12 +23,12 @@ def held_torque(
         u, (m, 1), [N m]; whether the control law is evaluated in this tick; whether a torque
         saturates. The last two are 0 or 1.
     """
-    limit = settings["torque_limit"]
+    limit = system.torque_limits(settings["torque_limit"])
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
     if kind.free:
         return fresh, ca.SX(1), ca.SX(0)
     acts, fresh = state["phase"] < 0.5, _stepped(fresh, limit, settings["torque_step"])
-    return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted)) > limit
+    return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted) > limit)
 
 
 def _stepped(u: ca.SX, limit: ca.SX, step: ca.SX) -> ca.SX:
@@ -112,9 +112,11 @@ def move(
         if kind.stiction:
             levels = settings["stiction"], settings["coulomb"]
             resting = friction(system, now, tau, settings["plant"], levels)
-            tau = tau + ca.vertcat(resting.torque, ca.SX(system.n - system.m, 1))
+            tau = tau + system.effort(now["q"], resting.torque, settings["plant"])
         moved = integrate(system, now, settings, tau, share * settings["dt"] / plant[0], plant[0])
-        now = moved if resting is None else resting.applied(now, moved)
+        if resting is not None:
+            moved = resting.applied(system, now, moved, settings["plant"])
+        now = moved
     return *pushes[0], now
 
 

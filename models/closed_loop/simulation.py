@@ -19,6 +19,7 @@ from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.space_curves import saddle
@@ -27,7 +28,7 @@ from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, 
 from onpath.models.systems.robots import Robot
 
 MOST = 8  # kernels that are kept, and as many of typed laws; 0.2 MB each
-NO_LIMIT = 1000.0  # [N m], the limit when there is none: far above any motor, but finite
+NO_LIMIT = 1000.0  # [N m], the least limit when there is none: far above any torque, but finite
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,6 +73,8 @@ def check_level_set(parameters: Parameters, curve: Curve) -> None:
         return
     if not has_level_set(curve):
         raise CodedError("error.no_level_set")
+    if any(each.check == "crosses" for each in ambiguities(curve)):
+        raise CodedError("error.level_set_crosses")
     if curve.equation is not None:
         check_level(curve)
 
@@ -161,7 +164,7 @@ def settings_vector(
             "level_centre": centre,
             "level_weights": weights,
             "level_constant": constant,
-            "torque_limit": parameters.torque_limit or NO_LIMIT,
+            "torque_limit": parameters.torque_limit or NO_LIMIT / min(robot.system.strength),
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
             "encoder_filter": parameters.encoder_filter,

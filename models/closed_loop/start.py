@@ -12,7 +12,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import LoopLayouts
 from onpath.models.closed_loop.simulation import first_state
 from onpath.models.errors import CodedError
-from onpath.models.paths.curves import Curve
+from onpath.models.paths.curves import PERIOD, Curve
 from onpath.models.paths.distance import closest_parameter
 from onpath.models.paths.path_checks import LEAST_MARGIN
 from onpath.models.systems.parameter_specs import out_of_range
@@ -21,6 +21,7 @@ from onpath.models.systems.robots import Robot
 
 BOUNDS = {"theta": np.pi, "beside": 0.2, "along": 2.0, "across": 2.0, "clock_offset": np.pi}
 """Largest absolute value of each number of a start, SI."""
+NEAR = 1e-3  # [rad], between a place and what the global search finds on the same strand
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,13 @@ def nearest_start(curve: Curve, z: Array, start: Start = ON_PATH) -> Start:
 
 
 def velocity_at(
-    robot: Robot, parameters: Parameters, curve: Curve, q: Array, along: float, across: float
+    robot: Robot,
+    parameters: Parameters,
+    curve: Curve,
+    q: Array,
+    along: float,
+    across: float,
+    theta: float | None = None,
 ) -> Array:
     """Joint velocities for a velocity of the end-point relative to the path, shape (n,).
 
@@ -95,12 +102,14 @@ def velocity_at(
         q: configuration, shape (n,).
         along, across: velocity along the tangent, and along the normal to the left, at the closest
             point, [m/s].
+        theta: of the closest point, [rad]; None: found by global search.
     """
     v = np.zeros_like(q)
     if along == 0 == across:
         return v
     frame = robot.frame
-    theta = closest_parameter(frame, curve, robot.endpoint(q))
+    if theta is None:
+        theta = closest_parameter(frame, curve, robot.endpoint(q))
     first = curve.at(np.array(theta), 1)
     rate = along * (first / np.linalg.norm(first)) + across * left_of(curve, theta)
     return driven_rates(robot, parameters, q, frame.lift(rate) - frame.lift(np.zeros(2)))
@@ -146,7 +155,11 @@ def start_state(
         ValueError: the start is out of reach.
     """
     q, v = _motion(robot, curve, parameters, start)
-    return lead(first_state(robot, layouts, curve, q, v), layouts, curve, start.clock_offset)
+    state = first_state(robot, layouts, curve, q, v)
+    if (theta := _on_strand(robot, curve, start, q)) is not None:
+        fields = layouts.state.unpack(state)
+        fields["theta"][:] = fields["theta_ref"][:] = theta
+    return lead(state, layouts, curve, start.clock_offset)
 
 
 def check_start(robot: Robot, curve: Curve, parameters: Parameters, start: Start) -> None:
@@ -169,4 +182,14 @@ def _motion(
 ) -> tuple[Array, Array]:
     """Configuration and velocity of a start, each shape (n,)."""
     q = robot.rest(robot.frame.lift(start.place(curve)))
-    return q, velocity_at(robot, parameters, curve, q, start.along, start.across)
+    theta = _on_strand(robot, curve, start, q)
+    return q, velocity_at(robot, parameters, curve, q, start.along, start.across, theta)
+
+
+def _on_strand(robot: Robot, curve: Curve, start: Start, q: Array) -> float | None:
+    """θ of a start on the path, if the global search would find another strand; else None."""
+    if start.beside:
+        return None
+    gap = closest_parameter(robot.frame, curve, robot.endpoint(q)) - start.theta
+    turns = round(gap / PERIOD) if curve.closed else 0
+    return start.theta if abs(gap - turns * PERIOD) > NEAR else None

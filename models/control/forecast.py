@@ -23,7 +23,7 @@ from onpath.models.errors import CodedError, Message
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import MechanicalSystem, conditioning
-from onpath.models.systems.zero_dynamics import zero_dynamics
+from onpath.models.systems.zero_dynamics import ZeroDynamics, zero_dynamics
 
 SINGULAR = Message("forecast.singular")
 NO_REST = Message("forecast.no_rest")
@@ -76,13 +76,18 @@ def growth_rate(robot: Robot, parameters: Parameters, q: Array) -> float | None:
         q: shape (n,), where the decoupling matrix has full rank.
     """
     system, model = robot.core.system, robot.model(parameters)
-    zero = _zero_dynamics(system, _following(system, q, model))
-    still = np.zeros(system.p)
+    zero, still = zero_dynamics_at(robot, parameters, q), np.zeros(system.p)
     if np.abs(np.array(zero.acceleration(q, still, still, model))).max() > AT_REST:
         return None
     exponents = zero.exponents(q, model)[0]
     rate = float(exponents[0].real)
     return rate if rate > NEUTRAL * np.abs(exponents).max() else min(rate, 0.0)
+
+
+def zero_dynamics_at(robot: Robot, parameters: Parameters, q: Array) -> ZeroDynamics:
+    """The zero dynamics of a robot, with coordinates that can follow the output at q, (n,)."""
+    system = robot.core.system
+    return _zero_dynamics(system, _following(system, q, robot.model(parameters)))
 
 
 def forecasts(robot: Robot, laws: Iterable[str], parameters: Parameters, q: Array) -> list[Message]:

@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.control.laws.law_error import law_error
 from onpath.models.control.laws.own import formulas_of, is_text
 from onpath.models.control.laws.references import LEAST_GAIN
 from onpath.models.control.laws.registry import SHARED_GAINS, law_named
@@ -34,7 +35,7 @@ def channels_of(
     """The channels of a law across and along the path, or the reason why it has none.
 
     Args:
-        law: a name of the registry, or a typed law.
+        law: a name of the registry, or a typed law. An error in its code is a reason, too.
         place: of the robot, for laws whose poles vary along the path.
 
     Raises:
@@ -47,7 +48,10 @@ def channels_of(
         return channels(parameters)
     if entry.channels is None or place is None:
         return Message("behaviour.no_poles")
-    return entry.channels(parameters, place)
+    try:
+        return entry.channels(parameters, place)
+    except Exception as error:
+        return law_error(law, error, entry.channels).message
 
 
 def _of_typed(text: str, parameters: Parameters) -> tuple[Channel, Channel] | Message:

@@ -24,7 +24,10 @@ def linearization(
         u = W⁻¹ D^T (D W⁻¹ D^T)⁻¹ r,   W = B^T M⁻¹ B.
 
     For B = I it is u = J^T (J M⁻¹ J^T)⁻¹ r. It leaves the motion within the null space of J to the
-    robot's own dynamics: c is not compensated there.
+    robot's own dynamics: c is not compensated there. A robot with a `posture` u0 adds the part of
+    u0 that does not move the end-point, v₁∥ in (5):
+
+        u = u0 + W⁻¹ D^T (D W⁻¹ D^T)⁻¹ (r - D u0).
 
     Args:
         system: the equations of motion.
@@ -35,8 +38,8 @@ def linearization(
     Returns:
         Inputs, (m, 1), [N m] for torques.
 
-    Source: eq. (16); for m > p, Khatib, A unified approach for motion and force control of robot
-    manipulators, IEEE Journal of Robotics and Automation 3 (1987), 43-53.
+    Source: eqs. (5), (16); for m > p, Khatib, A unified approach for motion and force control of
+    robot manipulators, IEEE Journal of Robotics and Automation 3 (1987), 43-53.
     """
     jacobian = ca.jacobian(system.controlled_output, system.q)
     turning = ca.jtimes(jacobian @ system.v, system.q, system.v)
@@ -45,7 +48,11 @@ def linearization(
         u = system.mass @ _solve(jacobian, wanted - turning) + system.bias
     else:
         gain = ca.densify(jacobian @ system.input_gain)
-        u = _least_solution(system, gain, wanted - jacobian @ system.drift - turning)
+        rest, posture = wanted - jacobian @ system.drift - turning, system.posture
+        if posture is None or system.m == system.p:
+            u = _least_solution(system, gain, rest)
+        else:
+            u = posture + _least_solution(system, gain, rest - gain @ posture)
     inputs = [system.q, system.v, system.parameters, wanted]
     return ca.Function("linearization", inputs, [u])(q, v, model, acceleration)
 
@@ -80,7 +87,7 @@ def admissible_along(base: ca.SX, per_along: ca.SX, along: ca.SX, limit: ca.SX) 
         base: B, the torques at v_par = 0, (m, 1), [N m].
         per_along: A, (m, 1), [N m s²/rad].
         along: v_par, [rad/s²].
-        limit: of every torque, [N m].
+        limit: of each torque, (m, 1), or of all, (1, 1), [N m].
     """
     small = 1e-9
     slope = ca.if_else(ca.fabs(per_along) > small, per_along, small)

@@ -35,7 +35,7 @@ class Channel:
         stable: whether all of them decay. The position of a speed loop is not part of the channel.
         integral: whether the channel has integral action.
         at: θ at which these are the poles, if they vary along the path, [rad].
-        said: the behaviour of the channel, if its poles do not tell it.
+        message: the behaviour of the channel, if its poles do not tell it.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Channel:
     stable: bool
     integral: bool
     at: float | None = None
-    said: Message | None = None
+    message: Message | None = None
 
     def behaviour(self) -> Message:
         """Stability, settling time (4 / |Re s| of the slowest pole) and damping, for a user.
@@ -52,8 +52,8 @@ class Channel:
         initial error overshoots: the integral is 0 at the start and at the end, so that the error
         must change its sign.
         """
-        if self.said is not None:
-            return self.said
+        if self.message is not None:
+            return self.message
         if not self.stable:
             return self._unstable()
         settles, damping = 4 / float(-self.poles.real.max()), min(map(_damping, self.poles))

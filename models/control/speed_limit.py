@@ -30,7 +30,7 @@ def speed_limit(
     Args:
         model: the plant's parameters as the controller assumes them, k numbers.
         curve: the path.
-        torque: limit of every motor, [N m].
+        torque: limit of the motors, the value of `torque_limit`.
         backwards: whether θ decreases.
 
     Returns:
@@ -42,8 +42,8 @@ def speed_limit(
     sign = -1.0 if backwards else 1.0
     ahead, resting, back = (_torques(robot, model, curve, w) for w in (sign, 0.0, -sign))
     a, b = (ahead + back) / 2 - resting, (ahead - back) / 2
-    bound = SHARE * torque
-    if np.abs(resting).max() >= bound:
+    bound = SHARE * torque * np.array(robot.system.strength)[:, None]
+    if (np.abs(resting) >= bound).any():
         return 0.0
     roots = [_smallest_root(a, b, resting - level) for level in (bound, -bound)]
     return float(min(NO_SPEED_LIMIT, *(root.min() for root in roots)))

@@ -1,4 +1,4 @@
-"""Which checks of `path_checks.py` a curve fails as a path for a robot, and where."""
+"""Which checks of `path_checks.py` a curve fails as a path, and where: faults and ambiguities."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ REASONS: Mapping[str, Message] = MappingProxyType(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Fault:
-    """One reason why a curve cannot be followed.
+    """One reason why a curve cannot be followed, or why it is ambiguous.
 
     Attributes:
         check: the check that fails, a key of `REASONS`.
@@ -65,8 +65,7 @@ class Fault:
 def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
     """All faults of a curve as a path for a robot; an empty list if it can be followed.
 
-    The curve is checked at `SAMPLES` values of θ. On a path of 1 m, the distance between samples of
-    two strands exceeds that between the strands by 1 % at most.
+    The curve is checked at `SAMPLES` values of θ.
 
     Args:
         reach: the robot's `Robot.margin`, shape (n, d) -> (n,).
@@ -79,13 +78,19 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
         return [Fault("not_numbers", np.zeros((0, 2)))]
     (found,) = evaluated(_point_checks(d), samples[:, d:], reach(z))
     bad = zip(POINT_CHECKS, found.T > 0, strict=True)
-    faults = [Fault(check, z[at]) for check, at in bad if at.any()]
-    return faults + strand_faults(z, curve.closed)
+    return [Fault(check, z[at]) for check, at in bad if at.any()]
 
 
-def own_faults(curve: Curve) -> list[Fault]:
-    """The faults of a curve as a path for any robot, whatever its reach."""
-    return curve_faults(lambda z: np.ones(len(z)), curve)
+def ambiguities(curve: Curve) -> list[Fault]:
+    """Where the closest point is not unique because strands cross or are too close to each other.
+
+    They do not keep a robot from following the curve, and its user is warned of them. On a path of
+    1 m, the distance between samples of two strands exceeds that between the strands by 1 % at
+    most.
+    """
+    (samples,) = evaluated(_samples(curve.closed, curve.dimension), curve.table())
+    z = samples[:, : curve.dimension]
+    return strand_faults(z, curve.closed) if np.all(np.isfinite(z)) else []
 
 
 def strand_faults(z: Array, closed: bool) -> list[Fault]:

@@ -44,7 +44,7 @@ def closed_through(points: Array) -> Curve:
         ValueError: points that are not finite, fewer than three distinct points, or a total length
             below `SHORTEST`.
     """
-    points = _distinct(points, least=3)
+    points = distinct(points, least=3)
     ring = np.vstack([points, points[:1]])
     spline = _spline_through(ring, "periodic")
     return _fourier_of(_equal_arc(spline, endpoint=False))
@@ -57,7 +57,7 @@ def fitted(points: Array, closed: bool) -> Curve:
 
 
 def with_deviation(curve: Curve, points: Array) -> Curve:
-    """The curve with its `deviation` from the straight lines between points.
+    """The curve with the points that it was `given`, and its `deviation` from the lines between.
 
     It is the larger of two distances: the largest from the curve to the lines, and the largest from
     the lines to the curve, each represented by `DENSE` points. On a path of 0.4 m it is at most 0.1
@@ -75,7 +75,8 @@ def with_deviation(curve: Curve, points: Array) -> Curve:
     lines = np.vstack([np.stack([np.interp(even, s, line[:, i]) for i in (0, 1)], axis=1), corners])
     seen = curve.at(_even(-np.pi, np.pi, DENSE))
     distances = KDTree(lines).query(seen)[0], KDTree(seen).query(lines)[0]
-    return replace(curve, deviation=float(np.concatenate(distances).max()))
+    given = line[:: len(line) // DENSE + 1]
+    return replace(curve, deviation=float(np.concatenate(distances).max()), given=given)
 
 
 def deviation_remark(curve: Curve) -> Message | None:
@@ -85,18 +86,24 @@ def deviation_remark(curve: Curve) -> Message | None:
     return Message("say.deviates", {"deviation": f"{1e3 * curve.deviation:.1f}"})
 
 
-def closed_along(points: Array) -> Curve:
-    """A closed curve along many points that lie close together, in their order.
+def along(points: Array, closed: bool) -> Curve:
+    """A curve along the straight lines between points, in their order.
 
-    Between them it is taken as straight; see `closed_through` for the series.
+    See `closed_through` and `open_through` for the series.
 
     Args:
-        points: shape (n, 2), many times `SAMPLES`, [m].
+        points: shape (n, 2), [m].
+        closed: whether the last point is joined to the first.
+
+    Raises:
+        ValueError: see `distinct`.
     """
-    ring = np.vstack([points, points[:1]])
-    s = _arc_length(ring)
-    even = _even(0, s[-1], SAMPLES, endpoint=False)
-    return _fourier_of(np.stack([np.interp(even, s, ring[:, i]) for i in (0, 1)], axis=1))
+    distinct(points, least=3 if closed else 2)
+    line = np.vstack([points, points[:1]]) if closed else points
+    s = _arc_length(line)
+    even = _even(0, s[-1], SAMPLES, endpoint=not closed)
+    samples = np.stack([np.interp(even, s, line[:, i]) for i in (0, 1)], axis=1)
+    return _fourier_of(samples) if closed else _chebyshev_of(samples)
 
 
 def open_through(points: Array) -> Curve:
@@ -111,14 +118,11 @@ def open_through(points: Array) -> Curve:
         ValueError: points that are not finite, fewer than two distinct points, or a total length
             below `SHORTEST`.
     """
-    points = _distinct(points, least=2)
+    points = distinct(points, least=2)
     if len(points) == 2:
         return chebyshev_curve(np.stack([points.mean(0), (points[1] - points[0]) / 2]))
     spline = _spline_through(points, "natural")
-    samples = _equal_arc(spline, endpoint=True)
-    x = _even(-1, 1, SAMPLES)
-    coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
-    return chebyshev_curve(coefficients)
+    return _chebyshev_of(_equal_arc(spline, endpoint=True))
 
 
 def through_samples(samples: Array, closed: bool) -> Curve:
@@ -152,7 +156,7 @@ def from_stroke(points: Array, closed: bool, passes: int = 40) -> Curve:
         ValueError: points that are not finite, fewer than three distinct points, or a total length
             below `SHORTEST`.
     """
-    points = _distinct(points, least=3)
+    points = distinct(points, least=3)
     if closed:
         points = np.vstack([points, points[:1]])
     s = _arc_length(points)
@@ -184,7 +188,7 @@ def control_points(curve: Curve, count: int) -> Array:
     return curve.at(np.interp(even, s, theta))
 
 
-def _distinct(points: Array, least: int) -> Array:
+def distinct(points: Array, least: int) -> Array:
     """The points that are `APART` from the one kept before them, shape (n, 2) -> (k, 2).
 
     A last point that coincides with the first is dropped.
@@ -253,6 +257,13 @@ def _fourier_of(samples: Array) -> Curve:
     spectrum = np.fft.rfft(samples, axis=0) / len(samples)
     harmonics = spectrum[1 : HARMONICS + 1] * _half_turns()[:, None]
     return fourier(spectrum[0].real, 2 * harmonics.real, -2 * harmonics.imag)
+
+
+def _chebyshev_of(samples: Array) -> Curve:
+    """The Chebyshev series that fits samples at evenly spaced θ best, shape (SAMPLES, 2)."""
+    x = _even(-1, 1, SAMPLES)
+    coefficients: Array = chebyshev.chebfit(x, samples, HARMONICS).astype(np.float64)
+    return chebyshev_curve(coefficients)
 
 
 def _half_turns() -> Array:

@@ -41,12 +41,15 @@ class Curve:
         equation: s = ... in z1 and z2, if the curve consists of the points where s is 0.
         deviation: largest distance between the curve and the straight lines between the points to
             which it was fitted, [m]; 0 if it was not fitted.
+        given: these points, or some of very many, shape (n, 2), [m]; the last one is the first one
+            of a closed curve. None if it was not fitted.
     """
 
     closed: bool
     series: Array
     equation: str | None = None
     deviation: float = 0.0
+    given: Array | None = None
 
     def __repr__(self) -> str:
         kind, size = "closed" if self.closed else "open", 1e3 * np.ptp(self._drawn(), axis=0)
@@ -54,15 +57,15 @@ class Curve:
         return f"<{kind} path, {1e3 * self.length():.0f} mm long, {extent} mm>"
 
     def _repr_svg_(self) -> str:
-        """A drawing for notebooks: the plan view, with a dot where θ = 0."""
+        """A drawing for notebooks: the plan view, dashed what was given, with a dot at θ = 0."""
         z = 1e3 * self._drawn()[:, :2] * (1, -1)
         (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
-        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in z)
         x, y = 1e3 * self.at(np.array(0.0))[:2] * (1, -1)
+        lines = "" if self.given is None else _polyline(1e3 * self.given * (1, -1), "2")
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width:.0f}"'
             f' viewBox="{left:.1f} {top:.1f} {width:.1f} {height:.1f}">'
-            f'<polyline points="{points}" fill="none" stroke="gray"/>'
+            f"{lines}{_polyline(z)}"
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="gray"/></svg>'
         )
 
@@ -195,6 +198,13 @@ class Curve:
         weights = np.array([a21**2 + a22**2, a11**2 + a12**2, -(a11 * a21 + a12 * a22)])
         area = abs(float(determinant))
         return table[0], weights / area, area
+
+
+def _polyline(points: Array, dashes: str = "none") -> str:
+    """An element of an SVG drawing."""
+    corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    style = f'fill="none" stroke="gray" stroke-dasharray="{dashes}"'
+    return f'<polyline points="{corners}" {style}/>'
 
 
 def nearest(curve: Callable[[Array], Array], grid: Array, points: Array) -> tuple[Array, Array]:

@@ -1,18 +1,26 @@
 """The checks of a path, each as one CasADi expression.
 
-A path must lie in the workspace, stay away from singular configurations (14), and have a unique
-closest point (7) at every point of the tube of radius TUBE around it (section II.D of the paper);
-the control laws need that uniqueness. A closed curve has such a tube if and only if
+A path must lie in the workspace, stay away from singular configurations (14), and have at every
+point a unique closest point (7) among those nearby, in the tube of radius TUBE around it:
 
-    |κ| <= 1 / TUBE,  and
+    |κ| <= 1 / TUBE.
+
+The closest point is unique on the whole path (section II.D of the paper) if also
+
     |σ(a) - σ(b)| >= 2 TUBE  where the arc length between a and b is at least π TUBE.
 
-Points so far apart along the path are in different strands. The first condition forbids sharp
-bends; by Schur's theorem it implies that points with less arc length between them do not meet. The
-second condition forbids strands that run too close to each other or cross. In the plan view,
-strands of a space curve may cross if they are 2 TUBE above each other.
+Points so far apart along the path are in different strands. By Schur's theorem, the first condition
+implies that points with less arc length between them do not meet. Where the second one does not
+hold, strands run close to each other or cross. In the plan view, strands of a space curve may cross
+if they are 2 TUBE above each other.
 
-`curve_faults.py` evaluates the expressions for the lab, and `models/web_export/edit.py` translates
+A path that fails the first condition is refused. One that fails the second is followed, with a
+warning: no law searches the whole path. A law has a clock, or it starts each search for the closest
+point at the last one and so stays on its strand; what it stabilises is then not a set of states x,
+but one of (x, θ). Only `models/studies/crossing.py` searches the whole path, and shows how that
+fails. A level set has no gradient at a crossing, so `check_level_set` refuses such a path.
+
+`curve_faults.py` evaluates the expressions for the lab, and `models/standalone/edit.py` translates
 them for pages without a server: same path, same verdict.
 """
 
@@ -127,7 +135,8 @@ POINT_CHECKS: Mapping[str, Callable[[PathPoint], ca.SX]] = MappingProxyType(
 STRAND_CHECKS: Mapping[str, Callable[[StrandPair], ca.SX]] = MappingProxyType(
     {"narrow": narrow, "crosses": crosses}
 )
-"""1 where a check fails, else 0. Strands that cross need not be reported as narrow as well."""
+"""1 where a check fails, else 0: the former find faults, the latter ambiguities. Strands that cross
+need not be reported as narrow as well."""
 
 
 def sampled_theta(number: ca.SX, closed: bool) -> ca.SX:

@@ -6,7 +6,7 @@ A `PathDesign` is immutable; every edit returns a new one.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
 import numpy as np
@@ -15,7 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_blend import aligned
 from onpath.models.paths.curve_fit import (
-    closed_along,
+    along,
     closed_through,
     control_points,
     from_stroke,
@@ -131,8 +131,18 @@ def drawn(stroke: Array, before: Curve | None = None) -> PathDesign:
     closed = float(np.linalg.norm(stroke[0] - stroke[-1])) < 0.25 * length
     rightwards = before if before and not before.closed else segment((-0.1, 0.0), (0.1, 0.0))
     curve = aligned(from_stroke(stroke, closed), circle(0.1) if closed else rightwards)
-    curve = with_deviation(curve, stroke)
-    return PathDesign("drawn", curve, control_points(curve, 10 if closed else 6))
+    return _with_points(with_deviation(curve, stroke))
+
+
+def from_curve(curve: Curve) -> PathDesign:
+    """A design from any plane curve, with its parameter aligned as in `drawn`."""
+    rightwards = segment((-0.1, 0.0), (0.1, 0.0))
+    turned = aligned(curve, circle(0.1) if curve.closed else rightwards)
+    return _with_points(replace(turned, given=curve.given, deviation=curve.deviation))
+
+
+def _with_points(curve: Curve) -> PathDesign:
+    return PathDesign("drawn", curve, control_points(curve, 10 if curve.closed else 6))
 
 
 def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
@@ -140,7 +150,7 @@ def _rounded_square(half: float = 0.05, power: float = 5.0) -> Curve:
     angle = np.linspace(-np.pi, np.pi, 4096, endpoint=False)
     c, s = np.cos(angle), np.sin(angle)
     radius = half / (np.abs(c) ** power + np.abs(s) ** power) ** (1 / power)
-    return closed_along(radius[:, None] * np.column_stack([c, s]))
+    return along(radius[:, None] * np.column_stack([c, s]), closed=True)
 
 
 def _clover() -> Curve:
@@ -184,7 +194,7 @@ class Presets(Mapping[str, PathDesign]):
 def presets(radius: float = 0.05) -> Presets:
     """The predefined paths by name.
 
-    The figure of eight intersects itself, to show how a path is refused.
+    The figure of eight crosses itself: its users are warned, see models/paths/path_checks.py.
 
     Args:
         radius: of the circle, [m]; the ellipse and the rounded square scale with it.
@@ -195,7 +205,7 @@ def presets(radius: float = 0.05) -> Presets:
         ("rounded square", partial(_rounded_square, radius), 12),
         ("clover", _clover, 16),
         ("segment", partial(segment, (-0.06, -0.02), (0.06, 0.03)), 2),
-        ("figure of eight", _figure_eight, 12),
+        ("figure of eight", _figure_eight, 16),
     )
     return Presets({name: partial(_designed, name, make, count) for name, make, count in designs})
 

@@ -203,9 +203,9 @@ def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
 
 
 def _largest_torque(contest: Contest) -> float:
-    """The largest torque of unobstructed path following, [N m]."""
+    """The least `torque_limit` without effect on unobstructed path following."""
     parts, _ = _run(contest, "path_following", OBSTRUCTIONS["none"], 0.0, 0.0)
-    return float(np.abs(parts["u"]).max())
+    return float((np.abs(parts["u"]) / np.array(contest.robot.system.strength)).max())
 
 
 def _outcome(

@@ -16,6 +16,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.sensing import readings
 from onpath.models.closed_loop.simulation import (
     FREE,
@@ -31,7 +32,7 @@ from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
 from onpath.models.errors import Message
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import Curve, circle
 from onpath.models.studies import schedule as schedules
 from onpath.models.studies.schedule import Schedule
@@ -154,6 +155,12 @@ def check_path(robot: Robot, path: Curve, name: str = "") -> None:
         raise ValueError(f"{name}: {reasons}" if name else reasons)
 
 
+def path_remark(path: Curve) -> str:
+    """A warning of the places where the closest point on a path is not unique; empty if there are
+    none."""
+    return "; ".join(str(each.reason) for each in ambiguities(path))
+
+
 def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:
     """The foreseen problems under some of the laws; empty if there are none.
 
@@ -270,8 +277,15 @@ def _off_the_ellipse(robot: Robot) -> Array:
     return robot.frame.lift(z) + y - usual.frame.lift(z)
 
 
-def run(experiment: Experiment, controller: str) -> Trajectory:
+def run(
+    experiment: Experiment,
+    controller: str,
+    loop: Callable[[Kernel], InterpretedLoop] = InterpretedLoop,
+) -> Trajectory:
     """Simulate an experiment under one control law.
+
+    Args:
+        loop: makes the closed loop.
 
     Returns:
         One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
@@ -288,7 +302,7 @@ def run(experiment: Experiment, controller: str) -> Trajectory:
     check_possible(robot, controller, experiment.parameters, robot.rest(start))
     scheduled = ScheduledRun(
         robot=robot,
-        kernel=kernel,
+        loop=loop(kernel),
         curve=curve,
         parameters=experiment.parameters,
         schedule=schedule,

@@ -206,11 +206,12 @@ def _equations(
     columns = filtered(slopes[..., size:], weight) - filtered(slopes[..., :size], rate)
     right = filtered(tau, held) + filtered(offsets[..., 0], rate)
     right -= filtered(offsets[..., 1], weight)
-    joints = record.v[:, : system.m]
-    signs = filtered(joints / np.sqrt(joints**2 + DRY_VELOCITY**2), held)
     friction = np.zeros((len(right), n, system.m))
-    for joint in range(system.m):
-        friction[:, joint, joint] = signs[:, joint]
+    for motor, u in enumerate(np.eye(system.m)):
+        unit = np.tile(u[:, None], rows)
+        column = model.effort.map(rows)(record.q.T, unit, 0 * record.force.T, plant).full().T
+        rate = np.sum(column * record.v, axis=1, keepdims=True)
+        friction[..., motor] = filtered(column * rate / np.sqrt(rate**2 + DRY_VELOCITY**2), held)
     motors = model.effort.map(rows)(record.q.T, record.u.T, 0 * record.force.T, plant).full().T
     change = -filtered(motors, np.diff(weight) / record.dt)  # <w, τ'> = -<w', τ>, by steps
     return np.concatenate([columns, friction], axis=2), right, change

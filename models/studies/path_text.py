@@ -71,11 +71,10 @@ def curve_from_text(text: str) -> Curve:
     return _MAKERS[form](_numbers(words, shape))
 
 
-def is_table(text: str) -> bool:
-    """Whether a text looks like a table of points: a line of two or three numbers, or more."""
-    number = r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?"
-    row = rf"^[ \t]*{number}([ \t]*[,;\t ][ \t]*{number}){{1,2}}[ \t\r]*$"
-    return re.search(row, text, re.MULTILINE) is not None
+def is_described(text: str) -> bool:
+    """Whether a text seems to be for `curve_from_text`, by how it begins."""
+    begin = text.lstrip("\ufeff \t\r\n")
+    return begin.startswith(("{", "[", IMPLICIT, *FORMS, *presets()))
 
 
 def _implicit(text: str) -> Curve:

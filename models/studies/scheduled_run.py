@@ -8,7 +8,6 @@ from collections.abc import Iterator
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.closed_loop.obstacles import brake_in
 from onpath.models.closed_loop.profile_shapes import profile_of
@@ -34,7 +33,7 @@ class ScheduledRun:
 
     Args:
         robot: its system, frame and springs.
-        kernel: that of the robot under the law; it must allow external forces.
+        loop: that of the robot under the law; it must allow external forces.
         curve: the path.
         parameters: of the robot, the law and the task.
         schedule: the events over time.
@@ -47,15 +46,15 @@ class ScheduledRun:
     def __init__(
         self,
         robot: Robot,
-        kernel: Kernel,
+        loop: InterpretedLoop,
         curve: Curve,
         parameters: Parameters,
         schedule: Schedule,
         start: Array,
     ) -> None:
-        self._robot, self._kernel, self._curve = robot, kernel, curve
+        self._robot, self._kernel, self._curve = robot, loop.layouts, curve
         self._parameters, self._schedule = parameters, schedule
-        self._loop, self._dt = InterpretedLoop(kernel), time_step(parameters)
+        self._loop, self._dt = loop, time_step(parameters)
         self._hold = schedule.ticks("hold", self._dt)
         self._waits = schedule.hold_at is not None and len(self._hold) > 0
         self._theta = np.empty(0)  # of the row before, while it waits

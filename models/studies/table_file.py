@@ -37,11 +37,11 @@ LONGEST_LINE = 10_000  # [characters]
 MOST_LINES = 1_000_000
 LARGEST = 1e9  # of any number, in absolute value
 SEPARATORS = "\t;,"
-_NUMBER = re.compile(
+NUMBER = re.compile(
     rf"[-+{MINUS}]?(?=[.,]?\d)\d*(?P<sign>[.,]?)\d*(?:[eE][-+{MINUS}]?\d+)?", re.ASCII
 )
 _COMMENT = re.compile(rf'[ "]*#(?![A-ZÄÖÜ][A-ZÄÖÜ/]|#*"?[{SEPARATORS}])')  # not a cell, as #N/A
-_DECLARED = re.compile(r'"?sep=(?P<separator>.)"?[\t;,]*\s*', re.IGNORECASE)
+DECLARED = re.compile(r'"?sep=(?P<separator>.)"?[\t;,]*\s*', re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,13 +71,13 @@ def read_table(path: Path, numbers: Sequence[str], texts: Sequence[str] = ()) ->
         OSError: the file cannot be read.
     """
     with path.open("rb") as raw:
-        encoding = _encoding(raw.peek(1))
+        encoding = encoding_of(raw.peek(1))
         # undecodable bytes are replaced, and refused if they matter
         with io.TextIOWrapper(raw, encoding, errors="replace", newline=None) as file:
-            return _read(_lines(file), numbers, texts)
+            return _read(lines_of(file), numbers, texts)
 
 
-def _encoding(head: bytes) -> str:
+def encoding_of(head: bytes) -> str:
     """The encoding of a text that begins with ASCII characters or a mark."""
     if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
@@ -86,7 +86,7 @@ def _encoding(head: bytes) -> str:
     return "utf-8-sig"
 
 
-def _lines(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
+def lines_of(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
     """Number and text of the lines that are neither empty nor a comment."""
     for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), start=1):
         if len(line) >= LONGEST_LINE:
@@ -99,7 +99,7 @@ def _lines(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
 
 def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str]) -> Table:
     number, line = next(lines, (1, ""))
-    if declared := _DECLARED.fullmatch(line):
+    if declared := DECLARED.fullmatch(line):
         separator = declared["separator"]
         if separator not in SEPARATORS:
             raise CodedError("error.table_separator", line=str(number), text=repr(separator))
@@ -107,15 +107,15 @@ def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Seque
     else:
         unquoted = re.sub('"[^"]*"', "", line)
         separator = next((each for each in SEPARATORS if each in unquoted), ",")
-    names = _cells(line, separator, number)
+    names = cells_of(line, separator, number)
     while names and not names[-1]:
         names.pop()
     wanted = [_place(name, names, number) for name in numbers]
     others = {name: names.index(name) for name in texts if name in names}
-    reader, flat, rows = _NumberReader(), array("d"), list[int]()
+    reader, flat, rows = NumberReader(), array("d"), list[int]()
     found = {name: list[str]() for name in others}
     for number, line in lines:
-        cells = _cells(line, separator, number)
+        cells = cells_of(line, separator, number)
         if len(cells) < len(names) or any(cells[len(names) :]):
             expected, got = str(len(names)), str(len(cells))
             raise CodedError("error.table_cells", line=str(number), wanted=expected, count=got)
@@ -128,7 +128,15 @@ def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Seque
     return Table(np.array(flat).reshape(len(rows), len(wanted)), found, rows)
 
 
-def _cells(line: str, separator: str, number: int) -> list[str]:
+def cells_of(line: str, separator: str, number: int) -> list[str]:
+    """The cells of a line.
+
+    Args:
+        number: of the line, for the message.
+
+    Raises:
+        CodedError: a quotation mark is out of place.
+    """
     reader = csv.reader([line], delimiter=separator, skipinitialspace=True, strict=True)
     try:
         return [cell.strip() for cell in next(reader, list[str]())]
@@ -146,7 +154,7 @@ def _place(name: str, names: Sequence[str], line: int) -> int:
 
 
 @dataclass(slots=True)
-class _NumberReader:
+class NumberReader:
     """Reads numbers with one decimal sign: that of the first number that has any."""
 
     _sign: str = field(default="", init=False)
@@ -158,7 +166,7 @@ class _NumberReader:
             CodedError: it is not a number, or has another decimal sign than those before.
         """
         at, text = str(line), repr(cell[:20])
-        match = _NUMBER.fullmatch(cell)
+        match = NUMBER.fullmatch(cell)
         if match is None:
             raise CodedError("error.table_not_a_number", line=at, column=column, text=text)
         value, sign = float(cell.replace(",", ".").replace(MINUS, "-")), match["sign"]

@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.beam import MOST_MODES
 from onpath.models.systems.flexible_five_bar import PLANTS
-from onpath.models.systems.parameter_specs import choice, model_error, number, unknown_payload
+from onpath.models.systems.parameter_specs import (
+    choice,
+    model_error,
+    number,
+    unknown_payload,
+    wanted_speed,
+)
 from onpath.models.systems.parameters import Parameters
 
 PLANE = SlantedPlane()  # of the default path
@@ -36,15 +42,7 @@ class FlexibleParameters(Parameters):
         group="gains",
         label="K5 along",
     )
-    speed: float = number(
-        2.0,
-        "rad/s",
-        (-10, 10, 0.1),
-        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
-        " sine, and otherwise the largest speed",
-        group="task",
-        label="Speed",
-    )
+    speed: float = wanted_speed(2.0, (-10, 10, 0.1))
     alpha: float = number(
         0.5,
         "",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from onpath.models.systems.parameter_specs import choice, number
+from onpath.models.systems.parameter_specs import choice, number, wanted_speed
 
 DISTANCE, LEVEL_SET = "distance", "level_set"  # meanings of ξ across the path, [m] or [m²]
 
@@ -71,15 +71,7 @@ class LawParameters:
         group="task",
         label="Task",
     )
-    speed: float = number(
-        2 * math.pi,
-        "rad/s",
-        (-20, 20, 0.1),
-        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
-        " sine, and otherwise the largest speed",
-        group="task",
-        label="Speed",
-    )
+    speed: float = wanted_speed(2 * math.pi, (-20, 20, 0.1))
     ramp: float = number(
         0.0,
         "rad/s²",

@@ -88,6 +88,15 @@ def choice(
     return field(default=default, metadata={"spec": spec})
 
 
+def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
+    """A dataclass field for the wanted speed along the path, [rad/s]."""
+    text = (
+        "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
+        " sine, and otherwise the largest speed"
+    )
+    return number(default, "rad/s", bounds, text, group="task", label="Speed")
+
+
 def model_error(label: str, text: str, on: float = 30.0) -> Any:
     """A dataclass field for the error of a number in the controller's model, [%]."""
     return number(0.0, "%", (-50, 50, 1), text, group="realism", label=label, on=on)

@@ -18,6 +18,7 @@ from onpath.models.paths.frames import Frame, Plane
 from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.rigid_chain import Chain, ChainSource
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
@@ -26,6 +27,7 @@ TOO_FAST = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
 NOT_FINITE = Message("stop.range")
 SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
 LEAST_REGULARITY = 0.02
+FARTHEST = 1e3  # [m], beyond the reach of every robot, also of one that slides without an end
 """Regularity relative to home below which a run is stopped, unless a robot has its own stops."""
 _FINITE = float(np.finfo(float).max)
 _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
@@ -82,6 +84,7 @@ class Robot:
         substeps: Runge-Kutta steps per tick.
         grip: the springs by which a hand, a brake and a wall act on its end-point.
         shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
+        chain: the bodies that it is made of, which are drawn; None: its bars are.
     """
 
     system: MechanicalSystem
@@ -99,6 +102,7 @@ class Robot:
     substeps: int = 1
     grip: Grip = _GRIP
     shared: Robot | None = None
+    chain: Chain | None = None
 
     @property
     def name(self) -> str:
@@ -120,7 +124,8 @@ class Robot:
         Raises:
             ValueError: a point is out of reach.
         """
-        q = _inverse(self.core)(y)
+        near = np.where(np.abs(y) <= FARTHEST, y, np.nan)
+        q = _inverse(self.core)(near)
         if not np.isfinite(q).all():
             bad = y[~np.isfinite(q).all(-1)].reshape(-1, self.system.p)[0]
             where = ", ".join(f"{value:.4g}" for value in bad)
@@ -340,6 +345,7 @@ class RobotEntry:
         flexible_link: for a robot with parameters `law` and `alpha` and an extra "deflection"; None
             if all links are rigid.
         linkage: data for identification from a record of its motion, or None.
+        source: the chain of bodies that it is, as from a file, or None.
     """
 
     name: str
@@ -352,6 +358,7 @@ class RobotEntry:
     goes_on: tuple[str, ...] = ()
     caution: Callable[[Parameters], Message | None] = lambda _: None
     linkage: BalancedLinkage | None = None
+    source: ChainSource | None = None
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""

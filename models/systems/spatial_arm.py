@@ -34,8 +34,8 @@ import casadi as ca
 from onpath.models.arrays import Array
 from onpath.models.paths.frames import LevelPlane
 from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
-from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
-from onpath.models.systems.parameters import Parameters, own_parameters
+from onpath.models.systems.parameter_specs import model_error, unknown_payload
+from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
 from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, StopCondition
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 from onpath.models.systems.two_links import elbow_up
@@ -50,8 +50,8 @@ DRAWING = Drawing(
     depths=Depths(back=0.016, front=0.0, boss=0.008, pen=0.0),
     elevation=math.radians(30.0),
     azimuth=math.radians(18.0),
-    box=((-0.13, -0.14, -0.17), (0.4, 0.14, 0.4)),
-    title=(0.12, 0.0, 0.37),
+    box=((-0.1, -0.12, -0.115), (0.36, 0.12, 0.37)),
+    title=(0.12, 0.0, 0.35),
     note=(0.25, -0.12, -0.1),
     sheet=((0.02, 0.34), (-0.14, 0.32), -0.16),
     angles=(Angle("q₂", bar=0), Angle("q₃", bar=1, after=0, near=-math.pi / 2)),
@@ -108,14 +108,7 @@ LINKS = SpatialLinks()
 class SpatialParameters(Parameters):
     """Additional parameters of the arm: the path's height, model errors and payload."""
 
-    rise: float = number(
-        0.0,
-        "m",
-        (-0.05, 0.05, 0.001),
-        "the path rises and falls by this, twice around: a saddle",
-        group="path",
-        label="Rise of the path",
-    )
+    rise: float = path_rise()
     error_inertias: float = model_error(
         "Error in inertia", "the controller's inertias a1, a2, a3 and k are off by this"
     )

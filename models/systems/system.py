@@ -44,6 +44,9 @@ class MechanicalSystem:
         energy: total mechanical energy ½ v^T M v + V(q), (1, 1), [J].
         modes: number of modal coordinates of a flexible link, which are the last of q; 0: all links
             are rigid. All other coordinates have encoders.
+        posture: torques u0(q, v) of which a redundant robot, m > p, takes the part that does not
+            move its end-point, (m, 1), see `linearization`; None: zeros.
+        strength: torque of each motor per unit of the parameter `torque_limit`, m numbers, [N m].
         n, m, p: numbers of coordinates, inputs and outputs.
     """
 
@@ -63,7 +66,9 @@ class MechanicalSystem:
     output: ca.SX
     controlled_output: ca.SX
     energy: ca.SX
+    strength: tuple[float, ...]
     modes: int = 0
+    posture: ca.SX | None = None
     n: int = field(init=False)
     m: int = field(init=False)
     p: int = field(init=False)
@@ -77,6 +82,10 @@ class MechanicalSystem:
     def joints(self) -> int:
         """Number of coordinates that encoders measure, the first of q."""
         return self.n - self.modes
+
+    def torque_limits(self, limit: ca.SX) -> ca.SX:
+        """The largest torque of each motor, (m, 1), [N m], for a value of `torque_limit`."""
+        return ca.DM(self.strength) * limit
 
     def function(self, *names: str) -> ca.Function:
         """The function (q, v, parameters) -> the named attributes (all but `acceleration`)."""
@@ -126,6 +135,8 @@ def mechanical_system(
     controlled_output: ca.SX | None = None,
     solve: Callable[[ca.SX, ca.SX], ca.SX] = ca.solve,
     modes: int = 0,
+    posture: ca.SX | None = None,
+    strength: tuple[float, ...] | None = None,
 ) -> MechanicalSystem:
     """A system from M, V, friction, B and h.
 
@@ -141,7 +152,8 @@ def mechanical_system(
         actuation: B(q), (n, m), of rank m; None: it selects the first m coordinates.
         controlled_output: (p, 1), [m]; None: h.
         solve: (M, R) -> M⁻¹ R; replace it where M has structure.
-        modes: see `MechanicalSystem.modes`.
+        modes, posture: see `MechanicalSystem`.
+        strength: see `MechanicalSystem`; None: 1 N m each.
 
     Raises:
         ValueError: m is less than p or greater than n, or B does not have the shape (n, m).
@@ -175,6 +187,8 @@ def mechanical_system(
         controlled_output=output if controlled_output is None else controlled_output,
         energy=0.5 * ca.dot(v, mass @ v) + potential_energy,
         modes=modes,
+        posture=posture,
+        strength=(1.0,) * inputs if strength is None else strength,
     )
 
 

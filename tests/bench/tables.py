@@ -36,6 +36,7 @@ from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import RobotEntry
 from tests.bench.crowd import HEAD, ClientLoad, folders, measured
+from tests.bench.drawing_cost import drawing_cost
 from tests.bench.mouse_latency import mouse_latency
 from tests.bench.reference import LANES, reference_loop
 from tests.bench.server_process import serving
@@ -58,6 +59,7 @@ def bench(quick: bool = False) -> None:
     if not quick:
         _crowds([ClientLoad(1), ClientLoad(20)])
         _start_up()
+        _pictures()
         _mouse()
 
 
@@ -223,6 +225,20 @@ def _start_up() -> None:
                 asyncio.run(asyncio.wait_for(first_poses(server.port), 30.0))
                 took = time.monotonic() - server.begun
                 print(f"start-up, {name}: {took:.2f} s to the first picture")
+
+
+def _pictures() -> None:
+    """What drawing costs in Chromium without a GPU."""
+    browser = find_browser()
+    if browser is None:
+        print("pictures in software: not measured, they need Chromium and Playwright")
+        return
+    with _quiet_lab() as lab:
+        cost = drawing_cost(lab, browser)
+    print(
+        f"drawn in software, 1280 x 800: {cost.pictures:.1f} pictures/s, each {cost.draw_ms:.0f} ms"
+        f" of the drawing process and {cost.main_ms:.0f} ms of the page's main thread"
+    )
 
 
 def _mouse() -> None:

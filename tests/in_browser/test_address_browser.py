@@ -254,3 +254,28 @@ def test_who_waits_in_vain_is_told_so_and_then_shown_the_lab(
         page.locator("[data-page]").first.wait_for(state="attached", timeout=60e3)
         told.wait_for(state="detached", timeout=60e3)
         context.close()
+
+
+@needs_nginx
+@pytest.mark.parametrize(
+    ("locale", "message"),
+    [
+        ("en-GB", "connection to the lab is lost"),
+        pytest.param("de-AT", "Verbindung zum Labor ist abgebrochen", marks=pytest.mark.thorough),
+    ],
+)
+def test_a_lost_connection_is_reported_until_it_is_back(
+    browser: Browser, server: LabServer, tmp_path: Path, locale: str, message: str
+) -> None:
+    (port,) = free_ports(1)
+    location = GUIDE.replace("8080", str(server.server.get_port()))
+    proxy = f"server {{ listen 127.0.0.1:{port}; {location} }}"
+    context = browser.new_context(locale=locale)
+    with nginx(tmp_path, port, proxy):
+        site = f"http://localhost:{port}"
+        tab = Tab(server, context, draws=False, path=f"{FOLDER}/", site=site)
+    alert = tab.page.get_by_role("alert").filter(has_text=message)
+    alert.wait_for(timeout=60e3)
+    with nginx(tmp_path, port, proxy):
+        alert.wait_for(state="detached", timeout=60e3)
+        context.close()

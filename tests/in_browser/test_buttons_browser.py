@@ -100,12 +100,10 @@ def test_a_number_beyond_the_limits_is_clamped(tab: Tab) -> None:
     wait_for(lambda: tab.number("K1").input_value() == "2500")
 
 
-def test_a_refused_path_is_explained_and_the_old_one_kept(tab: Tab) -> None:
-    tab.choose("Path", "figure of eight (is refused)")
-    tab.page.get_by_role("status").filter(has_text="refused").wait_for()
-    assert "crosses itself" in tab.said()
-    wait_for(lambda: tab.page.get_by_label("Path", exact=True).input_value() == "circle")
-    assert tab.session.editor.design.name == "circle"
+def test_a_path_that_crosses_itself_is_followed_with_a_warning(tab: Tab) -> None:
+    tab.choose("Path", "figure of eight (crosses itself)")
+    tab.page.get_by_role("status").filter(has_text="crosses itself").wait_for()
+    wait_for(lambda: tab.session.editor.design.name == "figure of eight")
     tab.choose("Path", "clover")
     wait_for(lambda: tab.session.editor.design.name == "clover")
     tab.wait_for_no_message()

@@ -19,6 +19,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.addresses import class_address
 from tests.support.axe import violations
 from tests.support.browser import THREE_FRAMES, Tab, wait_for
 
@@ -35,7 +36,7 @@ IN_SIGHT = """box => {
     const {left, top, width, height} = box.getBoundingClientRect()
     return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
 }"""
-WINDOWS = ((1100, 600), (800, 400), (800, 400))
+WINDOWS = ((1100, 700), (800, 400), (800, 400))
 
 
 @dataclass
@@ -55,7 +56,7 @@ def tabs(browser: Browser) -> Iterator[Class]:
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})
-        made.append(Tab(server, context, draws=False))
+        made.append(Tab(server, context, draws=False, path=class_address(room.code)))
         made[-1].ask(c.SetRunning(False))
     yield Class(room, made[0], made[1:])
     assert [tab.errors for tab in made] == [[], [], []]
@@ -90,13 +91,12 @@ UNCORRECTED_CODE = ["off", "off", "false"]
 
 def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     for student, name in zip(tabs.students, ("Ada", HOSTILE), strict=True):
-        fill(student, "Class code", tabs.room.code.upper())
         fill(student, "Nickname", name)
         student.press("Join the class")
         student.page.get_by_text("You are in the class as").wait_for()
     teacher = tabs.teacher
     teacher.open("Teacher…")
-    for label in ("Class code", "Nickname", "Teacher's key"):
+    for label in ("Nickname", "Teacher's key"):
         assert teacher.field(label).get_attribute("aria-required") == "true"
         left = [teacher.field(label).get_attribute(name) for name in UNCORRECTED]
         assert left == (UNCORRECTED_CODE if label != "Nickname" else [None] * len(UNCORRECTED))
@@ -105,7 +105,7 @@ def test_students_join_and_the_teacher_sees_them(tabs: Class) -> None:
     refusal = teacher.page.get_by_role("alert").filter(has_text="this is not the teacher's key")
     refusal.wait_for()
     assert placed(refusal)["y"] > placed(teacher.button("Open the teacher's page"))["y"]
-    assert refusal.evaluate(IN_SIGHT)
+    wait_for(lambda: refusal.evaluate(IN_SIGHT))
     fill(teacher, "Teacher's key", shown(tabs.room.key))
     teacher.press("Open the teacher's page")
     teacher.page.get_by_text("2 in the class").first.wait_for()
@@ -157,8 +157,11 @@ def test_a_pushed_step_opens_and_predictions_show_without_names(tabs: Class) -> 
         student.ask(c.Predict(times=(0.0, 4.0, 8.0), values=(0.0, height, 0.0)))
     picture = teacher.page.locator(".op-class").filter(visible=True)
     curves = picture.locator("svg:has(text) polyline")
+    picture.get_by_text("2 predicted").wait_for()
+    assert curves.count() == 0  # nobody follows the majority
+    teacher.page.get_by_label("Show the answers").click()
     wait_for(lambda: curves.count() == 2)
-    assert "2 predicted" in picture.inner_text() and "Ada" not in picture.inner_text()
+    assert "Ada" not in picture.inner_text()
     assert all(not student.lab.lessons.progress.notes[LESSON].truths for student in (first, second))
     teacher.page.get_by_text("Show the truth").click()
     wait_for(lambda: curves.count() == 4)  # though nobody has run it
@@ -220,6 +223,39 @@ def test_gains_of_all_are_points_that_can_be_read_from_afar(tabs: Class) -> None
     page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
     for student in (first, second):
         student.ask(c.BeginStepAnew())
+
+
+def test_next_and_back_lead_the_whole_class_and_tell_where(tabs: Class) -> None:
+    teacher, page = tabs.teacher, tabs.teacher.page
+    titles = [step.title for step in tabs.students[0].lab.lessons.course.lesson(LESSON, "en").steps]
+    for label, index in ((f"Next for all: 3. See: {titles[2]}", 2), ("Back for all", 1)):
+        page.get_by_role("button", name=label, exact=True).click()
+        for student in tabs.students:
+            student.page.get_by_role("heading", name=titles[index]).wait_for()
+        wait_for(
+            lambda index=index: teacher.field("Step").input_value().startswith(f"{index + 1}.")
+        )
+        assert not page.get_by_label("Show the answers").is_checked()
+    for student in tabs.students:
+        student.ask(c.BeginStepAnew())
+    page.get_by_label("Show the answers").click()
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
+def test_on_a_projector_what_leads_the_class_stays_in_sight(
+    tabs: Class, size: tuple[int, int]
+) -> None:
+    page = tabs.teacher.page
+    page.set_viewport_size({"width": size[0], "height": size[1]})
+    large = page.get_by_label("Presentation: large type")
+    large.click()  # below everything
+    for name in ("Back for all", re.compile("^Next for all"), "Ask this again"):
+        wait_for(lambda n=name: page.get_by_role("button", name=n).evaluate(IN_SIGHT))
+    for name in ("Show the answers", "Show the truth"):
+        assert page.get_by_label(name).evaluate(IN_SIGHT)
+    assert page.get_by_role("button", name=re.compile("^Next for all: 3. See$")).count() == 1
+    large.click()
+    page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
 
 
 def test_on_a_projector_the_prediction_is_large_and_comes_first(tabs: Class) -> None:
@@ -284,10 +320,39 @@ def test_a_route_is_opened_for_all(tabs: Class) -> None:
         assert student.lab.lessons.progress.route == "2-lecture-20-minutes"
 
 
-def test_a_teacher_who_reloads_is_still_the_teacher(tabs: Class) -> None:
-    tabs.teacher.page.reload(wait_until="commit")
-    tabs.teacher.page.get_by_text("2 in the class").first.wait_for()
+def test_a_teacher_who_reloads_is_still_the_teacher_and_at_the_same_place(tabs: Class) -> None:
+    teacher = tabs.teacher
+    teacher.field("Step").click()
+    teacher.page.get_by_role("option", name=re.compile("^5. ")).click()
+    wait_for(lambda: tabs.room.display.step == 4)
+    before = teacher.field("Step").input_value()
+    teacher.page.reload(wait_until="commit")
+    teacher.page.get_by_text("2 in the class").first.wait_for()
     assert [member.name for member in tabs.room.members().values()] == ["Ada", HOSTILE]
+    teacher.page.get_by_role("tab", name="Predictions").click()
+    assert teacher.field("Step").input_value() == before
+
+
+def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> None:
+    teacher, (first, second) = tabs.teacher, tabs.students
+    teacher.page.get_by_role("tab", name="Class").click()
+    assert teacher.button("Rename").count() == teacher.button("Remove from the class").count() == 0
+    teacher.field("Follow").click()
+    teacher.page.get_by_role("option", name=f"2. {HOSTILE}").click()
+    teacher.page.get_by_text("This is the lab of").wait_for()
+    wait_for(lambda: teacher.field("Nickname").input_value() == HOSTILE)
+    fill(teacher, "Nickname", "Ada")
+    teacher.button("Rename").click()
+    second.page.get_by_text("You are in the class as Ada 2").wait_for(state="attached")
+    teacher.page.get_by_text("This is the lab of Ada 2").wait_for()
+    wait_for(lambda: teacher.field("Nickname").input_value() == "Ada 2")
+    lab = second.lab
+    teacher.button("Remove from the class").click()
+    teacher.page.get_by_text("Removed.").wait_for()
+    teacher.page.get_by_text("1 in the class").first.wait_for()
+    second.button("Join the class").wait_for(state="attached")
+    assert second.lab is lab and [m.name for m in tabs.room.members().values()] == ["Ada"]
+    assert first.page.get_by_text("You are in the class as Ada").count() == 1
 
 
 def test_axe_finds_nothing_serious_on_the_teachers_page(tabs: Class) -> None:

@@ -96,7 +96,9 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
     assert missing(tab, *texts(step), *questions, *(task.text for task in step.tasks())) == []
     plots = [plot for plot in pupil.lesson.scene_at(pupil.index).plots if plot != "phase"]
     titles = tab.page.locator(".u-title").all_text_contents()
-    assert {ENGLISH(f"axis.{plot}") for plot in plots} <= set(titles)
+    in_space = tab.session.robot.system.p == 3  # where a path has two directions across
+    kinds = {plot: "-space" if in_space and plot.startswith("across") else "" for plot in plots}
+    assert {ENGLISH(f"axis.{plot}{kind}") for plot, kind in kinds.items()} <= set(titles)
 
 
 def assert_done(pupil: Pupil, step: Step) -> None:

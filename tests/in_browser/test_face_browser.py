@@ -89,6 +89,8 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab.reload()
     expect(invitation).to_contain_text("Bend the path")
     tab.ask(c.MovePoint(2, 1.2 * tab.session.editor.points()[2]))
+    tab.button("Open lesson 1").click()
+    tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
     expect(invitation).to_be_hidden()
     kept = "() => localStorage.getItem('viser-user:first_minute')"
     assert tab.page.evaluate(kept) == str(len(INVITATIONS))

@@ -184,8 +184,9 @@ def _before_and_while_held(reader: SiteReader) -> Iterator[SiteReader]:
     hold = reader.page.locator(".transport button.main:visible")
     if hold.count():
         hold.first.click()
-        told = "Boolean(document.querySelector('.live[role=status]:not(:empty)'))"
-        wait_for(lambda: reader.page.evaluate(told), WAIT)
+        told = reader.page.locator(".live[role=status]:not(:empty)")
+        captions = reader.page.locator(".title .caption:not(:empty)")
+        wait_for(lambda: told.count() and captions.count(), WAIT)
         yield reader
 
 

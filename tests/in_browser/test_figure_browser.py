@@ -25,6 +25,7 @@ from onpath.models.arrays import Array
 from onpath.models.control.law_poles import channels_of
 from onpath.models.control.sides import SIDES
 from onpath.models.errors import Message
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.axe import RUN, SCRIPT, unnamed
@@ -560,6 +561,32 @@ def test_a_point_of_the_path_is_dragged_as_far_as_it_goes_and_there_it_is_red(
     opened.page.keyboard.press("Escape")
     opened.page.keyboard.press("ArrowRight")
     assert opened.number("onpath.simulation.ticks") > 0 and opened.complaints == []
+    opened.page.close()
+
+
+def test_a_path_that_crosses_itself_is_followed_with_the_lab_s_warning(
+    browser: Browser, tmp_path: Path
+) -> None:
+    with pytest.warns(UserWarning, match="crosses itself"):
+        file = onpath.figure(tmp_path / "a.html", paths=["figure of eight"], controls=["drag"])
+    opened, rng = Opened(browser, file), np.random.default_rng(2)
+    design = presets()["figure of eight"]
+    assert "crosses itself" in opened.page.locator(".note").inner_text()
+    seen = set[str]()
+    for index in range(len(design.points)):
+        target = design.points[index] + rng.normal(0, 0.006, 2)
+        move = f"onpath.simulation.followed.move({index}, {target.tolist()})"
+        opened.page.evaluate(f"{move}; onpath.simulation.followed.finish()")
+        if opened.number("onpath.simulation.followed.fault") is None:
+            design = design.moved(index, target)
+            doubts = [each.reason.code for each in ambiguities(design.curve)]
+            assert opened.number("onpath.simulation.followed.doubts") == doubts
+            seen |= set(doubts)
+        else:
+            opened.page.reload()
+            opened.page.wait_for_function("window.onpath")
+            design = presets()["figure of eight"]
+    assert seen and opened.complaints == []
     opened.page.close()
 
 

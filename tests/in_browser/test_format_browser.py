@@ -19,7 +19,7 @@ from tests.support.browser import Tab, wait_for
 
 pytestmark = pytest.mark.thorough
 
-ERRORS, TUBE, MASS = "/show/errors/e", "/show/tube", "/show/mass"
+ERRORS, TUBE, MASS = "/show/errors/e_0", "/show/tube", "/show/mass"
 
 
 @pytest.fixture

@@ -24,6 +24,7 @@ pytestmark = pytest.mark.thorough
 NAMES = {"space": "Space", "escape": "Escape", "insert": "Insert", "delete": "Delete"}
 NAMES |= {f"arrow{way.lower()}": f"Arrow{way}" for way in ("Left", "Right", "Up", "Down")}
 NAMES |= {"home": "Home"}
+OPENS = "O"  # opens a lesson, which places the camera
 SILENT = ("Home", "q", "e", "PageDown", "PageUp")  # they ask nothing of the lab that counts
 OPPOSITE = ("ArrowRight", "ArrowDown", "d", "s", "e", "f", "PageUp")  # to keys on the other side
 LESSON = "01-path-or-timetable"
@@ -106,6 +107,7 @@ def test_no_key_of_lab_or_lesson_moves_the_camera(tab: Tab, opposite: bool) -> N
     pressed = [
         ("Control+" if key.modifier else "") + NAMES.get(key.hotkey, key.hotkey.lower())
         for key in KEYS
+        if key.hotkey != OPENS
     ]
     placed = settled_camera(tab)
     names = [n for n in [*pressed, *SILENT] if (n in OPPOSITE) is opposite]
@@ -213,6 +215,18 @@ def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> No
         wait_for(lambda: lab.session.forces.hands)
         tab.page.keyboard.press("x")
         wait_for(lambda: not lab.session.forces.hands)
+
+
+@pytest.mark.parametrize("hold", ["р", "η", "ي", "ㅗ"])
+def test_letters_work_on_keyboards_with_another_alphabet(tab: Tab, hold: str) -> None:
+    typist = tab.page.context.new_cdp_session(tab.page)
+    for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
+        if control is not None:
+            tab.focus(control)
+        held = bool(tab.session.forces.held)
+        for kind in ("keyDown", "keyUp"):
+            typist.send("Input.dispatchKeyEvent", {"type": kind, "key": hold, "code": "KeyH"})
+        wait_for(lambda held=held: bool(tab.session.forces.held) is not held)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:

@@ -40,7 +40,7 @@ DO_ALL = """site.page.steps.forEach((step, i) => {
         if (block.kind === "choice") site.notes.answers[i] = {option: 0}
         if (block.kind === "sketch") site.notes.answers[i] = {times: [0, 1], values: [0, 1]}
     })
-}); site.save()"""
+}); site.student.save()"""
 """As if all had been done, and all of it right."""
 JUDGED = """site.page.steps.flatMap((step, i) => step.optional ? [] : step.blocks.flatMap(
     (block, j) => ["quiz", "task"].includes(block.kind) ? [[i, j, block.right ?? null]] : []))"""
@@ -250,7 +250,7 @@ def test_a_drawn_curve_is_kept_beside_long_reasons(
         site.notes.played["2"] = true
         site.notes.answers["1"] = {times, values, why: "a".repeat(999)}
         for (const step of [4, 7]) site.notes.answers[step] = {option: 1, why: "b".repeat(999)}
-        site.save()"""
+        site.student.save()"""
     )
     assert len(opened.told("cmi.suspend_data")) <= MOST[platform[0]]
     assert opened.ask(NOTICE) == ""
@@ -258,7 +258,12 @@ def test_a_drawn_curve_is_kept_beside_long_reasons(
     for step in (1, 2, opened.ask("site.page.steps.length")):
         opened.ask(f"site.open({step})")
         shown = opened.frame.locator(".step.open")
-        wait_for(lambda shown=shown: shown.locator("canvas.chart").first.is_visible(), WAIT)
+        wait_for(
+            lambda shown=shown: shown.locator(
+                ":is(.beneath, .compared) .plot canvas"
+            ).first.is_visible(),
+            WAIT,
+        )
         assert not shown.get_by_text("You skipped the prediction").first.is_visible()
         is_told = shown.get_by_text("let it happen again to see them").is_visible()
         assert is_told == (step > 1 and platform[0] == "1.2")
@@ -272,7 +277,7 @@ def test_texts_that_are_cut_are_told(browser: Browser, platform: tuple[str, str]
     opened.ask(
         """for (const step of [1, 4, 7, 8, 9, 10])
             site.notes.answers[step] = {option: 0, why: "because ".repeat(124)}
-        site.save(); site.save()"""
+        site.student.save(); site.student.save()"""
     )
     assert opened.ask(NOTICE).count("your longest texts") == (platform[0] == "1.2")
     assert len(opened.ask("site.notes.answers[1].why")) == 992  # in the page, they are whole
@@ -285,7 +290,8 @@ def test_a_skipped_prediction_can_still_be_made(
     opened = Opened(browser, platform)
     frame = opened.frame
     opened.ask("site.open(4)")
-    frame.locator(".step.open .leave").click()
+    frame.get_by_role("button", name="Skip the prediction").click()
+    opened.ask("site.open(4)")
     assert frame.get_by_text("You can still make it here").is_visible()
     opened.ask("site.open(4)")
     frame.get_by_role("radio", name="As far as before").check()

@@ -58,11 +58,16 @@ def share_of_scale(tab: Tab) -> float:
 def test_each_switch_draws_and_removes(tab: Tab) -> None:
     page = tab.page
     tab.open("Show")
-    for name in ("Labels, axes", "Tube", "Grid (θ, ξ)", "Rank test (11)"):
+    for name in (
+        "Labels, axes",
+        "Tube",
+        "Grid along and across the path",
+        "Where the laws are defined",
+    ):
         expect(page.get_by_label(name, exact=True)).not_to_be_checked()
     assert drawn(tab) == set() and share_of_scale(tab) < 0.01
 
-    switch(tab, "Rank test (11)")
+    switch(tab, "Where the laws are defined")
     page.get_by_text("in (m/s²)/(N m)").wait_for()
     wait_for(lambda: share_of_scale(tab) > 0.05)
     switch(tab, "Tube")
@@ -70,7 +75,7 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
     tab.ask(c.SetRunning(True), c.ChoosePath("ellipse"))
     page.get_by_text("unique up to 17.5 mm").wait_for()
     tab.ask(c.SetRunning(False))
-    switch(tab, "Grid (θ, ξ)")
+    switch(tab, "Grid along and across the path")
     page.get_by_text("every 5 mm of ξ").wait_for()
     switch(tab, "Labels, axes")
     wait_for(lambda: drawn(tab) == set(NODES))
@@ -84,7 +89,12 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
     wait_for(tab.is_built)
     wait_for(lambda: drawn(tab) == set(NODES))
     tab.open("Zeigen")
-    for name in ("Namen, Achsen", "Schlauch", "Netz (θ, ξ)", "Rangtest (11)"):
+    for name in (
+        "Namen, Achsen",
+        "Schlauch",
+        "Netz längs und quer zur Bahn",
+        "Wo die Gesetze definiert sind",
+    ):
         expect(page.get_by_label(name, exact=True)).to_be_checked()
         switch(tab, name)
     wait_for(lambda: drawn(tab) == set() and share_of_scale(tab) < 0.01)

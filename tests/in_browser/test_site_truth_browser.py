@@ -70,7 +70,7 @@ def test_slow_motion_is_as_slow_as_the_script_says(browser: Browser, site: Path)
     gained, passed = reader.page.evaluate(FRAMES)
     assert 0 < gained < 0.25 * passed + 0.005
     reader.played(6)
-    assert reader.page.evaluate("site.stage.figure.rate") == 1
+    assert reader.page.evaluate("site.stage.figure.engine.rate") == 1
     reader.context.close()
 
 

@@ -114,7 +114,7 @@ def test_controls_with_more_than_fits_leave_the_robots_to_be_seen(
     """Chromium without a GPU painted the background of the controls over the scene as well."""
     context = browser.new_context(viewport={"width": 820, "height": 1180})
     tab = Tab(server, context)
-    take(tab, "07-flexible-link", 0)
+    take(tab, "07-flexible-link", 7)
     controls = tab.page.locator(f".mantine-Paper-root{PINNED}").last
     assert controls.evaluate("each => each.scrollHeight > each.clientHeight")
     tab.page.evaluate(THREE_FRAMES)

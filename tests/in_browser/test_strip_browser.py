@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,12 +14,14 @@ import pytest
 import onpath
 from onpath.lessons.words import ENGLISH
 from tests.support.browser import THREE_FRAMES
+from tests.support.checkout import ROOT
 from tests.support.waiting import wait_for
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
 
 WAIT = 30.0  # [s]
+README = ROOT / "app" / "exports" / "standalone" / "README.md"
 PARTS = """() => ({
     spans: onpath.strip.chart.spans,
     axes: onpath.strip.chart.axes,
@@ -109,14 +113,33 @@ def test_what_acts_is_shaded_and_named_and_each_event_tells_its_own_peak(page: P
             assert f"{peak:.1f}" in letters, (line["name"], begin)
 
 
+def test_a_peak_keeps_its_number_until_it_leaves_the_chart(page: Page) -> None:
+    page.evaluate(HELD_AND_PULLED)
+    lines = parts(page)["lines"]
+    end = next(i for i, time in enumerate(lines[0]["times"]) if time > 3.9)
+    peak = max(lines[0]["values"][:end])
+    when = lines[0]["times"][lines[0]["values"].index(peak)]
+    for _ in range(12):
+        page.evaluate("onpath.advance(500)")
+        shown = parts(page)
+        letters = [text for where, text in page.evaluate(LETTERS) if where == "plot"]
+        assert (f"{peak:.1f}" in letters) == (shown["from"] <= when), shown["from"]
+    page.evaluate("onpath.advance(62000)")  # longer than what is kept
+    shown = parts(page)
+    first = page.evaluate("onpath.engine.since(-Infinity)[0].time")
+    times = shown["lines"][0]["times"]
+    assert times[-1] - times[0] > 59 and all(b > a for a, b in itertools.pairwise(times))
+    assert first == pytest.approx(times[-1] - 60, abs=0.1) and shown["spans"] == []
+
+
 def test_the_scale_shows_the_radius_and_never_shrinks_during_a_run(page: Page) -> None:
     tops = list[float]()
     page.evaluate("onpath.simulation.set(0, 3)")
     for _ in range(8):
         page.evaluate("onpath.advance(500)")
         tops.append(parts(page)["axes"]["top"])
-    radius = 1e3 * page.evaluate("onpath.strip.chart.axes.mark.value") / 1e3
-    assert radius == pytest.approx(50) and set(tops) == {60}
+    assert page.evaluate("onpath.strip.chart.axes.mark.value") == pytest.approx(50)
+    assert set(tops) == {60}
     page.evaluate("onpath.simulation.pull([0.2, -0.1])")
     page.evaluate("onpath.advance(1500)")
     most = max(max(line["values"]) for line in parts(page)["lines"])
@@ -125,7 +148,7 @@ def test_the_scale_shows_the_radius_and_never_shrinks_during_a_run(page: Page) -
     page.evaluate("onpath.simulation.pull(null)")
     page.evaluate("onpath.advance(15000)")
     shown = parts(page)
-    assert max(max(line["values"]) for line in shown["lines"]) < 5
+    assert max(line["values"][-1] for line in shown["lines"]) < 5
     assert shown["axes"]["top"] == grown and shown["until"] - shown["from"] == pytest.approx(10)
     page.get_by_role("button", name="Reset").click()
     assert parts(page)["axes"]["top"] == 60
@@ -140,8 +163,10 @@ def test_keys_on_the_handle_look_back_and_everything_goes_along(page: Page) -> N
         grip.press("PageDown")
     grip.press("ArrowLeft")
     told = grip.get_attribute("aria-valuetext") or ""
-    sample = page.evaluate("onpath.simulation.recent.find(each => each.time >= 2.4 - 1e-6)")
+    past = "onpath.simulation.recent.find(each => each.time === onpath.engine.state.past)"
+    sample = page.evaluate(past)
     assert told.startswith("2.4 s: Trajectory tracking ")
+    page.evaluate(THREE_FRAMES)
     for side, element in zip(sample["sides"], page.locator(".lens .distance").all(), strict=True):
         assert f"{1e3 * side['distance']:.1f} mm" in told
         assert element.inner_text() == f"{1e3 * side['distance']:.1f} mm"
@@ -193,10 +218,7 @@ def test_going_on_from_the_past_is_the_run_that_would_have_been(page: Page) -> N
     assert 1000 <= ticks < 2000
     page.evaluate("ticks => onpath.advance(2000 - ticks)", ticks)
     found = page.evaluate(state)
-    columns = np.ones(len(expected[0]), bool)
-    np.testing.assert_allclose(
-        np.array(found)[:, columns], np.array(expected)[:, columns], atol=1e-9
-    )
+    np.testing.assert_allclose(found, expected, atol=1e-9)
     assert [each["kind"] for each in parts(page)["spans"]] == []
     assert page.locator(".past:visible").count() == 0
 
@@ -244,7 +266,8 @@ def test_the_table_has_what_the_chart_shows(page: Page) -> None:
     assert heads[1:3] == ["Trajectory tracking [mm]", "Path following [mm]"]
     rows = [row.get_by_role("cell").all_inner_texts() for row in table.get_by_role("row").all()][1:]
     lines = parts(page)["lines"]
-    assert len(rows) == 12 and [row[3] for row in rows][2:5] == [ENGLISH("chart.held")] * 3
+    held = [float(row[0]) for row in rows if row[3] == ENGLISH("chart.held")]
+    assert len(rows) == 12 and held == [1.5, 2.0, 2.5]
     for row in rows:
         for line, cell in zip(lines, row[1:3], strict=True):
             expected = np.interp(float(row[0]), line["times"], line["values"])
@@ -279,7 +302,7 @@ def _glides_no_more(page: Page, i: int) -> bool:
 
 @pytest.mark.parametrize("robot", onpath.robots())
 def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> None:
-    """Lengths in it are those in space; a flexible link's straight tip is where bending alone puts it."""
+    """Lengths in it are those in space; a link that bends has a straight tip beside its own."""
     page = opened(browser, tmp_path, robot=robot, paths="circle")
     page.evaluate("onpath.advance(500)")
     page.evaluate("onpath.simulation.pull([0.02, 0.01])")
@@ -305,15 +328,10 @@ def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> 
 
 
 def test_a_page_around_is_told_the_height(browser: Browser, tmp_path: Path) -> None:
-    onpath.figure(tmp_path / "a.html")
-    (tmp_path / "blog.html").write_text(
-        """<!doctype html><iframe src="a.html" sandbox="allow-scripts" width="100%" height="9"></iframe>
-        <script>addEventListener("message", ({data, source}) => {
-            for (const frame of document.querySelectorAll("iframe"))
-                if (frame.contentWindow === source && data.onpath === "height") frame.height = data.height
-        })</script>""",
-        encoding="utf-8",
-    )
+    onpath.figure(tmp_path / "held.html")
+    (snippet,) = re.findall(r"```html\n(.*?)```", README.read_text("utf-8"), re.DOTALL)
+    sandboxed = snippet.replace("<iframe", '<iframe sandbox="allow-scripts"')
+    (tmp_path / "blog.html").write_text(f"<!doctype html>{sandboxed}", encoding="utf-8")
     page = browser.new_page(viewport={"width": 1000, "height": 600})
     page.goto((tmp_path / "blog.html").as_uri())
     content = "document.documentElement.scrollHeight <= innerHeight && innerHeight > 300"

@@ -16,6 +16,7 @@ from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lesson_texts import LESSON, REFERENCE, write_lesson
 
 LATEX = "$$\\dot x = v$$"
+RUN = "```script\nuntil = 1.0\n```"
 COMMANDS = ("\\frac", "\\theta", "\\beta", "\\rho", "\\nu", "\\sin", "\\xi")
 Capture = pytest.CaptureFixture[str]
 
@@ -72,6 +73,11 @@ def faults(path: Path) -> list[tuple[int, str]]:
         (LATEX, "```tasks\nSo.\n```", "did you mean task"),
         (LATEX, "```quiz one\nSo.\n```", "nothing stands after quiz"),
         (LATEX, "- ```quiz\n  So.\n  ```", "not in a list"),
+        (LATEX, "```watch\nThe arm.\n```", "a watch stands in a `run` step"),
+        (LATEX, "```watsh\nThe arm.\n```", "did you mean watch"),
+        (RUN, "```watch\n[go](lab:run)\n```\n" + RUN, "without lab links"),
+        (RUN, "```watch\nSee {{your number}}.\n```\n" + RUN, "no numbers of the student"),
+        (RUN, 2 * "```watch\nThe arm.\n```\n" + RUN, "a second watch"),
         (LATEX, "<b>So</b>", "HTML is shown as it is typed"),
         (LATEX, 'so <mark class="a">it</mark>', "HTML is shown as it is typed"),
         ('"Draw the distance."', "'<i>Draw</i>'", "HTML is shown as it is typed"),

@@ -154,10 +154,11 @@ def test_a_lesson_may_have_typed_laws(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_a_script_that_the_lab_refuses_is_found(tmp_path: Path) -> None:
-    own = LESSON.replace("{ at = 0.5, hold = true }", '{ at = 0.5, path = "figure of eight" }')
+    level_set = '{ at = 0.4, path = "clover" }, { at = 0.5, set = { across = "level_set" } }'
+    own = LESSON.replace("{ at = 0.5, hold = true }", level_set)
     file = write_lesson(tmp_path, own)
     course, problems = read_course([tmp_path])
     assert problems == []
     (problem,) = play_course(course, tmp_path, store())
-    assert problem.path == str(file) and "crosses itself" in problem.text
+    assert problem.path == str(file) and "no level set" in problem.text
     assert own.split("\n")[problem.line - 1].startswith("# run")

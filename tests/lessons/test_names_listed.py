@@ -8,6 +8,7 @@ from onpath.app.cli.main import run_command
 from onpath.app.page.overlays import Switches
 from onpath.app.page.panels.show_panel import SWITCHES
 from onpath.lessons.record import PLOTS, QUANTITIES
+from onpath.lessons.symbols import SYMBOLS
 from onpath.lessons.vocabulary.lists import names_markdown
 from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS, EVENTS
 from onpath.models.control.laws.registry import LAWS
@@ -17,7 +18,17 @@ from onpath.models.systems.catalogue import ROBOTS
 
 
 def test_nothing_is_left_out() -> None:
-    known = [*ROBOTS, *presets(), *LAWS, *PLOTS, *DRAWINGS, *CONTROLS, *QUANTITIES, *EVENTS]
+    known = [
+        *ROBOTS,
+        *presets(),
+        *LAWS,
+        *PLOTS,
+        *DRAWINGS,
+        *CONTROLS,
+        *QUANTITIES,
+        *EVENTS,
+        *SYMBOLS,
+    ]
     known += [name for entry in ROBOTS.values() for name in specs(entry.parameters)]
     listed = names_markdown()
     assert [name for name in known if f"`{name}`" not in listed] == []

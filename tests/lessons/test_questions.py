@@ -158,9 +158,13 @@ def test_how_sure_and_why_are_kept_with_a_prediction(tmp_path: Path) -> None:
     sketch = lab.lessons.notes.answers["1"]
     assert (sketch.sure, sketch.why) == ("fairly", "So.")
     asked = lab.lessons.course.lesson("01-a", "en").steps[3].predictions()[0]
-    said = page.told(asked, Answer(option=1, sure="guessing", reason=0), ENGLISH)
+    said = page.confidence(asked, Answer(option=1, sure="guessing", reason=0), ENGLISH)
     assert ENGLISH("sure.guessing") in said and "It is late" in said
-    assert page.told(asked, Answer(), ENGLISH) == page.told(asked, Answer(option=1), ENGLISH) == ""
+    assert (
+        page.confidence(asked, Answer(), ENGLISH)
+        == page.confidence(asked, Answer(option=1), ENGLISH)
+        == ""
+    )
     assert all(ENGLISH(f"sure.{sure}") for sure in SURENESS)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import pytest
@@ -35,6 +36,15 @@ def test_every_prediction_asks_why() -> None:
         if not prediction.reasons and not prediction.why
     ]
     assert silent == []
+
+
+def test_every_run_says_what_to_watch_and_not_what_happens() -> None:
+    for lesson, _, step in steps():
+        told = step.watch.striptags()
+        assert bool(told) == (step.kind == "run"), (lesson.name, lesson.language, step.title)
+        assert len(told.split()) < 40
+        units = re.findall(r"\d (?:mm|N|mJ|%)", told)
+        assert units == [], (lesson.name, lesson.language, step.title)
 
 
 def test_the_right_options_are_neither_mostly_the_longest_nor_mostly_at_one_place() -> None:

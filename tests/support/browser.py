@@ -148,7 +148,6 @@ class Tab:
             self.page.get_by_role("button", name="Run", exact=True)
         ).first.wait_for()
         wait_for(self._framed)
-        self.page.get_by_role("alert").get_by_role("button").click()  # "software rendering"
 
     def _listen(self) -> None:
         """Note what the page tells the server."""

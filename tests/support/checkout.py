@@ -14,5 +14,8 @@ def modules() -> list[str]:
     files = [file for folder in FOLDERS for file in (ROOT / folder).rglob("*.py")]
     parts = [file.relative_to(ROOT).with_suffix("").parts for file in sorted(files)]
     names = [".".join(("onpath", *each)).removesuffix(".__init__") for each in parts]
-    alembics = ("onpath.app.storage.migrations.versions.", "onpath.app.storage.migrations.env")
-    return [name for name in names if not name.startswith(alembics)]  # which are run by their paths
+    scripts = (
+        *("onpath.app.storage.migrations.versions.", "onpath.app.storage.migrations.env"),
+        "onpath.assets.examples.",
+    )
+    return [name for name in names if not name.startswith(scripts)]  # which are run by their paths

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 
 import casadi as ca
@@ -95,3 +96,11 @@ def belted_arm() -> MechanicalSystem:
         output=0.22 * along[0] + 0.2 * along[1] - ca.DM([0.2, 0.22]),
         potential_energy=potential,
     )
+
+
+@cache
+def standing(system: MechanicalSystem) -> MechanicalSystem:
+    """The same system, n = m, with a posture u0 = B⁻¹ (c - M (8 v + 20 (q - 0.1)))."""
+    away = 8 * system.v + 20 * (system.q - 0.1)
+    posture = ca.solve(system.actuation, system.bias - system.mass @ away)
+    return replace(system, name=f"standing_{system.name}", posture=posture)

@@ -10,9 +10,9 @@ from playwright.sync_api import sync_playwright
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.assets import asset_path
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
+from tests.support.checkout import ROOT
 
 WINDOW: Any = {"width": 1280, "height": 800}
 SCENE: Any = {"x": 0, "y": 90, "width": 945, "height": 581}
@@ -29,7 +29,7 @@ def take_picture(tab: Tab, name: str) -> None:
     tab.ask(c.SetRunning(False))
     tab.elapse(SHOWN)
     tab.settle()
-    tab.page.screenshot(path=asset_path(ROBOTS[name].picture), clip=SCENE)
+    tab.page.screenshot(path=ROOT / "assets" / ROBOTS[name].picture, clip=SCENE)
 
 
 def main(names: list[str]) -> None:

@@ -17,7 +17,7 @@ from onpath.models.systems.parameter_specs import Spec
 
 CALM = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow], max_examples=50)
 PRESETS = presets()
-FOLLOWABLE = sorted(set(PRESETS) - {"figure of eight"})
+FOLLOWABLE = sorted(PRESETS)
 
 
 def wave(shape: float, phase: float, closed: bool) -> PathDesign:

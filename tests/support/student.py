@@ -129,6 +129,11 @@ class Student:
         widget = self.find(label)
         self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
 
+    def choose(self, option: str) -> None:
+        """Wait for exactly this option, and choose it."""
+        self.read(lambda: option in self._labels())
+        self.set(option, option)
+
     def send(self, kind: str, **fields: Any) -> None:
         """Any message."""
         assert self._socket is not None

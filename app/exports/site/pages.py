@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from onpath.app.common.templates import environment, json_block
@@ -10,25 +11,27 @@ from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
 from onpath.app.exports.standalone.figure_words import PARTS
 from onpath.app.exports.standalone.page_style import page_style
+from onpath.app.steps.step_html import live
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
 from onpath.lessons.words import Words, language_name
 
 POLICY = (
     "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; "
-    "img-src 'self' data:; base-uri 'none'; form-action 'none'"
+    "img-src 'self' data:; font-src 'self'; base-uri 'none'; form-action 'none'"
 )
 """The pages' Content-Security-Policy: only scripts and styles of the site, no eval except
-WebAssembly, pictures of the site and of the lessons' texts, no requests to other servers."""
+WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
+requests to other servers."""
 MESSAGES = (
     *("lesson.playing", "lesson.replay", "lesson.play", "lesson.right"),
-    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "lesson.draw_first"),
+    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "site.draw_first"),
     *("lesson.drawn", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
     *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
     *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    *("site.review", *PARTS),
+    *("site.to_robots", "site.to_text", "site.skip_short", "site.review", "site.symbols", *PARTS),
 )
 
 
@@ -108,6 +111,7 @@ def lesson_page(
     data = {
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
+        "symbols": {name: words(f"symbol.{name}") for name in lesson.front.symbols},
         "scorm": scorm,
         "figures": figures,
         "steps": [
@@ -118,6 +122,7 @@ def lesson_page(
     title = f"{number}. {lesson.front.title} · OnPath"
     fields = {"lesson": lesson, "number": number, "steps": steps, "pictures": pictures}
     fields |= {"description": lesson.front.summary, "next": following}
+    fields["live"] = partial(live, lesson)
     return _page("lesson", words, title, data, around, **fields)
 
 

@@ -5,17 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from msgspec.structs import replace
-
+from onpath.app.common.templates import Markup
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
+from onpath.app.steps.step_html import StepPart, part_of, step_html
 from onpath.lessons.adaptive.branches import answers_meant
-from onpath.lessons.adaptive.own_numbers import filled, marked
-from onpath.lessons.progress import Notes
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import (
-    KINDS,
-    Block,
     Choice,
     Lesson,
     NumberQuestion,
@@ -31,38 +27,21 @@ from onpath.models.control.settable import values_of
 
 
 @dataclass(frozen=True, slots=True)
-class SiteBlock:
-    """A part of a step.
-
-    Attributes:
-        kind: see `onpath.lessons.schema.KINDS`.
-        here: whether a task can be done on the page; True for other parts.
-    """
-
-    kind: str
-    block: Block
-    here: bool = True
-
-
-@dataclass(frozen=True, slots=True)
 class SiteStep:
     """A step of a lesson.
 
     Attributes:
         number: number of the step, from 1.
-        blocks: parts of the step.
+        html: its column; see `onpath.app.steps`.
         data: data for the page's script; see assets/web/lesson_data.ts.
         figure: data of the step's figure; empty if only the lab can show it.
-        lacking: what only the lab has here, in words; may be empty.
         lab_only: whether its run can only be seen in the lab.
     """
 
     number: int
-    step: Step
-    blocks: list[SiteBlock]
+    html: Markup
     data: dict[str, Any]
     figure: dict[str, Any]
-    lacking: str
     lab_only: bool
 
 
@@ -73,13 +52,16 @@ def site_step(
     step, figure = lesson.steps[index], step_figure(lesson, index)
     links = [link for block in step.blocks if isinstance(block, Text) for link in block.links]
     actions = [action for link in links for action in link.actions]
-    blocks = [
-        SiteBlock(
-            KINDS[type(block)],
-            _unpersonal(block, lesson, index, words),
-            not isinstance(block, Task) or figure.can_pass(block, references[block.id], actions),
+    parts = [
+        part_of(
+            lesson,
+            index,
+            place,
+            words,
+            here=not isinstance(block, Task)
+            or figure.can_pass(block, references[block.id], actions),
         )
-        for block in step.blocks
+        for place, block in enumerate(step.blocks)
     ]
     script = figure.script(step.script)
     data = {
@@ -88,26 +70,24 @@ def site_step(
         "running": lesson.scene_at(index).running,
         "script": script,
         "values": _values(step, figure),
-        "blocks": [_block(each, lesson, index, i, figure, words) for i, each in enumerate(blocks)],
+        "blocks": [_block(part, lesson, index, figure, words) for part in parts],
     }
     lab_only = step.script is not None and script is None
+    html = step_html(
+        lesson,
+        index,
+        parts,
+        words,
+        plays=script is not None,
+        lacking=lacking_words(figure, words),
+    )
     return SiteStep(
         number=index + 1,
-        step=step,
-        blocks=blocks,
+        html=html,
         data=data,
         figure=figure_of(figure, words) if figure.faithful else {},
-        lacking=lacking_words(figure, words),
         lab_only=lab_only,
     )
-
-
-def _unpersonal(block: Block, lesson: Lesson, index: int, words: Words) -> Block:
-    """A block whose text has the default of each of the student's own numbers, and marks it."""
-    if not isinstance(block, Text):
-        return block
-    html = marked(block.html, lesson.steps, index)
-    return replace(block, html=filled(html, lesson.steps, index, Notes(), words))
 
 
 def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
@@ -128,14 +108,14 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
 
 
 def _block(
-    part: SiteBlock, lesson: Lesson, index: int, place: int, figure: StepFigure, words: Words
+    part: StepPart, lesson: Lesson, index: int, figure: StepFigure, words: Words
 ) -> dict[str, Any]:
     block, laws = part.block, lesson.laws_shown(index)
     data: dict[str, Any] = {"kind": part.kind}
     if isinstance(block, Text):
         data["links"] = [figure.link(link.actions) for link in block.links]
         if block.when:
-            data["when"] = answers_meant(block.when, lesson.steps, index, place)
+            data["when"] = answers_meant(block.when, lesson.steps, index, part.place)
     elif isinstance(block, Sketch):
         names = robot_names(laws, words)
         data |= {name: getattr(block, name) for name in ("quantity", "seconds", "top", "bottom")}

@@ -14,11 +14,12 @@ from onpath.lessons.action_schema import Action, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
+from onpath.lessons.sides import ROLES, law_titles, robot_names
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.settable import specs
-from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
@@ -38,6 +39,7 @@ class StepFigure:
     Attributes:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
+        drawings: what is drawn besides the robots, in the lab.
         plots: plots that the step shows in the lab.
         faithful: whether the figure begins where the lab does; only then is it shown.
         changing: names of the parameters that sliders, links or the script change.
@@ -45,6 +47,7 @@ class StepFigure:
 
     choice: FigureChoice
     lacking: tuple[str, ...]
+    drawings: tuple[str, ...]
     plots: tuple[str, ...]
     faithful: bool
     changing: frozenset[str]
@@ -115,7 +118,9 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     known = specs(type(bare.parameters))
     sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
     lacking = {name: None for name in scene.controls if name not in (*sliders, "hold")}
-    if scene.show or scene.marks:
+    if scene.show:
+        lacking.pop("show", None)
+    elif scene.marks:
         lacking["show"] = None
     if scene.start.numbers:
         lacking["start"] = None
@@ -125,6 +130,7 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     return StepFigure(
         choice=figure,
         lacking=tuple(lacking),
+        drawings=scene.show,
         plots=scene.plots,
         faithful=not scene.start.numbers,
         changing=changing,
@@ -144,12 +150,35 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     return {
         **data,
         "log": data["log"] | places,
-        "laws": [{**law, "stops": texts} for law, texts in zip(data["laws"], stops, strict=True)],
+        "laws": [
+            {**law, "stops": texts, **names}
+            for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
+        ],
         "sliders": [slider_data(choice, name, words) for name in choice.sliders],
         "controls": choice.controls,
         "names": choice.sliders,
         "quantities": figure.quantities,
     }
+
+
+def _names(figure: FigureChoice, words: Words) -> list[dict[str, str]]:
+    """For each law, the name that the texts give to its robot, and a title with it; else none."""
+    names = robot_names(dict(zip(SIDES, figure.laws, strict=True)), words)
+    named = {
+        law: names[ROLES[side]]
+        for side, law in zip(SIDES, figure.laws, strict=True)
+        if law == DEFAULT_LAWS[side] and figure.laws.count(law) == 1
+    }
+    titles = law_titles(figure.every_law, words)
+    return [
+        {
+            "name": named[law],
+            "title": words("robot.under_law", robot=named[law], law=titles[law]),
+        }
+        if law in named
+        else {}
+        for law in figure.every_law
+    ]
 
 
 def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
@@ -171,6 +200,7 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
         else words(f"site.control.{name}")
         for name in figure.lacking
     ]
+    named += [words(f"show.{name}") for name in figure.drawings]
     named += [words("site.plot", plot=words(f"plot.{plot}")) for plot in figure.plots]
     return ", ".join(named)
 

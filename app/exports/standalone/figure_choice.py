@@ -25,7 +25,7 @@ from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import law_name, law_named
 from onpath.models.control.settable import changed, specs, with_values
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
-from onpath.models.errors import CodedError, said_by
+from onpath.models.errors import CodedError, message_of
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import check_path
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
@@ -189,7 +189,9 @@ def _check(figure: FigureChoice) -> None:
             for law in figure.every_law:
                 check_possible(robot, law, figure.parameters, figure.start_at(curve))
         except ValueError as error:
-            raise CodedError("error.path_named", name=repr(name), reason=said_by(error)) from None
+            raise CodedError(
+                "error.path_named", name=repr(name), reason=message_of(error)
+            ) from None
     for name in figure.sliders:
         check_slider(figure, name)
 

@@ -34,12 +34,13 @@ from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import TERMS, Curve
-from onpath.models.paths.path_checks import SAMPLES
+from onpath.models.paths.path_checks import POINT_CHECKS, SAMPLES
+from onpath.models.standalone.edit import OUTLINE, ROW
+from onpath.models.standalone.fit import FINE, PIECE
+from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.parameters import time_step
-from onpath.models.web_export.edit import CHECKS, OUTLINE, ROW
-from onpath.models.web_export.fit import FINE, PIECE
-from onpath.models.web_export.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 
 
 def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
@@ -87,7 +88,7 @@ _EDIT = {
     "fine": FINE,
     "sums": 3 + 2 * TERMS,
     "row": ROW,
-    "checks": CHECKS,
+    "checks": tuple(POINT_CHECKS),
     "samples": SAMPLES,
     "outline": OUTLINE,
     "grid": GRID,
@@ -95,7 +96,7 @@ _EDIT = {
     "blend": BLEND,
     "nudge": NUDGE,
 }
-"""Sizes of vectors in models/web_export; and as in the lab, the halvings of a refused move, the
+"""Sizes of vectors in models/standalone; and as in the lab, the halvings of a refused move, the
 duration of a blend, [s], and the step of a key, [m]."""
 _SET = (
     *("hold_active", "hold_anchor", "hold_tangent", "hold_normal"),
@@ -176,6 +177,7 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
         "label": words.get(f"path.{name}", name),
         "kind": kind_name(figure, curve),
         "closed": curve.closed,
+        "doubts": [each.reason.code for each in ambiguities(path)],
         "table": path.table().tolist(),
         "grid": grid_of(robot, path.at(path.sample(GRID))).ravel().tolist(),
         "outline": _rounded(outline.T),

@@ -15,15 +15,15 @@ from onpath.models.closed_loop.wasm_loop import Scan, wasm_of
 from onpath.models.paths.curve_fit import control_points
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign, presets
-from onpath.models.web_export.edit import edit_functions, edit_scans
-from onpath.models.web_export.fit import (
+from onpath.models.standalone.edit import edit_functions, edit_scans
+from onpath.models.standalone.fit import (
     arc_scan,
     resample_scan,
     spline_function,
     table_function,
 )
-from onpath.models.web_export.poles import pole_functions, roots_scan
-from onpath.models.web_export.states import begin_function, change_function
+from onpath.models.standalone.poles import pole_functions, roots_scan
+from onpath.models.standalone.states import begin_function, change_function
 
 Parts = tuple[dict[str, ca.Function], dict[str, Scan]]
 

@@ -42,6 +42,7 @@ _FILLED = {
     "standalone.refused": ("reason",),
     "standalone.selected": ("number", "all"),
     "side.title": ("law", "side"),
+    "say.ambiguous": ("reasons",),
     "say.no_further": ("reasons",),
     "say.stopped": ("robot", "time", "reason"),
     "gains.poles": ("poles",),

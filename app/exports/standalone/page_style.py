@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from markupsafe import Markup
-
 from onpath.app.common import palette
-from onpath.app.common.templates import inlined, styled
+from onpath.app.common.templates import Markup, inlined, part_of_page
 from onpath.app.scene.tones import DARK, LIGHT, Tones
 from onpath.models.control.sides import SIDES
 
@@ -13,7 +11,7 @@ from onpath.models.control.sides import SIDES
 def page_style(template: str) -> Markup:
     """A style template of assets/templates, rendered."""
     dark = inlined("page/dark_colours.css")
-    return styled(template, dark=dark, tones={"light": _tones(LIGHT), "dark": _tones(DARK)})
+    return part_of_page(template, dark=dark, tones={"light": _tones(LIGHT), "dark": _tones(DARK)})
 
 
 def _tones(tones: Tones) -> dict[str, str]:
@@ -30,7 +28,7 @@ def _tones(tones: Tones) -> dict[str, str]:
         "steel": palette.STEEL,
         "force": tones.force,
         "held": tones.wall.toward(palette.BLUE, 0.35 if is_dark else 0.13),
-        "pulled": tones.wall.toward(tones.force, 0.25 if is_dark else 0.1),
+        "pulled": tones.wall.toward(tones.force, 0.16 if is_dark else 0.1),
         "yours": palette.VIOLET.toward(palette.WHITE, 0.5 if is_dark else 0),
     }
     for number, side in enumerate(SIDES):

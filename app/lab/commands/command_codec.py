@@ -71,7 +71,7 @@ def _checked(hint: Any) -> Any:
     if origin in (Union, types.UnionType):
         return Union[tuple(map(_checked, kinds))]  # noqa: UP007
     if origin is tuple:
-        return origin[tuple(kind if kind is ... else _checked(kind) for kind in kinds)]
+        return types.GenericAlias(tuple, tuple(k if k is ... else _checked(k) for k in kinds))
     return hint
 
 

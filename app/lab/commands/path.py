@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from typing_extensions import override
@@ -10,13 +11,18 @@ from typing_extensions import override
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.commands.time import StepOnce
 from onpath.app.lab.lab import Command, Lab
+from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
+from onpath.models.paths.curve_faults import Fault, ambiguities
 from onpath.models.paths.curve_fit import deviation_remark
-from onpath.models.paths.path_design import PathDesign, drawn
+from onpath.models.paths.curves import Curve, from_terms, terms_of
+from onpath.models.paths.path_design import PathDesign, drawn, from_curve
 from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_STROKE_POINTS = 5000
+LONGEST_REMARK = 1000  # [characters]
+LARGEST = 10.0  # [m], of any coefficient of a curve
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,6 +174,63 @@ class DrawPath(Command):
             lab.show_message(lab.words.sentence(remark))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class FollowCurve(Command):
+    """Follow a curve from a file, or the nearest one that can be followed.
+
+    Attributes:
+        closed: whether the curves are closed.
+        terms: of the curve, see `Curve.terms`, [m].
+        given: points of the line in the file, shape (n, 2), [m]; None: it is not drawn.
+        deviation: largest distance of the curve from that line, [m].
+        nearest: terms of the nearest curve that can be followed, if this one cannot.
+        apart: largest distance of that one from the line, [m].
+        remarks: what the user should know, in the page's language.
+    """
+
+    closed: bool
+    terms: Array
+    given: Array | None = None
+    deviation: float = 0.0
+    nearest: Array | None = None
+    apart: float = 0.0
+    remarks: str = ""
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        editor, words = lab.session.editor, lab.words
+        curve = self._curve(self.terms)
+        given = None if self.given is None else self._points(self.given)
+        design = from_curve(replace(curve, given=given, deviation=finite(self.deviation)))
+        commit(lab, design)
+        texts, faults = [self.remarks[:LONGEST_REMARK]], editor.faults
+        if faults and self.nearest is not None:
+            other = replace(self._curve(self.nearest), given=given, deviation=finite(self.apart))
+            commit(lab, from_curve(other))
+            if not editor.faults:
+                editor.mark(faults)
+                reasons, apart = _reasons(words, faults), f"{1e3 * self.apart:.1f}"
+                texts.append(words("say.nearest", reasons=reasons, apart=apart))
+        elif faults:
+            return  # the message says why
+        if text := " ".join(filter(None, [*texts, lab.message])):
+            lab.show_message(text, "warning")
+
+    def _curve(self, terms: Array) -> Curve:
+        return from_terms(self.closed, self._points(terms, terms_of(self.closed)))
+
+    @staticmethod
+    def _points(points: Array, count: int | None = None) -> Array:
+        """Finite points within reason, shape (n, 2)."""
+        z = np.asarray(points, dtype=float)
+        most = count or MOST_STROKE_POINTS
+        if z.ndim != 2 or z.shape[1] != 2 or len(z) > most or (count and len(z) != count):
+            raise CodedError("error.stroke_without_points")
+        if not np.all(np.abs(z) <= LARGEST):  # NaN fails too
+            raise CodedError("error.stroke_not_finite")
+        return z
+
+
 @dataclass(frozen=True, slots=True)
 class Undo(Command):
     """Undo the last edit of the path."""
@@ -204,7 +267,7 @@ def finish(lab: Lab) -> None:
 
 
 def _end(lab: Lab, key: str) -> None:
-    """Keep an edit, and show the message of a key if it has faults."""
+    """Keep an edit. If it has faults, show the message of a key; else warn of ambiguities."""
     editor, words = lab.session.editor, lab.words
     before = editor.design
     editor.finish()
@@ -213,8 +276,13 @@ def _end(lab: Lab, key: str) -> None:
     lab.clear_message()
     lab.return_to_present()
     if editor.faults:
-        reasons = "; ".join(words.sentence(fault.reason) for fault in editor.faults)
-        lab.show_message(words(key, reasons=reasons), "warning")
+        lab.show_message(words(key, reasons=_reasons(words, editor.faults)), "warning")
+    elif editor.design is not before and (found := ambiguities(editor.blend.target)):
+        lab.show_message(words("say.ambiguous", reasons=_reasons(words, found)), "warning")
+
+
+def _reasons(words: Words, faults: Iterable[Fault]) -> str:
+    return "; ".join(words.sentence(fault.reason) for fault in faults)
 
 
 def _selected(lab: Lab) -> int:

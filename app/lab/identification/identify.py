@@ -162,7 +162,7 @@ def _sentence(learned: Learned, before: Parameters, after: Parameters, words: Wo
     robot, model, duration = learned.robot, learned.model, learned.seconds
     believed = dict(zip(robot.system.parameter_names, robot.model(before), strict=True))
     values = "; ".join(
-        words("identified.value", value=_value(model, name), before=f"{believed[name]:.4f}")
+        words("identified.value", value=_value(model, name, words), before=f"{believed[name]:.4f}")
         for name in INERTIA
     )
     text = words("identified.found", seconds=f"{duration:.1f}", values=values)
@@ -171,17 +171,18 @@ def _sentence(learned: Learned, before: Parameters, after: Parameters, words: Wo
         text += words("identified.limited", names=words("identified.and").join(limited))
     further = [name for name in (*DRY, *BALANCE) if _matters(model, name)]
     if further:
-        values = ", ".join(_value(model, name) for name in further)
+        values = ", ".join(_value(model, name, words) for name in further)
         text += words("identified.also", values=values)
     if model.unexplained > POOR:
         text += words("identified.unexplained", percent=f"{100 * model.unexplained:.0f}")
     return text
 
 
-def _value(found: Identified, name: str) -> str:
+def _value(found: Identified, name: str, words: Words) -> str:
     """For instance "M11 = 0.0226 (±0.0001) kg m²"; errors are rounded up."""
     error = math.ceil(found.errors[name] * 1e4 - 1e-3) / 1e4
-    return f"{name} = {found.values[name]:.4f} (±{max(error, 1e-4):.4f}) {UNITS[name[0]]}"
+    numbers = f"{found.values[name]:.4f} (±{max(error, 1e-4):.4f})"
+    return f"{name} = {words.written(numbers)} {UNITS[name[0]]}"
 
 
 def _at_end(parameters: Parameters, name: str) -> bool:

@@ -7,15 +7,17 @@ stands still until that loop is ready. Nothing here blocks.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.loops.typed_loops import Key
+from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import FREE, Push, kind_of
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import DEFAULT_LAWS
+from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -37,14 +39,15 @@ class LawChanges:
     Attributes:
         coming: laws whose loops are being made, by side.
         stands_still: whether time waits for them, because a run begins with them.
-        refusals: why typed laws could not be used; those not yet reported.
+        remarks: what the user has not been told yet: why a law cannot be used, or not compiled.
     """
 
     def __init__(self, store: LoopCache, change: Callable[[str, str], None]) -> None:
         self._store, self._change = store, change
         self.coming: dict[str, str] = {}
         self.stands_still = False
-        self.refusals: list[ValueError] = []
+        self.remarks: list[ValueError] = []
+        self._interpreted = set[str]()  # laws of which the user has been told
         self._asked = False  # whether the last frame asked for loops of typed laws
 
     def begin(
@@ -112,6 +115,15 @@ class LawChanges:
         goes_on = [self._goes_on(side, runs[side], key) for side, key in lacking.items()]
         return all(goes_on) and not self.stands_still
 
+    def remark_on(self, moving: Iterable[tuple[ClosedLoopRun, Loop]]) -> None:
+        """Remark once on each law that is interpreted because it cannot be compiled."""
+        for run, loop in moving:
+            if isinstance(loop, CompiledLoop) or run.law in self._interpreted:
+                continue
+            if (reason := self._store.why_interpreted(run.robot, run.kind)) is not None:
+                self._interpreted.add(run.law)
+                self.remarks.append(CodedError("say.law_interpreted", reason=reason))
+
     def _goes_on(self, side: str, run: ClosedLoopRun, key: Key) -> bool:
         """Whether a typed law can go on; if it never can, the side gets a new lab's law."""
         _, kind = key
@@ -135,5 +147,5 @@ class LawChanges:
         try:
             return self._store.is_ready(robot, kind)
         except ValueError as error:
-            self.refusals.append(error)
+            self.remarks.append(error)
             return None

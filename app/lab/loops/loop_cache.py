@@ -11,7 +11,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from weakref import WeakValueDictionary
 
 from onpath.app.lab.loops.compile_queue import CompileQueue
-from onpath.app.lab.loops.typed_loops import Key, TypedLoops
+from onpath.app.lab.loops.typed_loops import Key, TypedLoops, without_frames
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
@@ -19,6 +19,7 @@ from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.speed_limit import prepare_speed_limit
+from onpath.models.errors import Message, message_of
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
@@ -44,8 +45,8 @@ class LoopCache:
         self._made: WeakValueDictionary[Key, Loop] = WeakValueDictionary()
         self._kept: OrderedDict[Key, Loop] = OrderedDict()  # compiled; the most recent last
         self._waiting, self._making = CompileQueue[Key](clock), set[Key]()
-        self._refused = dict[Key, None]()  # not compilable; in order of discovery
-        self._broken = dict[Key, str]()  # a law with an error: its loop cannot even be interpreted
+        self._refused = dict[Key, Message | str]()  # why not compilable; in order of discovery
+        self._broken = dict[Key, ValueError]()  # laws with an error: not even interpretable
         self._typed, self.at_once = TypedLoops(self._submit, clock), at_once
         self._pool: ThreadPoolExecutor | None = ThreadPoolExecutor(1, "compile")
         self._lock = threading.RLock()
@@ -79,9 +80,28 @@ class LoopCache:
         if self._find(key) is not None:
             return True
         if key in self._broken:
-            raise ValueError(self._broken[key])
+            raise self._broken[key].with_traceback(None)
         self.prepare(robot, kind)
         return self._pool is None or key in self._refused
+
+    def check(self, robot: Robot, kind: Kind) -> None:
+        """Refuse a law with which `get` would have no loop, as far as that is known of a typed law.
+
+        Raises:
+            ValueError: the law cannot be used with this robot and these settings.
+        """
+        key = (robot.core, kind)
+        if is_text(kind.controller):
+            self._typed.find(key)
+        elif self._find(key) is None:
+            kernel_of(robot, kind)
+
+    def why_interpreted(self, robot: Robot, kind: Kind) -> Message | str | None:
+        """Why a loop cannot be compiled; None if it is, or may still be."""
+        key = (robot.core, kind)
+        if is_text(kind.controller):
+            return self._typed.why_interpreted(key)
+        return self._refused.get(key)
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops of typed laws in the background, and no others for this lab."""
@@ -100,6 +120,11 @@ class LoopCache:
             known = key in self._making or key in self._refused or key in self._broken
             if self._pool is not None and not known and self._waiting.ask(key):
                 self._pool.submit(self._compile_next)
+
+    def make(self, robot: Robot, kind: Kind) -> None:
+        """Compile a loop of a registry's law now."""
+        self._share((robot.core, kind), translate_loop(kernel_of(robot, kind)))
+        prepare_speed_limit(robot)
 
     def close(self) -> None:
         """Cancel pending compilations."""
@@ -154,7 +179,7 @@ class LoopCache:
             prepare_speed_limit(robot)
         except Exception as error:  # labs continue with the interpreted loop
             log.warning("%s is not compiled, it is interpreted: %s", kind.controller, error)
-            self._refused[key] = None
+            self._refused[key] = message_of(error)
             if len(self._refused) > MOST_REFUSED:
                 del self._refused[next(iter(self._refused))]
         finally:
@@ -164,11 +189,9 @@ class LoopCache:
         """The tick of a registry's law; None if the law has an error, which `is_ready` raises."""
         try:
             return kernel_of(*key)
-        except Exception as error:
-            name = key[1].controller
-            log.warning("%s cannot be used: its loop cannot be made", name, exc_info=True)
-            message = str(error).removeprefix(f"{name}: ")
-            self._broken[key] = f"{name}: {message}".splitlines()[0]
+        except ValueError as error:
+            log.warning("a law cannot be used: %s", error, exc_info=True)
+            self._broken[key] = without_frames(error)
             if len(self._broken) > MOST_REFUSED:
                 del self._broken[next(iter(self._broken))]
             return None

@@ -19,7 +19,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
-from onpath.models.errors import CodedError
+from onpath.models.errors import Message, message_of
 from onpath.models.systems.robots import Robot
 
 log = logging.getLogger(__name__)
@@ -52,7 +52,8 @@ class TypedLoops:
 
     def __init__(self, submit: Submit, clock: Callable[[], float]) -> None:
         self._submit, self._clock = submit, clock
-        self._made = OrderedDict[Key, Loop | CodedError]()  # the one used last comes last
+        self._made = OrderedDict[Key, Loop | ValueError]()  # the one used last comes last
+        self._interpreted: dict[Key, Message | str] = {}  # reasons
         self._making: dict[Key, Future[None]] = {}
         self._labs: WeakKeyDictionary[object, Requests] = WeakKeyDictionary()
         self._lock = threading.RLock()
@@ -70,9 +71,13 @@ class TypedLoops:
             found = self._made.get(key)
             if found is not None:
                 self._made.move_to_end(key)
-        if isinstance(found, CodedError):
+        if isinstance(found, ValueError):
             raise found.with_traceback(None)
         return found
+
+    def why_interpreted(self, key: Key) -> Message | str | None:
+        """Why a loop cannot be compiled; None if it is, or may still be."""
+        return self._interpreted.get(key)
 
     def want(self, lab: object, keys: Collection[Key]) -> None:
         """Make these loops in the background, and cancel the lab's other requests.
@@ -106,21 +111,25 @@ class TypedLoops:
         try:
             kernel = kernel_of(robot, kind)
             self._put(key, InterpretedLoop(kernel))
-        except CodedError as refused:
-            self._put(key, refused)
-            return
-        except Exception as error:
-            log.warning("a typed law cannot be run: %s", error)
-            self._put(key, CodedError("error.law_cannot_run"))
+        except ValueError as refused:
+            log.warning("a typed law cannot be run: %s", refused.__cause__ or refused)
+            self._put(key, without_frames(refused))
             return
         try:
             self._put(key, translate_loop(kernel))
         except Exception as error:
             log.warning("a typed law cannot be compiled, it is interpreted: %s", error)
+            self._interpreted[key] = message_of(error)
 
-    def _put(self, key: Key, made: Loop | CodedError) -> None:
+    def _put(self, key: Key, made: Loop | ValueError) -> None:
         with self._lock:
             self._made[key] = made
             self._made.move_to_end(key)
             while len(self._made) > MOST:
-                self._made.popitem(last=False)
+                self._interpreted.pop(self._made.popitem(last=False)[0], None)
+
+
+def without_frames(error: ValueError) -> ValueError:
+    """The error alone, to be kept: the frames of its traceback and causes hold many objects."""
+    error.__cause__ = error.__context__ = None
+    return error.with_traceback(None)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
@@ -34,6 +35,7 @@ from onpath.models.systems.parameter_specs import NOTHING, out_of_range, unknown
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
+_FROM_FILE = re.compile(r"[a-z0-9_]+_[0-9a-f]{8}")  # the name of a `RobotFile`
 DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes, as in `drawn`
 
 
@@ -89,6 +91,8 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
 
 def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) -> Wanted:
     """One robot of a set-up; see `planned`."""
+    if is_absent(name):
+        raise CodedError("robot_file.absent_robot", name=name)
     if name not in ROBOTS:
         raise unknown_name(name, list(ROBOTS), "robot")
     parameters = ROBOTS[name].parameters()
@@ -110,6 +114,11 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
         start=start,
         wall=wall,
     )
+
+
+def is_absent(robot: str) -> bool:
+    """Whether a name is that of a robot from a file, and this process was not given the file."""
+    return robot not in ROBOTS and _FROM_FILE.fullmatch(robot) is not None
 
 
 def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:

@@ -16,7 +16,7 @@ from onpath.app.common.access_codes import as_meant, is_code
 from onpath.app.lab.setups.former import DEFAULTS
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.stored import from_data, to_data
-from onpath.models.errors import CodedError, said_by
+from onpath.models.errors import CodedError, message_of
 
 VERSION = 1
 LONGEST_TEXT = 50_000  # maximum input, [characters]
@@ -87,7 +87,7 @@ def _setup(body: str) -> Setup:
     except msgspec.ValidationError as error:  # its message quotes the data
         raise CodedError("error.share_strange") from error
     except ValueError as error:
-        raise CodedError("error.share_does_not_fit", error=said_by(error)) from error
+        raise CodedError("error.share_does_not_fit", error=message_of(error)) from error
 
 
 def _base32(data: bytes) -> str:

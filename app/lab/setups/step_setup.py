@@ -6,18 +6,16 @@ from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.lessons.schema import Lesson
 
 
-def setup_of(lesson: Lesson, index: int, exaggeration: float = 1.0) -> Setup:
+def setup_of(lesson: Lesson, index: int) -> Setup:
     """A step's set-up, which depends on the lesson only, not on earlier changes in the lab.
 
     Args:
         index: of the step.
-        exaggeration: magnification of the drawn deflection, kept from the lab.
     """
     scene = lesson.scene_at(index)
     robot, path = scene.robot or lesson.front.robot, Path(scene.path or Path().name)
     return Setup(
         robot=robot,
         robots={robot: RobotSetup(dict(scene.set), path, scene.start.numbers)},
-        exaggeration=exaggeration,
         laws=scene.laws.named,
     )

@@ -12,7 +12,7 @@ from typing import Annotated, Any, TypeVar
 import msgspec
 
 from onpath.app.lab.setups.former import DEFAULTS, brought_up
-from onpath.app.lab.setups.plan import planned
+from onpath.app.lab.setups.plan import is_absent, planned
 from onpath.app.lab.setups.setup import Setup, plain
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
@@ -42,6 +42,8 @@ def from_data(data: Any) -> Setup:
         ValueError: it is not a valid set-up.
     """
     stored = msgspec.convert(data, StoredSetup)
+    others = {name for name in stored.robots if is_absent(name)} - {stored.robot}
+    stored = msgspec.structs.replace(stored, robots=_without(stored.robots, others))
     robots = brought_up(stored.robots, stored.defaults)
     fields: dict[str, Any] = {name: getattr(stored, name) for name in Setup.__struct_fields__}
     setup = Setup(**{**fields, "robots": robots})
@@ -69,6 +71,22 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
     laws = _without(stored.laws, absent)
     remaining = msgspec.structs.replace(stored, robots=robots, laws=laws)
     return msgspec.to_builtins(remaining), (*sorted({*absent.values()}), *sorted(gains))
+
+
+def without_absent_robots(data: Any) -> tuple[Any, tuple[str, ...]]:
+    """A stored set-up without robots from files that this process was not given, and their names.
+
+    If its current robot is absent, it is a new lab's. The data need not be valid otherwise.
+    """
+    try:
+        stored = msgspec.convert(data, StoredSetup)
+    except msgspec.ValidationError:
+        return data, ()
+    absent = {name for name in (stored.robot, *stored.robots) if is_absent(name)}
+    changes: dict[str, Any] = {"robots": _without(stored.robots, absent)}
+    if stored.robot in absent:
+        changes |= {"robot": Setup().robot, "laws": {}}
+    return msgspec.to_builtins(msgspec.structs.replace(stored, **changes)), (*sorted(absent),)
 
 
 def _without(values: Mapping[str, T], names: Collection[str]) -> dict[str, T]:

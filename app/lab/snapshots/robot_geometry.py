@@ -27,7 +27,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import SIDES
 from onpath.models.paths.curves import ORDERS, TERMS, Curve
 from onpath.models.paths.projection import LocalCurve, basis
-from onpath.models.systems.drawing import Drawing
+from onpath.models.systems.rigid_chain import frame_poses
 from onpath.models.systems.robots import Robot
 
 UNTRACED = np.zeros((0, len(SIDES), 3))
@@ -213,10 +213,11 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
         joints=first.joints.shape[1],
         marks=first.marks.shape[1],
         strip=robot.drawing.strip,
+        bodies=0 if robot.chain is None else robot.chain.n,
     )
     columns = [
-        ca.vertcat(*[ca.vec(part) for part in (*points, *_poses(robot.drawing, counts, points))])
-        for points in robots
+        ca.vertcat(*[ca.vec(part) for part in (*points, *_poses(robot, counts, points, q_of))])
+        for points, q_of in zip(robots, ca.horzsplit(q), strict=True)
     ]
     flat = ca.densify(ca.horzcat(*columns))
     return ca.Function("geometry", [q, seen, table, exaggeration], ca.cse([flat])), counts
@@ -237,28 +238,38 @@ def straight_tip(robot: Robot) -> Callable[[Array], Array] | None:
     return lambda joints: evaluate(joints)[0].copy()
 
 
-def _poses(drawing: Drawing, counts: Counts, points: _Points) -> tuple[ca.SX, ...]:
+def _poses(robot: Robot, counts: Counts, points: _Points, q: ca.SX) -> tuple[ca.SX, ...]:
     """One robot's `RobotView.poses`, as columns.
 
     Links alternate between the back and the front layer, pieces of a strip are in the front
     layer, so that no link intersects another; bearings span both.
     """
-    depths = drawing.depths
-    waist = waist_angle(points.bars, drawing.away)
+    drawing, depths = robot.drawing, robot.drawing.depths
+    bodies = ca.SX(3, 0), ca.SX(4, 0)
+    if robot.chain is None:
+        waist = waist_angle(points.bars, drawing.away)
+    else:
+        waist, bodies = ca.SX(0), frame_poses(robot.chain, q)
     normal = ca.vertcat(-ca.sin(waist), ca.cos(waist), 0)
-    begins = points.bars[:, ::2]
-    along = points.bars[:, 1::2] - begins
-    layers = ca.DM([depths.back if back else depths.front for back in counts.behind]).T
+    begins, ends = points.bars[:, ::2], points.bars[:, 1::2]
+    if counts.marks:  # the strip if it were straight
+        begins = ca.horzcat(begins, begins[:, counts.links])
+        ends = ca.horzcat(ends, points.marks)
+    along = ends - begins
+    behind = [*counts.behind, *[False] * counts.marks]
+    layers = ca.DM([depths.back if back else depths.front for back in behind]).T
     turned = ca.vertcat(ca.cos(waist / 2), 0, 0, ca.sin(waist / 2))
     still = ca.DM([1, 0, 0, 0])  # these face the viewer at any orientation of the linkage
     discs = [points.marker + ca.DM([0, depth, 0]) for depth in MARKER_DEPTHS]
     further = points.marks + ca.DM([0, MARKER_DEPTHS[0], 0]) @ ca.DM.ones(1, counts.marks)
-    bosses, pen = points.joints + depths.boss * normal, points.tip + depths.pen * normal
+    bosses = points.joints + depths.boss * (normal @ ca.DM.ones(1, counts.joints))
+    pen = points.tip + depths.pen * normal
     return (
         begins + normal @ layers,
         bar_quaternions(along, waist),
         ca.horzcat(bosses, pen, *discs, further),
         points.tip,
+        *bodies,
         ca.sqrt(ca.sum1(along**2)),
         ca.horzcat(*[turned] * (counts.joints + 1), *[still] * (2 + counts.marks)),
         points.force,

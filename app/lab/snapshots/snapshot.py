@@ -19,10 +19,13 @@ class PoseShapes(NamedTuple):
     """Shapes of the fields of `RobotView.poses`, in their order.
 
     Attributes:
-        bars: beginnings of the link meshes, in their layers, [m].
+        bars: beginnings of the link meshes, in their layers, [m]; then, for each mark, that of the
+            strip if it were straight.
         quaternions: orientations of the link meshes, scalar first.
         parts: positions of bearings, pen, two marker discs and further points, [m].
         tips: drawn end-point, [m].
+        bodies: origins of the frames of moving bodies, [m].
+        attitudes: their orientations, scalar first.
         lengths: of the bars, [m].
         turns: rotations of the parts about the vertical axis, scalar first.
         forces: on the end-point, [N].
@@ -32,6 +35,8 @@ class PoseShapes(NamedTuple):
     quaternions: tuple[int, ...]
     parts: tuple[int, ...]
     tips: tuple[int, ...]
+    bodies: tuple[int, ...]
+    attitudes: tuple[int, ...]
     lengths: tuple[int, ...]
     turns: tuple[int, ...]
     forces: tuple[int, ...]
@@ -39,12 +44,16 @@ class PoseShapes(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Counts:
-    """Numbers of parts of a robot; the last `strip` bars are pieces of one flexible strip."""
+    """Numbers of parts of a robot; the last `strip` bars are pieces of one flexible strip.
+
+    A robot with bodies is drawn by these instead of its bars.
+    """
 
     bars: int
     joints: int
     marks: int
     strip: int = 0
+    bodies: int = 0
 
     @property
     def links(self) -> int:
@@ -64,12 +73,14 @@ class Counts:
     @property
     def pose_shapes(self) -> PoseShapes:
         """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
-        bars, parts = self.bars, self.joints + 3 + self.marks
+        bars, parts = self.bars + self.marks, self.joints + 3 + self.marks
         return PoseShapes(
             bars=(bars, 3),
             quaternions=(bars, 4),
             parts=(parts, 3),
             tips=(1, 3),
+            bodies=(self.bodies, 3),
+            attitudes=(self.bodies, 4),
             lengths=(bars,),
             turns=(parts, 4),
             forces=(1, 3),
@@ -162,6 +173,7 @@ class PathView:
         control_points: shape (k, 3); empty when the curve has none.
         selected: index of the selected control point, or None.
         refused: positions of the errors of the last refused edit, shape (n, 3); usually empty.
+        given: the line of a file or a stroke, if the path is far from it, shape (n, 3), else empty.
     """
 
     version: int | bytes
@@ -169,6 +181,7 @@ class PathView:
     control_points: np.ndarray
     selected: int | None
     refused: np.ndarray
+    given: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
 
     @property
     def closed(self) -> bool:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.session import Session
@@ -35,6 +36,7 @@ from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import RIGHT
+from onpath.models.paths.curve_fit import FAR
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.parameters import Parameters
@@ -258,7 +260,16 @@ def _path_view(
         control_points=placed(points),
         selected=editor.selected if is_present else None,
         refused=placed(np.concatenate(refused) if refused else np.zeros((0, 2))),
+        given=placed(_given(editor) if is_present else np.zeros((0, 2))),
     )
+
+
+def _given(editor: PathEditor) -> np.ndarray:
+    """The line that the path was fitted to, if it is far from it, shape (n, 2), else empty."""
+    curve = editor.design.curve
+    if curve.given is None or curve.deviation <= FAR:
+        return np.zeros((0, 2))
+    return curve.given
 
 
 def _path_edit(session: Session) -> PathEdit:

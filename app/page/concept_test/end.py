@@ -9,7 +9,7 @@ import viser
 
 from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
-from onpath.app.exports.concept_test_facts import told_tests
+from onpath.app.exports.concept_test_facts import results_of
 from onpath.app.lab import commands as c
 from onpath.app.page.panels.widgets import Post, add_buttons
 from onpath.lessons.concept_test.concept_test import BEFORE
@@ -33,7 +33,7 @@ def add_test_end(
         words=words,
         run=run,
         title=titles_of_tests(run.course, words)[run.progress.lesson],
-        told=told_tests(run),
+        results=results_of(run),
         colour=AZURE.hex,
     )
     text = gui.add_html(content)

@@ -15,7 +15,11 @@ from onpath.lessons.words import Words
 
 
 class ClassPanel:
-    """A folder with fields for class code and nickname, or with the student's name once joined."""
+    """A folder to join the class.
+
+    At the address of a class it asks for a nickname, and shows it once the student has joined.
+    Elsewhere it asks for the class code, and leads to the address.
+    """
 
     def __init__(
         self, gui: viser.GuiApi, words: Words, context: PageContext, first: PageSnapshot
@@ -24,19 +28,22 @@ class ClassPanel:
         assert seat is not None
         with gui.add_folder(words("class.title"), expand_by_default=not first.nickname):
             self._member = gui.add_html("")
-            code, hint = seat.code.upper(), words("class.code_hint")
-            self._code = _required_text(gui, words("class.code"), hint, code)
-            self._stored = gui.add_html(
-                render(
+            if seat.code:
+                told = render(
                     "panel/stored.html",
                     days=context.keep_days,
                     url=context.privacy_url,
                     words=words,
                 )
-            )
-            hint = words("class.nickname_hint")
-            self._name = _required_text(gui, words("class.nickname"), hint, kind="name")
-            self._join = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
+                before = [gui.add_html(told)]
+                hint = words("class.nickname_hint")
+                typed = _required_text(gui, words("class.nickname"), hint, kind="name")
+                join = lambda: seat.join(seat.code, typed.value)  # noqa: E731
+            else:
+                before = []
+                typed = _required_text(gui, words("class.code"), words("class.code_hint"))
+                join = lambda: seat.join(typed.value, "")  # noqa: E731
+            button = gui.add_button(words("class.join"), icon=viser.Icon.LOGIN)
             self._leave = gui.add_button(words("class.leave"), color="gray", icon=viser.Icon.LOGOUT)
             message = gui.add_html("")
             with gui.add_folder(words("class.teacher"), expand_by_default=False):
@@ -44,7 +51,8 @@ class ClassPanel:
                 key = _required_text(gui, words("class.key"), hint, kind="secret")
                 teach = gui.add_button(words("class.teach"), color="gray", icon=viser.Icon.KEY)
                 teach_message = gui.add_html("")
-        self._try(self._join, lambda: seat.join(self._code.value, self._name.value), message)
+        self._joining = [*before, typed, button]
+        self._try(button, join, message)
         self._try(self._leave, lambda: seat.leave() or "", message)
         self._try(teach, lambda: seat.teach(key.value), teach_message)
         self._shown: str | None = None
@@ -58,7 +66,7 @@ class ClassPanel:
         self._shown = name
         member = render("panel/member.html", name=name, words=self._words, small=True)
         self._member.content = member if name else ""
-        for handle in (self._code, self._stored, self._name, self._join):
+        for handle in self._joining:
             handle.visible = not name
         self._leave.visible = bool(name)
 
@@ -82,7 +90,7 @@ class ClassPanel:
 
 
 def _required_text(
-    gui: viser.GuiApi, label: str, hint: str, value: str = "", kind: str = "code"
+    gui: viser.GuiApi, label: str, hint: str, kind: str = "code"
 ) -> viser.GuiTextHandle:
     """Add a text field that is marked as required.
 
@@ -90,4 +98,4 @@ def _required_text(
         kind: "name"; "code", which no phone corrects; or "secret", one that is not shown.
     """
     gui.add_html(render("panel/field.html", kind=kind, required=True))
-    return gui.add_text(label, value, hint=hint)
+    return gui.add_text(label, "", hint=hint)

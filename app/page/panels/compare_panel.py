@@ -96,8 +96,8 @@ def comparison_html(results: Results, picture: bytes, words: Words) -> str:
     for (law, _), outcomes in results.items():
         values = worst(outcomes)
         cells = [
-            f"{1000 * (values['max_distance_m'] or 0):.1f}",
-            f"{(values['delay_s'] or 0) + 0.0:.1f}",
+            words.written(f"{1000 * (values['max_distance_m'] or 0):.1f}"),
+            words.written(f"{(values['delay_s'] or 0) + 0.0:.1f}"),
             f"{values['peak_force_N'] or 0:.0f}",
         ]
         stopped = values["stopped_at_s"] is not None

@@ -90,11 +90,31 @@ def alpha_bar(
         alpha=f"{alpha:.2f}",
         place=f"{percent(alpha):.1f}",
         limit=f"{limit:.1f}",
-        said=text,
+        text=text,
         used=used,
         beyond=used and alpha > critical,
         words=words,
     )
+
+
+class Exaggeration:
+    """A slider for the magnification of the drawn deflection."""
+
+    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
+        self._slider = gui.add_slider(
+            words("flexible.larger"),
+            min=c.EXAGGERATIONS[0],
+            max=c.EXAGGERATIONS[-1],
+            step=1.0,
+            initial_value=first.run.exaggeration,
+            hint=words("flexible.larger_hint"),
+        )
+        on_user_update(self._slider, lambda factor: post(c.SetExaggeration(factor)))
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Show the lab's value."""
+        if self._slider.value != snapshot.run.exaggeration:
+            self._slider.value = snapshot.run.exaggeration
 
 
 class FlexiblePanel:
@@ -131,14 +151,7 @@ class FlexiblePanel:
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
             hint = words("flexible.pull_hint")
             add_menu(gui, words("flexible.pull"), planes, choose_pull, hint=hint)
-            self._larger = gui.add_slider(
-                words("flexible.larger"),
-                min=c.EXAGGERATIONS[0],
-                max=c.EXAGGERATIONS[-1],
-                step=1.0,
-                initial_value=first.run.exaggeration,
-                hint=words("flexible.larger_hint"),
-            )
+            self._larger = Exaggeration(gui, words, post, first)
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
                 names = list(link.beam)
@@ -146,15 +159,13 @@ class FlexiblePanel:
             with gui.add_folder(words("flexible.composite"), expand_by_default=False):
                 names = list(link.composite)
                 self._widgets.append(ParameterWidgets(gui, words, post, names=names, first=first))
-        on_user_update(self._larger, lambda factor: post(c.SetExaggeration(factor)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values and the current limit of alpha."""
         parameters = snapshot.parameters
         for widgets in self._widgets:
             widgets.follow(snapshot)
-        if self._larger.value != snapshot.run.exaggeration:
-            self._larger.value = snapshot.run.exaggeration
+        self._larger.follow(snapshot)
         self._critical.follow(parameters_of(snapshot), snapshot.joints)
         alpha, critical = float(parameters["alpha"]), self._critical.value
         used = parameters["law"] == "redefined"

@@ -152,5 +152,5 @@ def _line(channel: Channel, words: Words, prefix: str) -> str:
     if channel.at is not None:
         place = f"{np.degrees(channel.at) % 360:.0f}"
         poles = words("gains.poles_at", poles=channel.pole_words(), place=place)
-    mark = "" if channel.stable or channel.said else "⚠️ "
+    mark = "" if channel.stable or channel.message else "⚠️ "
     return f"**{name}:** {mark}{words.sentence(channel.behaviour())} <br/>{poles}"

@@ -78,6 +78,7 @@ KEYS = (
     Key("earlier", "E", "E", c.UseEarlierSettings()),
     Key("summary", "Q", "Q", None),
     Key("view", "home", "Home", None),
+    Key("lesson", "O", "O", None),
 )
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import viser
 
+from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.panels.widgets import (
@@ -16,13 +18,17 @@ from onpath.app.page.panels.widgets import (
     add_buttons,
     help_of,
     label_of,
+    note,
     on_press,
     on_user_update,
+    refused,
 )
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
 from onpath.models.control.settable import specs
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.errors import Message
+from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.frames import SlantedPlane
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
@@ -37,8 +43,9 @@ class PathChoice:
         if isinstance(robot_of(first).frame, SlantedPlane):
             self._shown["circle"] = words("design.slanted_circle")
         self._custom = words("design.own")
-        for name in refused_presets(robot_of(first)):
-            self._shown[name] = words("design.refused", path=self._shown[name])
+        for name in presets():
+            if key := remark_on(name, robot_of(first)):
+                self._shown[name] = words(key, path=self._shown[name])
         names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
@@ -67,10 +74,12 @@ class PathChoice:
 
 
 @lru_cache(maxsize=64)
-def refused_presets(robot: Robot) -> frozenset[str]:
-    """Names of the presets that are refused, such as one that crosses itself."""
-    designs = presets().items()
-    return frozenset(name for name, design in designs if curve_faults(robot.margin, design.curve))
+def remark_on(preset: str, robot: Robot) -> str:
+    """Key of the words for a preset that is refused or crosses itself; empty for others."""
+    curve = presets()[preset].curve
+    if curve_faults(robot.margin, curve):
+        return "design.refused"
+    return "design.ambiguous" if ambiguities(curve) else ""
 
 
 class PathPanel:
@@ -84,8 +93,9 @@ class PathPanel:
         first: PageSnapshot,
         draw: Callable[[], None],
         show_zone: Callable[[bool], None],
+        files: PathReader,
     ) -> None:
-        self._version, self._words = -1, words
+        self._version, self._words, self._latest = -1, words, first
         self._plane: dict[str, viser.GuiInputHandle[float]] = {}
         frame = robot_of(first).frame
         planar = frame.p == 2
@@ -98,6 +108,7 @@ class PathPanel:
             hint=words("design.draw_hint"),
         )
         on_press(drawing, draw)
+        self._add_files(gui, post, files, first)
         undoing = {words("design.undo"): c.Undo(), words("design.redo"): c.Redo()}
         add_buttons(gui, words("design.edit"), undoing, post)
         adding = {words("design.add"): c.AddPoint(), words("design.remove"): c.RemovePoint()}
@@ -128,6 +139,59 @@ class PathPanel:
             on_user_update(box, lambda value, name=name: post(c.SetParameter(name, value)))
             self._plane[name] = box
 
+    def _add_files(
+        self, gui: viser.GuiApi, post: Post, files: PathReader, first: PageSnapshot
+    ) -> None:
+        """Add a button that takes a file with a path, and how the path is made of it."""
+        words, key = self._words, first.key
+        with gui.add_folder(words("design.files"), expand_by_default=False):
+            size = gui.add_number(
+                words("design.size"), 100.0, min=0, max=400, step=5, hint=words("design.size_hint")
+            )
+            radius = gui.add_number(
+                words("design.radius"),
+                0.0,
+                min=0,
+                max=100,
+                step=1,
+                hint=words("design.radius_hint"),
+            )
+            opened = gui.add_checkbox(words("design.open"), False, hint=words("design.open_hint"))
+            button = gui.add_upload_button(
+                words("design.upload"),
+                color="gray",
+                icon=viser.Icon.UPLOAD,
+                hint=words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}"),
+            )
+            said = gui.add_html("")
+
+        def refuse(reason: Exception | Message) -> None:
+            said.content = refused(words.sentence(reason))
+
+        def follow(command: c.FollowCurve) -> None:
+            said.content = ""
+            post(command)
+
+        async def uploaded(_: viser.GuiEvent[Any]) -> None:
+            said.content = note(words("design.reading"))
+            placing = Placing(
+                fit=size.value / 1e3 or None,
+                corners=ROUND if radius.value else SMOOTH,
+                radius=radius.value / 1e3 or RADIUS,
+                closed=False if opened.value else None,
+            )
+            file = button.value
+            upload = Upload(
+                name=file.name,
+                content=file.content,
+                placing=placing,
+                robot=key.robot,
+                parameters=parameters_of(self._latest),
+            )
+            files.read(upload, follow, refuse)
+
+        button.on_upload(uploaded)
+
     def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
         """Add number inputs for the selected point's coordinates."""
         words = self._words
@@ -151,6 +215,7 @@ class PathPanel:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the selected point's coordinates, if one is selected."""
+        self._latest = snapshot
         for name, box in self._plane.items():  # a refused value goes back
             self._set(box, float(snapshot.parameters[name]))
         edit = snapshot.edit

@@ -81,7 +81,8 @@ class WallPanel:
         set_number(self._angle, math.degrees(wall.angle))
         titles = side_titles(snapshot.laws, self._words)
         forces = [
-            (OF_SIDE[side].hex, titles[side], f"{force:.1f}") for side, force in wall.forces.items()
+            (OF_SIDE[side].hex, titles[side], self._words.written(f"{force:.1f}"))
+            for side, force in wall.forces.items()
         ]
         content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
         if self._forces.content != content:

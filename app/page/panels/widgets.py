@@ -99,12 +99,12 @@ def close_once(window: Any) -> None:
 
 def note(text: str, small: bool = False) -> str:
     """A line of text between widgets, as HTML."""
-    return render("panel/note.html", said=text, small=small)
+    return render("panel/note.html", text=text, small=small)
 
 
 def refused(reason: str) -> str:
     """The reason why an input was refused, as HTML, to be shown below the button."""
-    return render("panel/refusal.html", said=reason)
+    return render("panel/refusal.html", reason=reason)
 
 
 def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
@@ -126,7 +126,7 @@ def help_of(words: Words, name: str, spec: Spec) -> str:
 
 def option_of(words: Words, name: str, option: Any) -> str:
     """Displayed name of one of a parameter's options."""
-    return words.get(f"parameter.{name}.option.{option}", str(option))
+    return words.get(f"parameter.{name}.option.{option}", str(option).replace("_", " "))
 
 
 class ParameterWidgets:

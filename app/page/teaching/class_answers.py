@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from onpath.app.classroom import class_html as page
+from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.concept_test_results import gain_view, item_distribution, question_at
 from onpath.app.classroom.results import (
     Distribution,
@@ -15,6 +16,7 @@ from onpath.app.classroom.sketches_html import Picks
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
@@ -24,35 +26,42 @@ from onpath.lessons.words import Words
 
 
 class ClassAnswers:
-    """The answers to the question that the teacher has chosen."""
+    """The answers to the displayed question."""
 
     def __init__(self, course: Course, words: Words, teaching: TeacherContext) -> None:
         self._course, self._words, self._teaching = course, words, teaching
         self._computed: dict[tuple[str, int], Truth | None] = {}
 
+    @property
+    def _display(self) -> Display:
+        return self._teaching.classroom.display
+
     def view(self, large: bool) -> str:
-        """The answers to the prediction of the chosen step, or to a question of a test."""
-        chosen = self._teaching.chosen
-        lesson = self._course.lesson(chosen.lesson, self._words.language)
-        index = min(chosen.step, len(lesson.steps) - 1)
+        """The answers to the prediction of the displayed step, or to a question of a test."""
+        steps = StepsForAll(self._course, self._words.language)
+        name, index = steps.place(self._teaching.classroom.display)
+        lesson = self._course.lesson(name, self._words.language)
         members = self._teaching.classroom.members().values()
         students = [of_today(self._course, member.progress) for member in members]
-        if chosen.lesson in self._course.tests:
+        if name in self._course.tests:
             return self._test(lesson, index, students, large)
         return self._prediction(lesson, index, students, large)
 
     def _test(self, test: Lesson, index: int, students: list[Progress], large: bool) -> str:
         """A question of the test, answered before and after the course, and the class's gain."""
-        words, revealed = self._words, self._teaching.chosen.revealed
+        words, display, question = self._words, self._display, question_at(test, index)
         rounds = [
             (words(title), item_distribution(test, index, name, students))
             for name, title in zip(TESTS, ("test.before", "test.after"), strict=True)
         ]
-        asked = page.choices_view(question_at(test, index), rounds, revealed, words, large)
-        return gain_view(test, students, revealed, words, large) + asked
+        if display.shown:
+            asked = page.choices_view(question, rounds, display.revealed, words, large)
+        else:
+            asked = page.hidden_view(question, rounds[TESTS.index(test.name)][1], words, large)
+        return gain_view(test, students, display.revealed, words, large) + asked
 
     def _prediction(self, lesson: Lesson, index: int, students: list[Progress], large: bool) -> str:
-        words, revealed = self._words, self._teaching.chosen.revealed
+        words, revealed = self._words, self._display.revealed
         found = prediction_at(lesson, index)
         if found is None:
             return note(words("class.no_prediction"))
@@ -64,7 +73,7 @@ class ClassAnswers:
         second = None
         if is_asked_again(lesson.name, at, students):
             second = distribution(block, lesson.name, at, students, again=True)
-        if not self._teaching.chosen.shown:
+        if not self._display.shown:
             return page.hidden_view(block, second or counted, words, large)
         laws = lesson.laws_shown(at)
         picks = self._picks(lesson.name, at, counted, second)

@@ -17,9 +17,14 @@ def lesson_titles(course: Course, words: Words) -> dict[str, str]:
     return {**lessons, **{title: name for name, title in titles_of_tests(course, words).items()}}
 
 
+def step_label(lesson: Lesson, index: int, words: Words, large: bool = False) -> str:
+    """A step, by number, kind and title; for a projector without the title, which may tell what
+    will happen."""
+    step = lesson.steps[index]
+    label = f"{index + 1}. {words(f'kind.{step.kind}')}"
+    return label if large else f"{label}: {step.title}"
+
+
 def step_titles(lesson: Lesson, words: Words) -> list[str]:
     """The steps of a lesson, in order."""
-    return [
-        f"{number}. {words(f'kind.{step.kind}')}: {step.title}"
-        for number, step in enumerate(lesson.steps, start=1)
-    ]
+    return [step_label(lesson, index, words) for index in range(len(lesson.steps))]

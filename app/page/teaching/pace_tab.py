@@ -7,8 +7,8 @@ import viser
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.pace_html import pace_view
 from onpath.app.page.panels.widgets import note, on_press, on_user_update
-from onpath.app.page.teacher_context import TeacherChoices
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
+from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.course import Course
 from onpath.lessons.pace import Pace
 from onpath.lessons.words import Words
@@ -22,13 +22,13 @@ class PaceTab:
         gui: viser.GuiApi,
         words: Words,
         course: Course,
-        chosen: TeacherChoices,
         classroom: Classroom,
     ) -> None:
         self._words, self._course, self._class = words, course, classroom
         pace, self._names = self._class.orders.pace, lesson_titles(course, words)
         titles = {name: title for title, name in self._names.items()}
-        self._lesson = pace.lesson if pace else chosen.lesson or next(iter(course.lessons))
+        shown, _ = StepsForAll(course, words.language).place(classroom.display)
+        self._lesson = pace.lesson if pace else shown
         steps = self._steps()
         menu = gui.add_dropdown(
             words("class.lesson"), list(self._names), initial_value=titles[self._lesson]
@@ -40,16 +40,12 @@ class PaceTab:
         self._end = gui.add_button(words("pace.end"), color="gray", icon=viser.Icon.LOCK_OPEN)
         self._message = gui.add_html("")
         self._shown = gui.add_html("")
-        self._below, self._above = self._shown.order, menu.order - 0.5
         on_user_update(menu, self._choose)
         on_press(keep, self._keep)
         on_press(self._end, self._let_go)
 
     def look(self, large: bool) -> None:
-        """Show where everybody is now; for a projector, above the controls."""
-        order = self._above if large else self._below
-        if self._shown.order != order:
-            self._shown.order = order
+        """Show where everybody is now."""
         pace, words = self._class.orders.pace, self._words
         lesson = self._course.lesson(self._lesson, words.language)
         students = [member.progress for member in self._class.members().values()]

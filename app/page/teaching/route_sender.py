@@ -23,7 +23,7 @@ class RouteSender:
         }
         if self._names:
             self._menu = gui.add_dropdown(words("route.route"), list(self._names))
-            send = gui.add_button(words("route.send"), icon=viser.Icon.SEND)
+            send = gui.add_button(words("route.send"), color="gray", icon=viser.Icon.SEND)
             self._message = gui.add_html("")
             on_press(send, self._send)
 

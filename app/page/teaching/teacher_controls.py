@@ -54,11 +54,10 @@ class FollowedStudent:
     """Controls above a student's lab."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, teaching: TeacherContext) -> None:
-        self._words, self._class = words, teaching.classroom
+        self._words, self._class, self._teaching = words, teaching.classroom, teaching
         self._freezing = _add_freezing(gui, words, teaching)
-        member = self._class.member(teaching.chosen.followed)
-        name = member.name if member else ""
-        gui.add_html(note(words("class.following", name=name)))
+        self._who = gui.add_html("")
+        self._show_who()
         back = gui.add_button(words("class.own_lab"), icon=viser.Icon.EYE)
 
         def stop() -> None:
@@ -67,8 +66,16 @@ class FollowedStudent:
         on_press(back, stop)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show whether all labs stand still."""
+        """Show whose lab it is, and whether all labs stand still."""
         _show_freezing(self._freezing, self._words, self._class.orders.frozen)
+        self._show_who()
+
+    def _show_who(self) -> None:
+        member = self._class.member(self._teaching.chosen.followed)
+        name = member.name if member else ""
+        who = note(self._words("class.following", name=name))
+        if self._who.content != who:
+            self._who.content = who
 
 
 def _add_freezing(

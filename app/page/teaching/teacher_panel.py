@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime
-from typing import Any
 
 import viser
 
@@ -18,13 +17,11 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
-from onpath.app.page.teaching.ask_again import AskAgain
-from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.app.page.teaching.gains_tab import GainsTab
-from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
+from onpath.app.page.teaching.lesson_menu_labels import lesson_titles
+from onpath.app.page.teaching.member_controls import MemberControls
 from onpath.app.page.teaching.pace_tab import PaceTab
-from onpath.app.page.teaching.route_sender import RouteSender
-from onpath.app.page.teaching.sketch_choice import SketchChoice
+from onpath.app.page.teaching.predictions_tab import PredictionsTab
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
@@ -57,18 +54,18 @@ class TeacherPanel:
         self._teaching, self._class, self._chosen = teaching, teaching.classroom, teaching.chosen
         self._course, self._words, self._post = course, words, post
         self._next, self._busy = 0.0, False
-        self._answers = ClassAnswers(course, words, teaching)
         self._lessons = lesson_titles(course, words)
         self._codes: list[viser.GuiHtmlHandle] = []
         self._large = teaching.progress().presenting
-        self._pace: PaceTab | None = None
+        self._for_lessons: list[PredictionsTab | PaceTab] = []
         panel = self._gui.add_panel(order=0)
         with panel.add_tab(words("class.title"), viser.Icon.USERS):
             self._build_class()
         if self._course.lessons:
             with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
                 self._build_predictions()
-            self._build_pace(panel)
+            with panel.add_tab(words("pace.title"), viser.Icon.WALK):
+                self._for_lessons.append(PaceTab(self._gui, words, course, self._class))
         with panel.add_tab(words("gains.title"), viser.Icon.CHART_DOTS):
             self._gains = GainsTab(self._gui, words, teaching)
         with panel.add_tab(words("class.record"), viser.Icon.FILE_TEXT):
@@ -88,31 +85,39 @@ class TeacherPanel:
         try:
             members = self._class.members()
             now = self._class.clock()
-            for code in self._codes:
-                _show(code, page.class_code(self._class.code, len(members), self._words))
+            code = page.class_code(
+                address=self._teaching.address,
+                is_local=self._teaching.is_local,
+                code=self._class.code,
+                count=len(members),
+                words=self._words,
+                large=self._large,
+            )
+            for shown in self._codes:
+                _show(shown, code)
             _show(self._table, page.table(members.values(), self._course, now, self._words))
             self._show_names()
             still = self._teaching.why_still(self._words)
             _show(self._still, note(still) if still else "")
-            _show(self._deleted, note(self._chosen.message) if self._chosen.message else "")
+            self._member.look()
             self._show_standing()
-            if self._course.lessons:
-                _show(self._prediction, self._answers.view(self._large))
-                if self._pace is not None:
-                    self._pace.look(self._large)
+            for tab in self._for_lessons:
+                tab.look(self._large)
             self._gains.look(self._large)
         finally:
             self._busy = False
 
-    def _build_pace(self, panel: Any) -> None:
-        with panel.add_tab(self._words("pace.title"), viser.Icon.WALK):
-            self._pace = PaceTab(
-                gui=self._gui,
-                words=self._words,
-                course=self._course,
-                chosen=self._chosen,
-                classroom=self._class,
-            )
+    def _build_predictions(self) -> None:
+        self._codes.append(self._gui.add_html(""))
+        tab = PredictionsTab(
+            gui=self._gui,
+            words=self._words,
+            course=self._course,
+            teaching=self._teaching,
+            look_again=self._look_again,
+            present=self._present,
+        )
+        self._for_lessons.append(tab)
 
     # Progress
 
@@ -123,11 +128,14 @@ class TeacherPanel:
             self._words("class.follow"), [self._words("class.own_lab")]
         )
         on_user_update(self._names, self._choose_followed)
-        self._delete = self._gui.add_button(
-            self._words("class.delete"), color="red", icon=viser.Icon.USER_MINUS
+        self._member = MemberControls(
+            gui=self._gui,
+            words=self._words,
+            teaching=self._teaching,
+            ask=self._ask,
+            let_go=lambda: self._choose_followed(""),
+            look_again=self._look_again,
         )
-        self._deleted = self._gui.add_html("")
-        on_press(self._delete, self._ask_to_delete)
         self._still = self._gui.add_html("")
         self._standing = self._gui.add_html("")
         self._clear = self._gui.add_button(self._words("class.push_end"), color="gray")
@@ -148,7 +156,6 @@ class TeacherPanel:
             self._names.options = options
         if self._names.value != shown:
             self._names.value = shown
-        self._delete.visible = shown in names
 
     def _show_standing(self) -> None:
         """Show the set-up that new members receive and the button that clears it."""
@@ -164,103 +171,18 @@ class TeacherPanel:
             message = self._words("class.standing_setup")
         _show(self._standing, note(message) if message else "")
 
-    def _ask_to_delete(self) -> None:
-        """Delete the student who is followed, after confirmation."""
-        code = self._chosen.followed
-        member = self._class.member(code)
-        if member is not None:
-            question = self._words("class.delete_sure", name=member.name)
-            self._ask(self._words("class.delete"), question, lambda: self._delete_student(code))
-
-    def _delete_student(self, code: str) -> None:
-        try:
-            self._teaching.delete(code)
-            message = self._words("class.deleted")
-        except (OSError, ValueError) as error:
-            message = self._words.sentence(error)
-        else:
-            self._chosen.numbered.clear()
-            self._choose_followed("")  # which may rebuild the page
-        self._chosen.message = message
-        self._look_again()
-
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed, self._chosen.message = self._followable().get(name, ""), ""
-        self._look_again()
-
-    # Predictions
-
-    def _build_predictions(self) -> None:
-        words, gui, chosen = self._words, self._gui, self._chosen
-        if not self._course.has(chosen.lesson):
-            chosen.lesson, chosen.step = next(iter(self._course.lessons)), 0
-        lessons, steps = self._lessons, self._steps()
-        shown = next(label for label, name in lessons.items() if name == chosen.lesson)
-        self._codes.append(gui.add_html(""))
-        lesson = gui.add_dropdown(words("class.lesson"), list(lessons), initial_value=shown)
-        self._step = gui.add_dropdown(
-            words("class.step_head"), steps, initial_value=steps[chosen.step]
-        )
-        push = gui.add_button(words("class.push_step"), icon=viser.Icon.SEND)
-        self._sent = gui.add_html("")
-        AskAgain(
-            gui=gui,
-            words=words,
-            course=self._course,
-            teaching=self._teaching,
-            look_again=self._look_again,
-        )
-        self._sketches = SketchChoice(gui, words, chosen, self._look_again)
-        RouteSender(gui, words, self._course, self._class)
-        reveal = gui.add_checkbox(words("class.truth"), chosen.revealed)
-        large = gui.add_checkbox(words("lesson.presenting"), self._large)
-        self._prediction = gui.add_html("")
-        self._below, self._above = self._prediction.order, lesson.order - 0.5
-        self._place_prediction()
-        on_user_update(lesson, lambda label: self._choose_lesson(lessons[label]))
-        on_user_update(self._step, self._choose_step)
-        on_user_update(reveal, self._reveal)
-        on_user_update(large, self._present)
-        on_press(push, self._push_step)
-
-    def _steps(self) -> list[str]:
-        lesson = self._course.lesson(self._chosen.lesson, self._words.language)
-        return step_titles(lesson, self._words)
-
-    def _choose_lesson(self, name: str) -> None:
-        self._chosen.lesson, self._chosen.step = name, 0
-        self._step.options = self._steps()
-        self._step.value = self._step.options[0]
-        self._sketches.clear()
-        self._look_again()
-
-    def _choose_step(self, label: str) -> None:
-        self._chosen.step = self._steps().index(label)
-        self._sketches.clear()
-        self._look_again()
-
-    def _reveal(self, on: bool) -> None:
-        self._chosen.revealed = on
         self._look_again()
 
     def _present(self, on: bool) -> None:
         self._large = on
         self._post(c.SetPresenting(on))
         self._panel.set_width(WIDE if on else WIDTH)
-        self._place_prediction()
         self._look_again()
-
-    def _place_prediction(self) -> None:
-        """Place the answers below the controls or, for a projector, above them."""
-        self._prediction.order = self._above if self._large else self._below
 
     def _look_again(self) -> None:
         self._next = 0.0
-
-    def _push_step(self) -> None:
-        self._class.push(TakeStep(self._chosen.lesson, self._chosen.step))
-        message = self._words("class.sent", count=len(self._class.members()))
-        self._sent.content = note(message)
 
     # Export and deletion
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from importlib import import_module
+from importlib.util import find_spec
 from pkgutil import iter_modules
 
 from onpath.models.control import laws
 from onpath.models.control.laws.law import Law, OwnGain
+from onpath.models.control.laws.law_error import error_in
 from onpath.models.control.laws.own import is_text, own_law, tidy
 from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
 from onpath.models.control.laws.trajectory_tracking import LAW as TRAJECTORY_TRACKING
@@ -23,19 +25,28 @@ def found_laws() -> dict[str, Law]:
     names.
 
     Raises:
-        ValueError: two laws have the same name.
+        ValueError: two laws have the same name, or a module has an error.
     """
     found = {law.name: law for law in (TRAJECTORY_TRACKING, PATH_FOLLOWING)}
     for module in iter_modules(laws.__path__, f"{laws.__name__}."):
         if module.name == __name__:
             continue
-        law: Law | None = getattr(import_module(module.name), "LAW", None)
+        law = _law_of(module.name)
         if law is None or found.get(law.name) is law:
             continue
         if law.name in found:
             raise ValueError(f"{module.name}: there is another law named {law.name!r}")
         found[law.name] = law
     return found
+
+
+def _law_of(module: str) -> Law | None:
+    try:
+        return getattr(import_module(module), "LAW", None)
+    except Exception as error:
+        spec = find_spec(module)
+        file = spec.origin if spec and spec.origin else module
+        raise error_in(module.rpartition(".")[2], error, file) from error
 
 
 def law_named(name: str) -> Law:

@@ -67,7 +67,7 @@ def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channe
         stable=False,
         integral=False,
         at=place.theta,
-        said=Message("behaviour.free"),
+        message=Message("behaviour.free"),
     )
     return across, along
 

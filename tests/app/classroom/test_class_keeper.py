@@ -17,7 +17,6 @@ from onpath.app.classroom.classroom import (
     NOTHING_DONE,
     Classroom,
     ClassState,
-    class_with_address,
 )
 from onpath.app.common.access_codes import shown
 from onpath.app.lab.commands import TakeSetup, TakeStep
@@ -44,7 +43,7 @@ class Process:
     ) -> None:
         self.now, self.given_up = now, 0
         self.records = Records(file_url(file), wall)
-        self.room: Classroom = class_with_address(key, lambda: self.now)
+        self.room: Classroom = Classroom(lambda: self.now, key)
         self.keeper = ClassKeeper(self.room, self.records, self._give_up)
 
     def _give_up(self) -> None:
@@ -301,7 +300,7 @@ def test_a_database_that_is_away_ends_no_class(
     ],
 )
 def test_what_is_broken_is_left_out_and_the_class_goes_on(field: str, broken: Any) -> None:
-    room = class_with_address(KEY)
+    room = Classroom(key=KEY)
     room.join(ADA, room.code, "Ada")
     stored = to_stored(room.state, room.clock())
     if field == "members":
@@ -316,9 +315,8 @@ def test_a_class_that_cannot_be_read_is_begun_anew(broken: dict[str, Any]) -> No
     assert from_stored(broken, lambda _: NOTHING_DONE, 0.0) == ClassState()
 
 
-def test_a_class_that_ends_keeps_its_address_and_one_without_gets_a_new_code() -> None:
-    fixed, own = class_with_address(KEY), Classroom()
-    for room, stays in ((fixed, True), (own, False)):
-        code = room.code
-        room.join(ADA, code, "Ada")
-        assert room.end() == 1 and (room.code == code) == stays and room.members() == {}
+def test_a_class_that_ends_keeps_its_code() -> None:
+    room = Classroom()
+    code = room.code
+    room.join(ADA, code, "Ada")
+    assert room.end() == 1 and room.code == code and room.members() == {}

@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import io
 import os
+import sys
+from pathlib import Path
 
+import platformdirs
 import pytest
 
 from onpath.app.classroom.admission import CODE_LENGTH, class_code_of, class_id_of
-from onpath.app.classroom.class_opening import KEY, MOST, given_keys, open_classes
-from onpath.app.cli.serve import Serve
+from onpath.app.classroom.class_keeper import ClassKeeper
+from onpath.app.classroom.class_opening import KEY, MOST, given_keys, key_file, open_classes
+from onpath.app.cli.serve import print_classes
 from onpath.app.common.access_codes import ALPHABET, new_code, shown
+from onpath.app.common.qr_code import qr_text
+from onpath.app.storage.records import Records
 
 KEYS = ["k7mf2xqa9tzr", "bn4ws8cd3vyp"]
 
@@ -23,14 +30,60 @@ def test_each_key_has_a_class_whose_code_every_process_finds(
     assert KEY not in os.environ  # no child inherits it
     rooms = open_classes(KEYS)
     assert [room.code for room in rooms] == [class_code_of(key) for key in KEYS]
-    assert all(room.has_address and set(room.code) <= set(ALPHABET) for room in rooms)
+    assert all(set(room.code) <= set(ALPHABET) for room in rooms)
     assert all(len(room.code) == CODE_LENGTH for room in rooms)
     assert len({room.code for room in rooms} | {class_id_of(key) for key in KEYS}) == 4
 
 
-def test_without_a_key_there_is_one_class_with_a_key_of_its_own() -> None:
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The user's data folder, which does not exist yet."""
+    folder = tmp_path / "data"
+    monkeypatch.setattr(platformdirs, "user_data_dir", lambda _: str(folder))
+    return folder
+
+
+def test_without_a_key_this_computer_has_a_class_that_stays_the_same(home: Path) -> None:
     (first,), (second,) = open_classes([]), open_classes([])
-    assert not first.has_address and first.key != second.key and first.code != second.code
+    assert (first.key, first.code) == (second.key, second.code) and first.key not in KEYS
+    if sys.platform != "win32":
+        assert key_file().stat().st_mode & 0o777 == 0o600
+        assert home.stat().st_mode & 0o777 == 0o700
+    key_file().unlink()
+    (other,) = open_classes([])
+    assert other.key != first.key
+
+
+@pytest.mark.parametrize("broken", [b"", b"k7mf", b"\xff\x00", b"a\n" * 99])
+def test_a_broken_key_is_replaced(home: Path, broken: bytes) -> None:
+    open_classes([])
+    key_file().write_bytes(broken)
+    (first,), (second,) = open_classes([]), open_classes([])
+    assert first.key == second.key
+
+
+def test_without_a_data_folder_there_is_a_class_as_long_as_the_server(home: Path) -> None:
+    home.write_text("a file, and no folder")
+    (first,), (second,) = open_classes([]), open_classes([])
+    assert first.key != second.key
+
+
+def test_another_process_has_the_class_as_it_was(home: Path) -> None:
+    (room,) = open_classes([])
+    records = Records()
+    keeper = ClassKeeper(room, records, lambda: None)
+    assert keeper.open()
+    teacher = room.admit(shown(room.key), "desk")
+    room.join("a" * 12, room.code, "Ada")
+    keeper.look()
+    records.give_up()
+    records.close()
+    (again,) = open_classes([])
+    records = Records()
+    assert ClassKeeper(again, records, lambda: None).open()
+    assert [member.name for member in again.members().values()] == ["Ada"]
+    assert again.code == room.code and again.is_pass(teacher)
+    records.close()
 
 
 @pytest.mark.parametrize("typed", ["short", "k7mf2xqa9tz0", f"{KEYS[0]} x"])
@@ -48,11 +101,36 @@ def test_there_are_not_too_many_classes() -> None:
         open_classes([new_code() for _ in range(MOST + 1)])
 
 
-def test_a_key_that_was_given_is_not_printed_and_an_address_is(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_keys_that_were_given_are_not_printed_and_addresses_are(
+    capsys: pytest.CaptureFixture[str],
 ) -> None:
-    monkeypatch.setenv(KEY, KEYS[0])
-    Serve(classroom=True, origin=("https://lab.example.org",))._classrooms()
+    print_classes(open_classes(KEYS), "https://lab.example.org", key_is_known=True)
     said = capsys.readouterr().out
-    assert f"https://lab.example.org/c/{class_code_of(KEYS[0])}/" in said
-    assert KEYS[0] not in said and shown(KEYS[0]) not in said and "key" not in said
+    for line, key, number in zip(said.splitlines(), KEYS, (1, 2), strict=True):
+        assert f"https://lab.example.org/c/{class_code_of(key)}/" in line
+        assert line.endswith(f"teacher's key {number}")
+        assert key not in said and shown(key) not in said
+
+
+@pytest.mark.parametrize(
+    ("site", "encoding", "is_shown"),
+    [
+        ("http://192.0.2.7:8080", "utf-8", True),
+        ("http://192.0.2.7:8080", "cp1252", False),
+        ("http://localhost:8080", "utf-8", False),
+        ("http://[::1]:8080", "utf-8", False),
+    ],
+)
+def test_a_terminal_shows_the_address_as_a_qr_code_if_a_phone_can_open_it(
+    home: Path, monkeypatch: pytest.MonkeyPatch, site: str, encoding: str, is_shown: bool
+) -> None:
+    terminal = io.TextIOWrapper(io.BytesIO(), encoding)
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stdout", terminal)
+    (room,) = open_classes([])
+    print_classes([room], site, key_is_known=False)
+    terminal.seek(0)
+    said = terminal.read()
+    assert f"{site}/c/{room.code}/" in said and shown(room.key) in said
+    assert (qr_text(f"{site}/c/{room.code}/") in said) == is_shown
+    assert ("--host 0.0.0.0" in said) == ("192" not in site)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.admission import CODE_LENGTH, LONGEST_NAME, cleaned
 from onpath.app.classroom.class_sync import ClassSync
-from onpath.app.classroom.classroom import Classroom, class_with_address
+from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.results import distribution, prediction_at, truth_of
 from onpath.app.common.access_codes import ALPHABET, shown
 from onpath.app.common.throttle import TRIES, WITHIN, Throttle
@@ -48,20 +48,14 @@ def course(tmp_path: Path) -> Course:
 
 @dataclass
 class Watched:
-    """A class whose clock and labs are in the test's hands.
-
-    Attributes:
-        key: of a class with an address; empty for the class of one process.
-    """
+    """A class whose clock and labs are in the test's hands."""
 
     course: Course
-    key: str = ""
     now: float = 1000.0
     labs: dict[str, tuple[Lab, bool]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        clock = lambda: self.now  # noqa: E731
-        self.room = class_with_address(self.key, clock) if self.key else Classroom(clock)
+        self.room = Classroom(lambda: self.now)
         self.attendance = ClassSync(self.room, self.labs.get)
 
     def student(self, name: str) -> Lab:
@@ -80,9 +74,9 @@ class Watched:
             lab.drain()
 
 
-@pytest.fixture(params=["", "k7mf2xqa9tzr"], ids=["of a process", "with an address"])
-def klass(request: pytest.FixtureRequest, course: Course) -> Watched:
-    return Watched(course, request.param)
+@pytest.fixture
+def klass(course: Course) -> Watched:
+    return Watched(course)
 
 
 # Who may come in.

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.classroom.class_sync import GAINS, ClassSync
-from onpath.app.classroom.classroom import Classroom
+from onpath.app.classroom.classroom import Classroom, Display
 from onpath.app.classroom.gains_html import HEIGHT, PAIRS, WIDTH, gains_view
 from onpath.app.classroom.pace_html import pace_view, whereabouts
 from onpath.app.lab import commands as c
@@ -103,7 +103,8 @@ class Teaching:
     """What the teacher's page knows of a class."""
 
     def __init__(self, room: Classroom) -> None:
-        self.classroom, self.chosen = room, TeacherChoices(LESSON, SKETCH)
+        self.classroom, self.chosen = room, TeacherChoices()
+        room.show(Display(LESSON, SKETCH, shown=True))
 
     def progress(self) -> Progress:
         return Progress()

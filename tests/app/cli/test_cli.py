@@ -9,16 +9,20 @@ import re
 import subprocess
 import sys
 import tomllib
+import warnings
 from pathlib import Path
 
 import pytest
 
 from onpath.app.cli.main import run_command
 from onpath.app.common import atomic_file
+from onpath.app.notebook.path_files import path_from
+from onpath.app.notebook.simulate import simulate
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
 from onpath.models.control.laws.registry import LAWS, NAMES
 from onpath.models.control.settable import specs
+from onpath.models.path_files.placing import RADIUS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.checkout import ROOT
 from tests.support.csv_columns import read_csv
@@ -80,14 +84,52 @@ def test_a_path_may_be_read_from_a_file(tmp_path: Path, capsys: pytest.CaptureFi
     assert json.loads(outputs[0])["laws"]["path_following"]["max_distance_m"] < 1e-4
 
 
-def test_a_table_of_points_and_cut_corners_are_told(
+FILES = {
+    "my points.csv": ("x_mm;y_mm\n50;0\n0;40\n-50,0;0\n0;-40\n", "smooth", RADIUS),
+    "slot.nc": ("G0 X-40 Y-20\nG1 X30\nG3 Y20 J20\nG1 X-40\nY-20\n", "round", 0.014),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_path_of_another_program_is_the_same_in_every_command(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / name
+    content, corners, radius = FILES[name]
+    file.write_text(content, "utf-8")
+    text = f"@{file} fit=0.09 centre=0,0.01 corners={corners} radius={radius}"
+    page = str(tmp_path / "a.html")
+    assert run_command([*SHORT, "--json", "--path", text]) == 0
+    experiment = json.loads(capsys.readouterr().out)["laws"]["path_following"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        curve = path_from(file, fit=0.09, centre=(0, 0.01), corners=corners, radius=radius)
+    run = simulate(path=curve, duration=0.2)
+    assert experiment["max_distance_m"] == pytest.approx(run.distance.max(), rel=1e-6)
+    brief = ["--law", "path_following", "--obstruction", "wall", "--json"]
+    assert run_command(["compare", "--path", text, *brief]) == 0
+    assert json.loads(capsys.readouterr().out)["laws"]["path_following"]
+    assert run_command(["export", "figure", page, "--path", text, "--law", "set_point"]) == 0
+    assert Path(name).stem in Path(page).read_text("utf-8")
+
+
+def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_for(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = tmp_path / "points.csv"
-    file.write_text("x,y\n0.05,0\n0,0.04\n-0.05,0\n", "utf-8")
+    file = tmp_path / "small.nc"
+    file.write_text("G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
     told = capsys.readouterr().err
-    assert f"{file}: this is a table of points: in Python, onpath.through" in told
+    assert "bends too sharply" in told and "add the word nearest" in told
+    assert run_command([*SHORT, "--json", "--path", f"@{file} nearest"]) == 0
+    said = capsys.readouterr()
+    assert "follow the nearest path" in said.err and json.loads(said.out)["laws"]
+    file.write_text("G0 X0 Y0\nG1 X30\nM5\n", "utf-8")
+    assert run_command([*SHORT, "--path", f"@{file}"]) == 2
+    assert f"--path @{file}: line 3, column 1: 'M5' is not read" in capsys.readouterr().err
+
+
+def test_cut_corners_are_told(capsys: pytest.CaptureFixture[str]) -> None:
     assert run_command([*SHORT, "--json", "--path", "closed 0.05 0 0 0.05 -0.05 0 0 -0.05"]) == 0
     said = capsys.readouterr()
     assert "13.3 mm away from the lines" in said.err and said.err.count("\n") == 1
@@ -175,6 +217,7 @@ BAD = [
     ["-x"],
     ["--port", "abc"],
     ["--privacy-url", "javascript:alert(1)"],
+    ["--course-url", "javascript:alert(1)"],
     ["--privacy-url", "https://"],
     ["--privacy-url", "school.example/privacy"],
     ["--privacy-url", "https://school.example/a b"],
@@ -272,7 +315,7 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experiment", "obstruction", "--path", "elipse"], "did you mean ellipse"),
         (["experiment", "obstruction", "--path", "circle 1 2"], "circle RADIUS [Z1 Z2]"),
         (["experiment", "obstruction", "--path", "@no.json"], "no.json: No such file"),
-        (["experiment", "obstruction", "--path", "figure of eight"], "crosses itself"),
+        (["experiment", "obstruction", "--path", "circle 0.3"], "leaves the workspace"),
         (["experiment", "obstruction", "--profile", "0:0, 1:99"], "between -20 and 20 rad/s"),
         (["experiment", "obstruction", "--set", "hold_direction=up"], "along, across, both"),
         (["experimnt"], "experiment"),

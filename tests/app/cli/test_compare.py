@@ -104,7 +104,7 @@ def test_a_law_that_stops_says_so_everywhere(
         (["--obstruction", "moon"], "unknown obstruction"),
         (["--robot", "hexapod"], "unknown robot"),
         (["--radius", "nan"], "--radius"),
-        (["--robot", "spatial_arm", "--set", "rise=0.03"], "plane circle"),
+        (["--robot", "spatial_arm", "--set", "rise=0.03"], "plane path"),
         (["--set", "speed=0"], "speed along the path"),
         (["--set", "K1=inf"], "K1"),
         (["--plot", "a.gif"], "expected a name ending in"),

@@ -88,6 +88,8 @@ def test_the_modes_are_told_apart_and_all_are_seen() -> None:
         ["figure", "rank", "--set", "weight=3"],
         ["figure", "rank", "--set", "payload=heavy"],
         ["figure", "rank", "--set", "K1=300"],
+        ["figure", "crossing", "--set", "K1=300"],
+        ["figure", "crossing", "--robot", "five_bar"],
     ],
 )
 def test_errors_are_one_line(
@@ -126,3 +128,13 @@ def test_the_rank_test_has_the_parameters_that_are_set(capsys: pytest.CaptureFix
         assert run_command(["figure", "rank", *given, "--json"]) == 0
         homes.append(json.loads(capsys.readouterr().out)["home"])
     assert homes[1] < homes[0]
+
+
+def test_the_crossing_is_drawn_with_the_jumps_that_are_printed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "crossing.png"
+    assert run_command(["figure", "crossing", "--json", "--plot", str(target)]) == 0
+    runs = json.loads(capsys.readouterr().out)["runs"]
+    assert [each["jumps"] > 0 for each in runs.values()] == [False, False, True]
+    assert target.stat().st_size > 20_000

@@ -193,14 +193,14 @@ PLACES: dict[str, Callable[[str], str]] = {
     "choices": choices,
     "task": task,
     "message": message,
-    "note": lambda text: render("panel/note.html", said=text, small=False),
-    "refusal of a law": lambda text: render("panel/refusal.html", said=text),
+    "note": lambda text: render("panel/note.html", text=text, small=False),
+    "refusal of a law": lambda text: render("panel/refusal.html", reason=text),
     "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
     "text": lesson_html.text,
     "remark": lambda text: lesson_html.remark(text, italic=True),
     "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
     "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
-    "class code": lambda text: class_html.class_code(text, 1, ENGLISH),
+    "class code": lambda text: class_html.class_code(text, False, text, 1, ENGLISH),
     "report": gone,
 }
 texts = st.sampled_from(HOSTILE) | st.text(max_size=40)
@@ -244,7 +244,7 @@ def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
         yield shown(words, "a")
         yield alpha_bar(0.5, 0.2, True, words)
         yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
-        yield class_html.class_code("a", 1, words)
+        yield class_html.class_code("https://a.example/c/a/", False, "a", 1, words)
         yield lesson_html.entry(lesson, run, "1")
 
     ours, theirs = pages(ENGLISH), pages(HostileWords())
@@ -277,7 +277,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
                 )
         if isinstance(block, Choice | Sketch):
             why = Answer(option=0, sure="certain", reason=0 if block.reasons else None, why="<b>")
-            yield lesson_html.told(block, why, words)
+            yield lesson_html.confidence(block, why, words)
             sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
             ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
             found = distribution(block, lesson.name, run.index, ways)
@@ -363,7 +363,7 @@ def test_a_lesson_makes_markup_in_one_place() -> None:
     "piece",
     [
         render("panel/code.html", label="x", code="K7P", words=ENGLISH),
-        class_html.class_code("K7P", 1, ENGLISH),
+        class_html.class_code("https://a.example/", False, "K7P", 1, ENGLISH),
         report(LessonRun(COURSE, Progress()), "K7P", DAY).decode(),
         render("panel/laws.html", laws=[("#123456", "Own law", "K7P", True)]),
     ],

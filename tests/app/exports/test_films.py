@@ -239,7 +239,16 @@ def test_a_server_built_while_another_is_being_built_listens(
     with hardening.listen("127.0.0.1", 0) as listener:
         door, limits = hardening.RequestFilter((), local_only=True), hardening.Limits()
         connections = hardening.ConnectionLimits(limits, hardening.Proxies())
-        with hardening._guarded_serve(listener, door, limits, connections, lambda *_: None, bool):
+        with hardening._guarded_serve(
+            listener=listener,
+            requests=door,
+            limits=limits,
+            counts=connections,
+            to_place=lambda *_: None,
+            elsewhere=bool,
+            channel=hardening.DataChannel(),
+            course_url="",
+        ):
             lock.asked.clear()
             threading.Thread(target=build, daemon=True).start()
             assert lock.asked.wait(WAIT)

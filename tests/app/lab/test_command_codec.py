@@ -52,6 +52,7 @@ FIELDS: dict[str, st.SearchStrategy[Any]] = {
     "tuple[Action, ...]": st.lists(ACTIONS, max_size=3).map(tuple),
     "Sure": st.sampled_from(["", *SURENESS]),
     "Array": POINT,
+    "Array | None": st.none() | POINT,
 }
 
 

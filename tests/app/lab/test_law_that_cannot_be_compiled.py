@@ -66,29 +66,6 @@ def test_others_are_still_compiled(
     assert isinstance(store.get(robot, Kind("waiting_clock")), CompiledLoop)
 
 
-def test_a_law_with_an_error_is_not_chosen_and_the_lab_goes_on(
-    store: LoopCache, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def command(view: View) -> ControlAction:
-        raise TypeError("an error in the law")
-
-    wrong = replace(PATH_FOLLOWING, name="wrong", label="Of the test", command=command)
-    monkeypatch.setitem(LAWS, "wrong", wrong)
-    lab = Lab(store)
-    before, began = dict(lab.session.laws), lab.session.time
-    do(lab, c.ChooseLaw(LEFT, "wrong"))
-    for _ in range(4):
-        run(lab, FRAME)
-        finish(store)
-    assert lab.message == "wrong: an error in the law"
-    assert lab.session.laws == before and lab.session.time > began
-    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
-    for _ in range(4):
-        run(lab, FRAME)
-        finish(store)
-    assert lab.session.laws[LEFT] == "waiting_clock"
-
-
 def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: str) -> None:
     labs = Lab(store), Lab(store)
     for lab, name in zip(labs, (law, "waiting_clock"), strict=True):
@@ -99,6 +76,35 @@ def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: st
         assert lab.session.laws[LEFT] == name
     made = [store.get(r.robot, r.kind) for r in (lab.session.runs[LEFT] for lab in labs)]
     assert [type(loop) for loop in made] == [InterpretedLoop, CompiledLoop]
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_the_page_says_once_that_it_is_interpreted_and_why(
+    store: LoopCache, law: str, language: str
+) -> None:
+    lab = Lab(store)
+    do(lab, c.SetLanguage(language))
+    reason = lab.words("error.no_translation", owner=law, operation="OP_ERFINV", target="LLVM")
+    shown = list[str]()
+    do(lab, c.ChooseLaw(LEFT, law))
+    for command in (None, None, None, c.ChooseRobot("two_link_arm"), c.Reset(), c.Reset()):
+        lab.show_message("")
+        if command is not None:
+            do(lab, command)
+        for _ in range(3):
+            run(lab, FRAME)
+            finish(store)
+        shown += [lab.message] * (reason in lab.message)
+    assert shown == [lab.words("say.law_interpreted", reason=reason)]
+
+
+def test_nothing_is_said_while_a_law_is_being_compiled(store: LoopCache) -> None:
+    lab = Lab(store)
+    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
+    for _ in range(4):
+        run(lab, FRAME)
+        assert not lab.message
+        finish(store)
 
 
 def test_an_exported_figure_is_refused_in_one_line(

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
-from msgspec.structs import replace
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeSetup, TakeStep
@@ -42,8 +41,8 @@ def new_lab() -> Lab:
 
 
 def setting(lab: Lab) -> Setup:
-    """The part of a lab's set-up that affects the simulation."""
-    return replace(capture(lab.session), exaggeration=1.0)
+    """A lab's set-up, with what it draws larger."""
+    return capture(lab.session)
 
 
 @lru_cache

@@ -187,7 +187,7 @@ def test_acting_on_the_lab_while_looking_back_returns_to_the_present_and_says_so
     assert "let go" in lab.message and not lab.session.forces.hands
     lab = new_lab(0.5)
     do(lab, c.LookAt(0.3), c.ChoosePath("figure of eight"))
-    assert "refused" in lab.message
+    assert "crosses itself" in lab.message
 
 
 def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:

@@ -30,7 +30,6 @@ from onpath.app.page import panel_factory
 from onpath.app.page.panels.robot_picture import picture_of, robot_sketch
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.models import systems
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.paths.curve_faults import curve_faults
@@ -44,14 +43,12 @@ from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, 
 from tests.support.lab import run as run_lab
 from tests.support.new_robot import GANTRY, new_robot
 
-UNDERACTUATED = ROOT / "tests" / "support" / "underactuated"
-NAMES_OF_ALL = [*ROBOTS, "gantry", "overhead_crane", "cart_pendulum"]
+NAMES_OF_ALL = [*ROBOTS, "gantry"]
 
 
 @pytest.fixture
 def gantry(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Robots that are one more file each in the folder of the robots, and nothing else."""
-    monkeypatch.setattr(systems, "__path__", [*systems.__path__, str(UNDERACTUATED)])
+    """A robot that is one more file in the folder of the robots, and nothing else."""
     with new_robot(tmp_path, monkeypatch):
         yield
 
@@ -70,9 +67,9 @@ def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
 
 
 def off_path(session: Session, side: str) -> float:
-    """How far a robot is off its path, [m]: the crane's output, and the others' end-point."""
+    """How far a robot is off its path, [m]: the output of a gantry, the end-point of the others."""
     run = session.runs[side]
-    if session.entry.name == "overhead_crane":
+    if session.entry.name == "rod_gantry":
         return float(np.abs(run.shown()["xi"]).max())
     return run.distance
 
@@ -272,7 +269,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
     bending: RobotEntry, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(panel_factory, "FlexiblePanel", lambda **given: given)
-    given: Any = SimpleNamespace(stage=SimpleNamespace(pulls={"plane": None}))
+    given: Any = SimpleNamespace(stage=SimpleNamespace(pulls={"plane": None}), language="en")
     factory = panel_factory.PanelFactory(
         gui=given,
         words=given,

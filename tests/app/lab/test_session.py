@@ -51,6 +51,9 @@ WILD = st.one_of(
 INDICES = st.one_of(st.none(), st.integers(-3, 30))
 
 
+EIGHT = presets()["figure of eight"].curve
+
+
 def points(most: int) -> st.SearchStrategy[np.ndarray]:
     """Arrays of points, mostly of the right shape."""
     size = st.sampled_from([2, 2, 2, 2, 3, 0])
@@ -166,6 +169,18 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.AddPoint: st.builds(c.AddPoint),
     c.RemovePoint: st.builds(c.RemovePoint),
     c.DrawPath: st.builds(c.DrawPath, st.one_of(points(6), circles(), circles())),
+    c.FollowCurve: st.builds(
+        c.FollowCurve,
+        st.booleans(),
+        st.one_of(
+            points(3), st.sampled_from([EIGHT.terms(), 9 * EIGHT.terms(), 0.1 * EIGHT.terms()])
+        ),
+        st.one_of(st.none(), points(6)),
+        WILD,
+        st.one_of(st.none(), st.just(EIGHT.terms()), points(3)),
+        WILD,
+        st.text(),
+    ),
     c.Undo: st.builds(c.Undo),
     c.Redo: st.builds(c.Redo),
     c.Share: st.builds(c.Share),
@@ -497,16 +512,48 @@ def test_a_jump_of_the_path_empties_the_integrals() -> None:
         assert not run_.fields()["integral"].any()
 
 
+FAR = c.DrawPath(0.19 * np.column_stack([np.cos(TURN := np.linspace(0, 6.2, 60)), np.sin(TURN)]))
+"""A stroke out of the robot's reach."""
+
+
 def test_refused_path_keeps_the_previous_one_and_says_why() -> None:
     lab = new_lab(0.5)
     design, curve = lab.session.editor.design, lab.session.editor.curve
-    do(lab, c.ChoosePath("figure of eight"))
-    assert lab.session.editor.design is design and "crosses itself" in lab.message
+    do(lab, FAR)
+    assert lab.session.editor.design is design and "leaves the workspace" in lab.message
     assert lab.message_level == "warning"
     assert len(take_snapshot(lab, 1.0).path.refused)
     run(lab, 0.5)
     assert np.array_equal(lab.session.editor.table, curve.table())
     assert max(r.max_distance for r in lab.session.runs.values()) < 5e-3
+
+
+@pytest.mark.parametrize("begin", np.arange(0.2, 3.4, 0.4))
+def test_a_path_that_crosses_itself_is_followed_with_a_warning(begin: float) -> None:
+    lab = new_lab(begin)
+    do(lab, c.ChoosePath("figure of eight"))
+    assert lab.session.editor.design.name == "figure of eight" and not lab.session.editor.faults
+    assert "crosses itself" in lab.message and lab.message_level == "warning"
+    assert not len(take_snapshot(lab, 1.0).path.refused)
+    run(lab, 3.0)
+    assert all(each.diverged is None and each.distance < 5e-3 for each in lab.session.runs.values())
+    do(lab, c.ChoosePath("circle"))
+    assert lab.message == ""
+
+
+@pytest.mark.parametrize("theta", [-np.pi / 2, np.pi / 2])
+def test_a_start_at_a_crossing_is_on_the_strand_that_it_names(theta: float) -> None:
+    lab = new_lab()
+    do(lab, c.ChoosePath("figure of eight"))
+    run(lab, 0.5)
+    do(lab, c.SetStart("theta", theta), c.SetStart("along", 0.1), c.Reset())
+    for each in lab.session.runs.values():
+        first = lab.session.editor.curve.at(np.array(theta), 1)
+        at = each.fields()
+        assert at["theta"][0] == pytest.approx(theta, abs=1e-6)
+        y = [lab.session.robot.endpoint(q) for q in (at["q"], at["q"] + 1e-6 * at["v"])]
+        wanted = 0.1e-6 * first / np.linalg.norm(first)
+        assert y[1] - y[0] == pytest.approx(wanted, abs=1e-12)
 
 
 def ring(lab: Lab, phase: float, sense: int) -> np.ndarray:
@@ -641,7 +688,9 @@ def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
 
 
 @settings(max_examples=25, deadline=None)
-@given(st.lists(st.sampled_from(["move", "add", "remove", "preset", "undo", "redo", "eight"])))
+@given(
+    st.lists(st.sampled_from(["move", "add", "remove", "preset", "undo", "redo", "eight", "far"]))
+)
 def test_undo_and_redo_walk_the_line_of_edits(actions: list[str]) -> None:
     lab = new_lab()
     line, at = [lab.session.editor.design], 0
@@ -660,6 +709,7 @@ def test_undo_and_redo_walk_the_line_of_edits(actions: list[str]) -> None:
                 "remove": c.RemovePoint,
                 "preset": lambda: c.ChoosePath(("ellipse", "circle")[k % 2]),
                 "eight": lambda: c.ChoosePath("figure of eight"),
+                "far": lambda: FAR,
             }
             do(lab, c.SelectPoint(k % len(editor.design.points)), edits[action]())
             if editor.design is not line[at]:

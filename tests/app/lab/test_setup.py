@@ -196,10 +196,9 @@ BAD: dict[str, tuple[Setup, str]] = {
     "too many points": (own(name="edited", numbers=tuple(range(50))), "2 to 24"),
     "coefficients": (own(name="drawn", numbers=(1, 2)), "25 coefficients"),
     "drawn in a point": (own(name="drawn", numbers=(0,) * 50), "cusp"),
-    "crossing": (own(name="figure of eight"), "crosses itself"),
     "not reached": (own(name="drawn", closed=False, numbers=(500_000,) * 26), "workspace"),
     "the other robot's path": (
-        Setup(robots={FLEXIBLE: RobotSetup(path=Path("figure of eight"))}),
+        Setup(robots={FLEXIBLE: RobotSetup(path=Path("drawn", False, (500_000,) * 26))}),
         "flexible link cannot follow",
     ),
 }

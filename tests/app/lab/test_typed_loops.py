@@ -147,7 +147,7 @@ def test_what_cannot_be_made_is_an_error_and_nobody_else_is_affected(
 
     def failing(robot: object, kind: object) -> Kernel:
         if (robot, kind) == key(1):
-            raise RuntimeError("no")
+            raise CodedError("error.law_cannot_run")
         return good(*key(2))
 
     monkeypatch.setattr(typed_loops, "kernel_of", failing)

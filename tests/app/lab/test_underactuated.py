@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import warnings
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -24,25 +23,17 @@ from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.system import MechanicalSystem
 from tests.support.lab import FOLLOWER, assert_sound, do, new_lab, run
-from tests.support.underactuated.cart_pendulum import ROBOT as CART
-from tests.support.underactuated.overhead_crane import ROBOT as CRANE
 
+GANTRY, CART = ROBOTS["rod_gantry"], ROBOTS["cart_pendulum"]
 UNSTABLE = "zero dynamics are unstable"
 SINGULAR = "decoupling matrix is singular at the start"
 SUITABLE = [name for name, law in LAWS.items() if not law.square and not law.spatial]
 
 
-@pytest.fixture(autouse=True)
-def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    for entry in (CRANE, CART):
-        monkeypatch.setitem(ROBOTS, entry.name, entry)
-    yield
-
-
 @pytest.fixture
 def lab() -> Lab:
     lab = new_lab()
-    do(lab, c.ChooseRobot(CRANE.name), c.SetRunning(False))
+    do(lab, c.ChooseRobot(GANTRY.name), c.SetRunning(False))
     return lab
 
 
@@ -80,7 +71,6 @@ def test_nothing_is_said_while_a_prediction_is_pending(
     monkeypatch.setattr(Lab, "locked", Message("lesson.locked"))
     assert choose(lab, 1.1) == ""
     monkeypatch.undo()
-    monkeypatch.setitem(ROBOTS, CRANE.name, CRANE)
     assert UNSTABLE in choose(lab, 1.2)
 
 
@@ -96,7 +86,7 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
 
 
 @pytest.mark.parametrize("law", SUITABLE)
-@pytest.mark.parametrize("robot", [CRANE.name, CART.name])
+@pytest.mark.parametrize("robot", [GANTRY.name, CART.name])
 def test_it_runs_under_every_law_that_suits_it(robot: str, law: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
@@ -111,7 +101,7 @@ def test_it_runs_under_every_law_that_suits_it(robot: str, law: str) -> None:
     assert onpath.simulate(robot, law=law, duration=0.5).stopped_at is None
 
 
-@pytest.mark.parametrize("robot", [CRANE.name, CART.name])
+@pytest.mark.parametrize("robot", [GANTRY.name, CART.name])
 @pytest.mark.parametrize(
     "realism",
     [
@@ -131,8 +121,8 @@ def test_it_runs_with_every_kind_of_realism(robot: str, realism: dict[str, float
 
 
 def test_encoders_are_on_the_joint_without_a_motor_too(tmp_path: Path) -> None:
-    file = tmp_path / "crane.csv"
-    made = onpath.simulate(CRANE.name, duration=0.2, encoder_counts=2000.0)
+    file = tmp_path / "gantry.csv"
+    made = onpath.simulate(GANTRY.name, duration=0.2, encoder_counts=2000.0)
     made.to_csv(file)
     head, *rows = file.read_text().splitlines()
     at = head.split(",").index("phi_measured_rad")
@@ -145,17 +135,17 @@ def test_only_the_flexible_link_has_modes() -> None:
     assert {name for name, system in systems.items() if system.modes} == {"flexible"}
     flexible: MechanicalSystem = systems["flexible"]
     assert flexible.joints == flexible.m == 3
-    assert systems[CRANE.name].joints == systems[CRANE.name].n == 3
+    assert systems[GANTRY.name].joints == systems[GANTRY.name].n == 3
 
 
 def test_python_warns_and_refuses() -> None:
     with pytest.warns(UserWarning, match=UNSTABLE):
-        onpath.simulate(CRANE.name, alpha=1.1, duration=0.05)
+        onpath.simulate(GANTRY.name, alpha=1.1, duration=0.05)
     with pytest.raises(CodedError, match=SINGULAR):
-        onpath.simulate(CRANE.name, alpha=1.0)
+        onpath.simulate(GANTRY.name, alpha=1.0)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        onpath.simulate(CRANE.name, alpha=0.9, duration=0.05)
+        onpath.simulate(GANTRY.name, alpha=0.9, duration=0.05)
 
 
 @pytest.mark.parametrize(
@@ -168,7 +158,7 @@ def test_python_warns_and_refuses() -> None:
 def test_the_command_line_says_it_and_refuses(
     words: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    own = [*words, "--robot", CRANE.name, "--set"]
+    own = [*words, "--robot", GANTRY.name, "--set"]
     run_command([*own, "alpha=1.1"])
     told = capsys.readouterr()
     assert UNSTABLE in told.err and json.loads(told.out)
@@ -182,21 +172,21 @@ def test_the_command_line_says_it_and_refuses(
 def test_the_export_of_a_figure_says_it_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    own = ["export", "figure", str(tmp_path / "crane.html"), "--robot", CRANE.name, "--set"]
+    own = ["export", "figure", str(tmp_path / "gantry.html"), "--robot", GANTRY.name, "--set"]
     assert run_command([*own, "alpha=1.1"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("onpath: ") and UNSTABLE in line
 
 
 def test_a_figure_warns_refuses_and_tells_the_cause_on_its_page(tmp_path: Path) -> None:
-    file = tmp_path / "crane.html"
+    file = tmp_path / "gantry.html"
     with pytest.raises(CodedError, match=SINGULAR):
-        onpath.figure(file, CRANE.name, paths=["circle"], alpha=1.0)
+        onpath.figure(file, GANTRY.name, paths=["circle"], alpha=1.0)
     assert not file.exists()
     with pytest.warns(UserWarning, match=UNSTABLE):
-        onpath.figure(file, CRANE.name, paths=["circle"], alpha=1.1)
+        onpath.figure(file, GANTRY.name, paths=["circle"], alpha=1.1)
     assert UNSTABLE in file.read_text("utf-8")
     for alpha, told in ((1.1, True), (0.9, False)):
-        figure = chosen(CRANE.name, paths={"circle": circle(0.05)}, values={"alpha": alpha})
+        figure = chosen(GANTRY.name, paths={"circle": circle(0.05)}, values={"alpha": alpha})
         texts = stop_texts(figure, figure.laws[0], circle(0.05), False, Words("en"))
         assert any(UNSTABLE in text for text in texts) == told

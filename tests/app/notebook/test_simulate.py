@@ -7,6 +7,7 @@ import importlib
 import re
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -133,7 +134,6 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         ({"robot": "fivebar"}, "did you mean five_bar"),
         ({"robot": ["five_bar"]}, "did you mean five_bar"),
         ({"path": "elipse"}, "did you mean ellipse"),
-        ({"path": "figure of eight"}, "crosses itself"),
         ({"path": onpath.circle(0.3)}, "leaves the workspace"),
         ({"path": onpath.circle(0.005)}, "bends too sharply"),
         ({"law": "folowing"}, "path_following"),
@@ -259,12 +259,27 @@ def test_a_law_that_fails_at_once_is_not_the_best_one() -> None:
         assert runs[law].max_distance == runs[law].distance.max()
 
 
-@pytest.mark.parametrize(
-    "module", ["onpath", "onpath.app.notebook.simulate", "onpath.app.notebook.figure"]
-)
+DOCUMENTED = ("simulate", "figure", "path_files")
+
+
+@pytest.mark.parametrize("module", ["", *(f".app.notebook.{name}" for name in DOCUMENTED)])
 def test_examples_in_docstrings_do_what_they_show(module: str) -> None:
-    failed, tried = doctest.testmod(importlib.import_module(module))
+    failed, tried = doctest.testmod(importlib.import_module(f"onpath{module}"))
     assert tried > 2 and failed == 0
+
+
+def test_the_example_of_the_readme_with_a_drawing_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("svgpathtools")
+    text = (ROOT / "README.md").read_text("utf-8")
+    (example,) = re.findall(r"```python\n([^`]*path_from.*?)```", text, re.DOTALL)
+    drawing = (ROOT / "assets" / "examples" / "leaf.svg").read_text("utf-8")
+    (tmp_path / "logo.svg").write_text(drawing, "utf-8")
+    monkeypatch.chdir(tmp_path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        exec(compile(example, "README.md", "exec"), {"onpath": onpath})
 
 
 def test_the_example_of_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

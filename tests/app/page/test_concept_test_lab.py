@@ -9,7 +9,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from onpath.app.exports.concept_test_facts import told_tests
+from onpath.app.exports.concept_test_facts import results_of
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
@@ -71,16 +71,16 @@ def test_the_keys_do_not_hand_in() -> None:
 
 def test_what_is_right_is_told_after_the_second_test_only() -> None:
     lab = lab_with_lessons()
-    assert told_tests(lab.lessons) is None
+    assert results_of(lab.lessons) is None
     sit(lab, BEFORE)
-    told = told_tests(lab.lessons)
+    told = results_of(lab.lessons)
     assert told is not None and told.scores == (3, None) and told.questions == []
     page = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
     assert not any(str(o.answer) in page for b in ASKED.values() for o in b.options)
     assert "3 of 12" not in page
     do(lab, c.CloseLesson())
     sit(lab, AFTER, 1)
-    told = told_tests(lab.lessons)
+    told = results_of(lab.lessons)
     assert told is not None and told.scores == (3, 3) and len(told.questions) == 12
     page = report(lab.lessons, "", datetime(2026, 1, 1, tzinfo=UTC)).decode()
     for block in ASKED.values():

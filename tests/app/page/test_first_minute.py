@@ -13,8 +13,9 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import first_minute
 from onpath.app.page.first_minute import INVITATIONS, FirstMinute
+from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import do, new_lab, run
+from tests.support.lab import do, new_lab, run, store
 
 
 class Guest:
@@ -49,7 +50,8 @@ def guest(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], Guest]:
 def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
     guest: Callable[[str], Guest],
 ) -> None:
-    lab, new = new_lab(), guest("")
+    course = built_in_course()
+    lab, new = Lab(store(), course=course), guest("")
     assert new.after(lab, 0.2) == "hold"
     do(lab, c.Hold(True))
     assert new.after(lab, 0.5) == ""
@@ -62,10 +64,12 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
     do(lab, c.Release())
     assert new.after(lab, 4.0) == "bend"
     do(lab, c.MovePoint(2, 1.2 * lab.session.editor.points()[2]))
+    assert new.after(lab, 4.0) == "lesson"
+    do(lab, c.OpenLesson(next(iter(course.lessons))))
     assert new.after(lab, 4.0) == "" and new.kept == str(len(INVITATIONS))
 
 
-@pytest.mark.parametrize("kept", ["0", "", "5", "-1", "x" * 2000, "١", "2"])
+@pytest.mark.parametrize("kept", ["0", "", "6", "-1", "x" * 2000, "١", "2"])
 def test_the_stored_number_of_invitations_is_used_if_it_is_valid(
     kept: str, guest: Callable[[str], Guest]
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
@@ -16,7 +17,8 @@ from onpath.app.page import narration
 from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import do, new_lab, run
+from tests.support.built_in import built_in_course
+from tests.support.lab import do, new_lab, run, store
 
 SPOKEN = re.compile(r'data-spoken="([^"]*)"')
 
@@ -65,3 +67,25 @@ def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once(
     do(lab, c.SetRunning(False))
     said.follow()
     assert said.sent[-1][1].startswith("Paused.")
+
+
+def test_in_a_lesson_a_stop_does_not_offer_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Settings that went well may be the answer to the lesson's task."""
+    sent = list[str]()
+    monkeypatch.setattr(narration, "update_gui", lambda _, name, content: sent.append(content))
+    gui: Any = SimpleNamespace(add_html=lambda _: None)
+    lab, label = Lab(store(), course=built_in_course()[0]), "Reset with K1 across = 300"
+    for opened in ("", "07-flexible-link"):
+        if opened:
+            do(lab, c.OpenLesson(opened))
+        snapshot = take_page_snapshot(lab, 1.0)
+        stopped = replace(
+            snapshot,
+            message="stopped",
+            message_level="error",
+            stopped=("right",),
+            remedy={"K1": 300.0},
+        )
+        made = narration.Narration(gui, ENGLISH, DEFAULTS, Captions(ENGLISH))
+        made.follow(stopped)
+        assert (label in sent[-1]) == (not opened), sent[-1]

@@ -92,7 +92,7 @@ def test_a_letter_means_the_option_that_stands_beside_it(
         student.read(lambda: student.sees(f"Step {step + 1} of") and shown(student) == texts)
 
         student.read(lambda: any("D" in (w.get("options") or ()) for w in student.widgets.values()))
-        student.set("D", "D")
+        student.choose("D")
         if isinstance(block, Choice):
             student.set(f"{ENGLISH('lesson.commit')}: D", True)
         wait_for(lambda: chosen(lab) == order[3])

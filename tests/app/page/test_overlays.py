@@ -33,6 +33,7 @@ from onpath.app.viser_adapter.images import add_png, png_of
 from onpath.lessons.action_schema import SceneMark
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.rank_test import rank_grid
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
 from onpath.models.paths.space_curves import saddle
 from onpath.models.systems.catalogue import ROBOTS
@@ -179,7 +180,9 @@ def test_only_labels_move_with_the_robots(shown: Shown) -> None:
     switches.labels = True
     shown.follow()
     run(shown.lab, 0.2)
-    assert set(shown.follow()) == {"SetPositionMessage", "SceneNodeUpdateMessage"}
+    moves = {"SetPositionMessage", "SceneNodeUpdateMessage"}
+    has_labels = shown.lab.session.robot.chain is None  # bodies have none
+    assert set(shown.follow()) == (moves if has_labels else set())
 
 
 @ENTRIES
@@ -223,8 +226,10 @@ def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
     do(lab, c.SetRunning(False), c.ChoosePath(name))
     lab.session.editor.advance(10.0)
     shape = tube_shape(lab.session.robot, take_page_snapshot(lab, 1.0).path)
+    crosses = bool(ambiguities(lab.session.editor.design.curve))
     for points in (shape.fill.vertices, shape.normals, shape.offsets):
-        assert len(points) and np.isfinite(points).all()
+        assert (len(points) or crosses) and np.isfinite(points).all()
+    assert (shape.width < 5e-3) == crosses  # there is no tube at a crossing
     is_straight = lab.session.editor.design.name == "segment"
     assert np.isinf(shape.width) == is_straight
     assert ("straight" in tube_numbers(shape, True, ENGLISH)) == is_straight

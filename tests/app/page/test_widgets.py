@@ -23,8 +23,6 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import store
-from tests.support.underactuated.cart_pendulum import ROBOT as CART
-from tests.support.underactuated.overhead_crane import ROBOT as CRANE
 
 
 class Timer:
@@ -157,7 +155,7 @@ def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
     assert visible() == {"Along / across"}
 
 
-@pytest.mark.parametrize("entry", [*ROBOTS.values(), CRANE, CART], ids=lambda entry: entry.name)
+@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
 def test_every_parameter_of_a_robot_has_one_place_in_the_lab(entry: RobotEntry) -> None:
     specs = declared(entry.parameters)
     own, apart = own_of(entry), [n for n, s in specs.items() if s.group in ("realism", "path")]
@@ -167,6 +165,6 @@ def test_every_parameter_of_a_robot_has_one_place_in_the_lab(entry: RobotEntry) 
         assert set(shown) == specs.keys()
 
 
-def test_what_only_a_crane_has_stands_beside_the_gains() -> None:
-    assert own_of(CRANE) == ["alpha", "length", "rod", "load", "pivot"]
-    assert own_of(CART) == ["pendulum", "mass", "pivot"]
+def test_what_only_one_robot_has_stands_beside_the_gains() -> None:
+    assert own_of(ROBOTS["rod_gantry"]) == ["alpha", "rod", "pivot"]
+    assert own_of(ROBOTS["cart_pendulum"]) == ["pendulum", "mass", "pivot"]

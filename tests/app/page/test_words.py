@@ -35,11 +35,12 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
-from onpath.models.errors import CodedError, Message, said_by
-from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.errors import CodedError, Message, message_of
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import circle
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS, found_robots
+from onpath.models.systems.chain_robot import RedundantSpatialParameters
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
@@ -74,7 +75,8 @@ KEYS_MADE = (
     *("caption.", "invite.", "spoken."),
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
-    *("lesson.back", "lesson.again", "lesson.close", "site.control."),
+    *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
+    "standalone.hint_",
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
@@ -338,7 +340,8 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
     there_are = {f"language.{language}", *(f"path.{name}" for name in presets())}
     for entry in ROBOTS.values():
         there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}
-        for name, spec in specs(entry.parameters).items():
+    for kind in (*(entry.parameters for entry in ROBOTS.values()), RedundantSpatialParameters):
+        for name, spec in specs(kind).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
     parts = ("label", "text", "good", "limits")
@@ -405,7 +408,7 @@ def test_what_cannot_be_kept_is_told_in_german_too() -> None:
     assert isinstance(refused, OSError) and not isinstance(refused, ValueError)
     assert str(refused) == "the database reports: disk full" and refused.errno is None
     assert Words("de").sentence(refused) == "die Datenbank meldet: disk full"
-    assert said_by(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
+    assert message_of(refused) == refused.message == pickle.loads(pickle.dumps(refused)).message
     whole = Message("say.lab_kept", {"reason": NotKept("error.lab_newer").message})
     assert whole.text("de").endswith(
         "nicht öffnen: dieses Labor hat ein neueres OnPath gespeichert"
@@ -437,7 +440,8 @@ def reasons() -> Iterator[Message]:
     """Why runs stop and paths are refused."""
     robot = RIGID_FIVE_BAR
     for curve in (presets()["figure of eight"].curve, circle(0.19), circle(0.004), circle(0.3)):
-        yield from (fault.reason for fault in curve_faults(robot.margin, curve))
+        faults = curve_faults(robot.margin, curve) + ambiguities(curve)
+        yield from (fault.reason for fault in faults)
     v = np.zeros((1, 2))
     for q, rates in ((v * np.nan, v), (v, v + 1e4)):
         found = robot.fault(q, rates, FiveBarParameters())
@@ -468,7 +472,8 @@ def test_reasons_and_behaviours_are_translated(words: Words) -> None:
     for message in said:
         own, english = words.sentence(message), str(message)
         assert own != english and "{" not in own
-        assert re.findall(r"\d[\d.]*\d", own) == re.findall(r"\d[\d.]*\d", english)
+        numbers = [words.written(number) for number in re.findall(r"\d[\d.]*\d", english)]
+        assert re.findall(r"\d[\d.,]*\d", own) == numbers
         assert ENGLISH.sentence(message) == english
 
 
@@ -476,7 +481,7 @@ def test_messages_inside_a_message_are_translated_too() -> None:
     kind = Message("behaviour.no_overshoot")
     settles = Message("behaviour.settles", {"seconds": "0.2", "kind": kind})
     assert str(settles) == "settles in 0.2 s, no overshoot"
-    assert Words("de").sentence(settles) == "klingt in 0.2 s ab, ohne Überschwingen"
+    assert Words("de").sentence(settles) == "klingt in 0,2 s ab, ohne Überschwingen"
     two = (Message("fault.cusp"), Message("fault.crosses"))
     refused = CodedError("error.cannot_follow", robot="R", reasons=two)
     assert Words("de").sentence(refused).count("; die Bahn") == 1
@@ -533,8 +538,8 @@ def test_numbers_are_written_plainly_in_every_language() -> None:
 def test_a_german_lab_speaks_german() -> None:
     lab = Lab(store(), FLEXIBLE)
     do(lab, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
-    assert lab.message.startswith("Diese Bahn geht nicht: die Bahn kreuzt sich selbst")
-    do(lab, c.Undo())
+    assert lab.message.startswith("Hinweis: die Bahn kreuzt sich selbst")
+    do(lab, c.Undo(), c.Undo())
     assert lab.message == "es gibt nichts rückgängig zu machen"
     do(lab, c.RemovePoint())
     assert lab.message.startswith("wähle erst einen Kontrollpunkt")

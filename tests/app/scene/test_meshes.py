@@ -15,6 +15,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.part_shapes import SHARP, USUAL_LINK, all_parts
+from onpath.app.scene.path_nodes import POINT_RADIUS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.viser_adapter.film_server import FilmServer
@@ -139,3 +140,24 @@ def test_a_scene_has_few_triangles_and_bytes(name: str) -> None:
     assert len(drawn) >= 6
     assert sum(len(n.faces) * len(n.batched_positions) for n in drawn) <= MOST_TRIANGLES
     assert sum(n.faces.nbytes + n.vertices.nbytes for n in drawn) <= MOST_BYTES
+
+
+def test_a_brake_is_open_at_its_ends_and_presses_from_both_sides() -> None:
+    """A closed frame looked like an empty box."""
+    guide = meshes.part("guide").vertices
+    inner, outer = meshes.RAIL
+    assert np.abs(guide[:, 0]).min() == pytest.approx(inner)  # the end-point's way is free
+    for side in (-1, 1):
+        jaw = guide[side * guide[:, 0] > 2 * outer]
+        assert len(jaw) and np.abs(jaw[:, 2]).max() < 0.5 * guide[:, 2].max()
+
+
+def test_a_grip_points_to_all_four_sides_and_is_before_a_control_point_in_it() -> None:
+    grip = meshes.grip()
+    begin, end, _ = meshes.ARROWHEAD
+    for way in ((1, 0), (0, 1), (-1, 0), (0, -1)):
+        at = end * np.array([way[0], 0.0, way[1]])
+        found = np.linalg.norm((grip.vertices - at)[:, [0, 2]], axis=1) < 1e-9
+        assert (grip.vertices[found, 1] < -POINT_RADIUS).all() and found.any()
+    normals = judged(grip).face_normals
+    assert (normals[:, 1] < 1e-6).all() and begin < meshes.GRIP[0]  # towards the viewer

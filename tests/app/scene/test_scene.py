@@ -24,7 +24,7 @@ from onpath.app.lab.snapshots.snapshot import (
 from onpath.app.scene import meshes
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
-from onpath.app.scene.robot_nodes import TRACE_SEGMENTS
+from onpath.app.scene.robot_nodes import FORCE, TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
@@ -327,3 +327,12 @@ def test_drawing_is_reported_as_possible_until_it_ends(lab):
     lab.scene.end_freehand()
     lab.scene.update_traces(snapshot())
     assert not lab.scene.is_drawing and not any(note.visible for note in notes)
+
+
+def test_a_force_too_small_for_an_arrow_draws_none(lab):
+    """A head of no length was a dot at the end-point."""
+    newtons = 0.9 * FORCE.shortest / RIGID.force_scale
+    pulled = {name: robot(1.5, 3.0, force=(newtons, 0.0, 0.0)) for name in SIDES}
+    lab.scene.update(snapshot(robots=pulled).motion)
+    assert FORCE.shortest > 0.2 * FORCE.head_length
+    assert not any(lab.api.get_handle_by_name(f"/force_{i}").visible for i in range(len(SIDES)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any
+from urllib.parse import urljoin
 
 import pytest
 
@@ -23,7 +24,7 @@ def directory(rooms: list[Classroom]) -> ClassDirectory:
     return ClassDirectory(rooms, serve)
 
 
-def test_each_class_is_at_its_place_and_one_without_a_place_at_all() -> None:
+def test_each_class_is_at_its_place_only() -> None:
     rooms = open_classes(KEYS)
     found = directory(rooms)
     for room in rooms:
@@ -31,19 +32,20 @@ def test_each_class_is_at_its_place_and_one_without_a_place_at_all() -> None:
         assert service.room is room and service.place == f"c/{room.code}"
     for place in ("", "l/abc", "c/nobody", f"l/{rooms[0].code}"):
         assert found.at(place) is None
-    own: Any = directory([Classroom()]).at("c/anything")
-    assert own.place == "" and own is not None
     assert directory([]).at("") is None and directory([]).seat_elsewhere("", "lab") is None
 
 
 def test_who_is_elsewhere_is_told_the_address() -> None:
     rooms = open_classes(KEYS)
-    seat = directory(rooms).seat_elsewhere("c/nobody", "lab")
-    assert seat is not None and seat.code == "nobody"
-    for room, key in zip(rooms, KEYS, strict=True):
-        assert seat.join(f" {room.code.upper()}", "Ada") == f"/c/{room.code}/"
-        assert seat.teach(shown(key)) == f"/c/{room.code}/"
-        assert not room.members()
+    for place, code in (("c/nobody", "nobody"), ("l/abc", ""), ("", "")):
+        seat = directory(rooms).seat_elsewhere(place, "lab")
+        assert seat is not None and seat.code == code
+        page = f"https://school.example/folder/{f'{place}/' if place else ''}"
+        for room, key in zip(rooms, KEYS, strict=True):
+            led = [seat.join(f" {room.code.upper()}", ""), seat.teach(shown(key))]
+            there = f"https://school.example/folder/c/{room.code}/"
+            assert [urljoin(page, address) for address in led] == [there, there]
+            assert not room.members()
 
 
 def test_whoever_tries_codes_elsewhere_waits_and_nobody_else_does() -> None:

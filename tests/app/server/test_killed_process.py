@@ -96,7 +96,7 @@ def test_what_students_did_5_s_before_a_kill_is_in_the_class_which_is_back_withi
         choose_the_step(klass)
         teacher.set("Open this step for all", True)
         until(lambda: all(each.sees(f"Step {CHOICE + 1} of") for each in klass.names))
-        ada.set("A", "A")
+        ada.choose("A")
         ada.set("Commit to this prediction: A", True)
         until(lambda: teacher.sees(ANSWERED))
         ada.set("Free lab", "Free lab")

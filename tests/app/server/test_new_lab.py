@@ -17,7 +17,11 @@ def test_both_robots_are_on_the_path_from_the_beginning(name: str) -> None:
     lab = new_lab(store(), NO_LESSONS)
     do(lab, c.ChooseRobot(name))
     run(lab, 2.0)
-    assert all(run.max_distance < 1e-4 for run in lab.session.runs.values())
+    for each in lab.session.runs.values():
+        if name == "rod_gantry":  # its pen swings a little, its output does not
+            assert np.abs(each.shown()["xi"]).max() < 1e-4 and each.max_distance < 3e-3
+        else:
+            assert each.max_distance < 1e-4
 
 
 def test_a_hand_can_catch_an_end_point() -> None:

@@ -209,10 +209,11 @@ def test_a_lab_without_a_listener_is_told_nothing(server: LabServer, student: St
 def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
     server: LabServer, student: Student, room: Classroom
 ) -> None:
-    student.set("Class code", room.code)
-    student.set("Nickname", "Ada")
-    student.set("Join", True)
-    with Student(student.address) as teacher:
+    address = f"{student.address}/c/{room.code}"
+    with Student(address) as ada, Student(address) as teacher:
+        ada.open()
+        ada.set("Nickname", "Ada")
+        ada.set("Join the class", True)
         teacher.open()
         learner = ticket_of(teacher)
         teacher.set("Teacher's key", room.key)
@@ -220,7 +221,7 @@ def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
         teacher.find("Follow")
         ticket = ticket_of(teacher)
         assert ticket != learner and learner not in server._channel._streams
-        with Script(server, ticket) as script, Script(server, ticket_of(student)) as own:
+        with Script(server, ticket) as script, Script(server, ticket_of(ada)) as own:
             script.read("frame")
             teacher.find("1. Ada")
             teacher.set("Follow", "1. Ada")

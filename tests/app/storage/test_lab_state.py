@@ -116,13 +116,13 @@ def test_what_cannot_be_read_is_said_and_not_overwritten(servers: list[Server]) 
 
 
 def test_a_path_accepted_then_and_refused_today_does_not_lock_the_lab() -> None:
-    """Two strands 4 mm apart were once accepted."""
+    """Bends with a radius of a millimetre."""
     angle = np.arange(16) * np.pi / 8
-    height = np.sin(angle) * (2_000 + 28_000 * np.cos(angle) ** 2)
-    points = np.column_stack([60_000 * np.cos(angle), height])
+    radius = 45_000 + 15_000 * np.cos(8 * angle)
+    points = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
     path = {"name": "edited", "numbers": np.rint(points).astype(int).ravel().tolist()}
     setup = {"benches": {"five_bar": {"parameters": {"K1": 300.0}, "path": path}}}
     lab = new_lab()
     put_back(lab, {"setup": setup, "lessons": {}, "before": setup})
     assert lab.session.parameters.K1 == 300.0 and lab.session.editor.design.name == "circle"
-    assert "two strands" in lab.message and "The circle is used" in lab.message
+    assert "bend" in lab.message and "The circle is used" in lab.message

@@ -29,13 +29,14 @@ def states(n: int) -> Array:
 def test_a_page_stops_every_robot_when_the_lab_does_and_says_the_same(name: str) -> None:
     entry = ROBOTS[name]
     robot, parameters = entry.make(entry.parameters()), entry.parameters()
+    law = "velocity_field"  # commands torques, of which nothing is foreseen
     fault, seen = _fault(robot), set[int]()
     for q, v in states(robot.system.n):
         found = robot.fault(q[None], v[None], parameters)
         number = int(fault(q, v, 0.0))
-        reasons = stop_reasons(robot, parameters, q if np.isfinite(q).all() else None, "")
+        reasons = stop_reasons(robot, parameters, q if np.isfinite(q).all() else None, law)
         assert bool(number) == (found is not None)
         if found is not None and np.isfinite(q).all():
             assert reasons[number - 1] == found[1]
         seen.add(number)
-    assert seen == set(range(len(stop_reasons(robot, parameters, None, ""))))
+    assert seen == set(range(len(stop_reasons(robot, parameters, None, law))))

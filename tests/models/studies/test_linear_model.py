@@ -36,6 +36,8 @@ from tests.support.lab import run as run_lab
 from tests.support.passive_chain import Shape, passive_chain
 
 RIGID = [name for name, entry in ROBOTS.items() if entry.flexible_link is None]
+TURNING = [name for name in RIGID if name not in ("rod_gantry", "cart_pendulum")]
+"""Those without slides, for which the errors of the angles would be 3 mm."""
 
 
 @cache
@@ -127,7 +129,7 @@ def test_measured_angles_are_written_and_used(
     path = tmp_path / "motion.csv"
     for values, angles in ((NOISY, "measured"), (dict[str, float](), "true")):
         path.write_text(text_of(robot, **values))
-        assert ("q1_measured_rad" in path.read_text().splitlines()[0]) is bool(values)
+        assert ("_measured_" in path.read_text().splitlines()[0]) is bool(values)
         assert run_command(["identify", str(path), "--robot", robot, "--json"]) == 0
         data = json.loads(capsys.readouterr().out)
         assert data["angles"] == angles
@@ -165,8 +167,9 @@ def test_runs_with_and_without_exact_sensors_are_written_together() -> None:
     assert all(row[2:4] == row[-2:] for row in rows[51:])  # exact sensors read what is
 
 
-@pytest.mark.parametrize("values", [{}, NOISY], ids=["exact", "noisy"])
-@pytest.mark.parametrize("robot", RIGID)
+@pytest.mark.parametrize(
+    ("robot", "values"), [*((name, {}) for name in RIGID), *((name, NOISY) for name in TURNING)]
+)
 def test_torques_that_are_logged_late_or_early_are_noticed(
     robot: str, values: dict[str, float], tmp_path: Path
 ) -> None:

@@ -1,0 +1,98 @@
+"""`--robot FILE`, and the options that describe a robot's file."""
+
+from __future__ import annotations
+
+import sys
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+SUFFIXES = (".urdf", ".xml", ".mjcf")
+
+
+@dataclass(frozen=True)
+class RobotOptions:
+    """Options for a robot that is a file."""
+
+    tip: str = ""
+    """For a robot's file: the link, or site, whose origin is the end-point; by default the only one
+    at the end."""
+    pose: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """For a robot's file: where a joint stands at home, as joint=value in rad or m; repeat for
+    more. By default a pose is chosen."""
+    lock: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """For a robot's file: a joint that does not move, as joint=value; repeat for more."""
+    armature: float = 0.0
+    """For a robot's file: inertia of the motors as seen at the joints, in kg m², which URDF leaves
+    out."""
+    package: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """For a robot's file: the folder of a package with meshes, as NAME=FOLDER; repeat for more."""
+
+    def name_of(self, robot: str) -> str:
+        """The name of a robot in the catalogue, to which a file is added.
+
+        What has been left out of the file is printed to stderr.
+
+        Raises:
+            ValueError: the file is refused, or there are options for a file, but no file.
+        """
+        if not is_file(robot):
+            if self != NO_OPTIONS:
+                options = "--tip, --pose, --lock, --armature and --package"
+                raise ValueError(f"{options} need --robot FILE")
+            return robot
+        from onpath.app.notebook.robot import robot as robot_from
+
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", UserWarning)
+            entry = robot_from(
+                robot,
+                tip=self.tip,
+                pose=_numbers("--pose", self.pose),
+                lock=_numbers("--lock", self.lock),
+                armature=self.armature,
+                packages=_folders(self.package),
+            )
+        for each in caught:
+            print(f"onpath: {each.message}", file=sys.stderr)
+        return entry.name
+
+
+NO_OPTIONS = RobotOptions()
+FileOptions = Annotated[RobotOptions, tyro.conf.arg(name="")]
+
+
+def is_file(robot: str) -> bool:
+    """Whether a robot is given as a file."""
+    return Path(robot).suffix.lower() in SUFFIXES
+
+
+def _numbers(option: str, pairs: tuple[str, ...]) -> dict[str, float]:
+    numbers = dict[str, float]()
+    for name, text in _pairs(option, pairs, "joint=value").items():
+        try:
+            numbers[name] = float(text)
+        except ValueError:
+            raise ValueError(f"{option} {name}={text}: expected a number") from None
+    return numbers
+
+
+def _folders(pairs: tuple[str, ...]) -> dict[str, Path]:
+    folders = {n: Path(text) for n, text in _pairs("--package", pairs, "NAME=FOLDER").items()}
+    for name, folder in folders.items():
+        if not folder.is_dir():
+            raise ValueError(f"--package {name}={folder}: there is no such folder")
+    return folders
+
+
+def _pairs(option: str, pairs: tuple[str, ...], form: str) -> dict[str, str]:
+    values = dict[str, str]()
+    for pair in pairs:
+        name, equals, value = pair.partition("=")
+        if not equals or not name or not value:
+            raise ValueError(f"{option} {pair}: expected {form}")
+        values[name.strip()] = value.strip()
+    return values

@@ -1,0 +1,166 @@
+"""`onpath.path_from` and `onpath.check_path`: paths from files, and whether a robot can follow."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+
+from onpath.app.notebook.arguments import curve_of, plane_point
+from onpath.app.notebook.simulate import entry_named
+from onpath.models.arrays import Array
+from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
+from onpath.models.path_files.reading import path_in
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
+from onpath.models.paths.curves import Curve
+from onpath.models.paths.nearest_path import nearest_path
+
+SVG = "http://www.w3.org/2000/svg"
+
+
+def path_from(
+    file: str | Path,
+    *,
+    unit: str | None = None,
+    scale: float = 1.0,
+    fit: float | None = None,
+    centre: Sequence[float] | None = None,
+    corners: str = SMOOTH,
+    radius: float = RADIUS,
+    closed: bool | None = None,
+    part: int | None = None,
+) -> Curve:
+    """A path from a file: points (CSV), a drawing (SVG) or G-code.
+
+    Points are a table with two columns, or with columns named x and y, as any spreadsheet writes
+    it; a name may state the unit, as in x_mm. Drawings need `pip install "onpath[svg]"`. Of G-code,
+    G0 to G3, G20, G21, G90 and G91 are read, and everything else is refused. Of several lines, the
+    longest is taken.
+
+    A path has 12 harmonics, and so is smooth: see its `deviation` from the line in the file. Its
+    drawing in a notebook shows both.
+
+    Args:
+        file: such as "points.csv", "logo.svg" or "plate.nc".
+        unit: of the numbers in the file: "m", "cm", "mm", "in", "pt" or "px"; None: the one that
+            the file states, else metres for points, millimetres for G-code, 1/96 inch for drawings.
+        scale: factor of all lengths.
+        fit: wanted larger side of its bounding box, [m]; None: as it is.
+        centre: wanted centre of its bounding box, shape (2,), [m]; None: where it is, or with `fit`
+            the origin.
+        corners: "smooth", or "round" to put arcs in the place of corners first.
+        radius: of these arcs, [m].
+        closed: whether the end is joined to the beginning; None: as the file says, else closed.
+        part: number of the line in a file with several, from 1; None: the longest.
+
+    Raises:
+        ValueError: there is no path in the file; the message names the line.
+        OSError: the file cannot be read.
+
+    Warns:
+        UserWarning: which of several lines has been taken, the smallest radius of rounded corners,
+            and a deviation of more than 4 mm.
+
+    >>> import onpath, pathlib, tempfile
+    >>> file = pathlib.Path(tempfile.mkdtemp(), "square.nc")
+    >>> _ = file.write_text("G0 X0 Y0\\nG1 X80\\nY80\\nX0\\nY0")
+    >>> path = onpath.path_from(file, centre=(0, 0))
+    >>> path, round(path.deviation, 4)
+    (<closed path, 313 mm long, 81 x 81 mm>, 0.0019)
+    """
+    placing = Placing(
+        unit=unit,
+        scale=scale,
+        fit=fit,
+        centre=None if centre is None else plane_point("centre", centre),
+        corners=corners,
+        radius=radius,
+        closed=closed,
+        part=part,
+    )
+    read = path_in(Path(file), placing)
+    for remark in read.remarks:
+        warnings.warn(str(remark), stacklevel=2)
+    return read.curve
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PathCheck:
+    """Whether a robot can follow a path. A notebook draws it, red where it cannot.
+
+    Attributes:
+        path: the path.
+        reasons: why the robot cannot follow it; empty if it can.
+        remarks: where the closest point is not unique; the robot follows the path all the same.
+        places: where it cannot be followed, shape (n, 2), [m].
+        nearest: the nearest path found that the robot can follow, `path` itself if it can, or None.
+    """
+
+    path: Curve
+    reasons: tuple[str, ...]
+    remarks: tuple[str, ...]
+    places: Array
+    nearest: Curve | None
+
+    @property
+    def ok(self) -> bool:
+        """Whether the robot can follow the path."""
+        return not self.reasons
+
+    def __repr__(self) -> str:
+        lines = [*(self.reasons or ("it can be followed",)), *self.remarks]
+        if self.reasons:
+            far = None if self.nearest is None else f"{1e3 * self.nearest.deviation:.1f} mm away"
+            lines.append(f"the nearest that can be followed is {far or 'not found'}")
+        return "\n".join(lines)
+
+    def _repr_svg_(self) -> str:
+        ElementTree.register_namespace("", SVG)
+        drawing = ElementTree.fromstring(self.path._repr_svg_())
+        for x, y in self.places:
+            at = {"cx": f"{1e3 * x:.1f}", "cy": f"{-1e3 * y:.1f}", "r": "1.5", "fill": "red"}
+            ElementTree.SubElement(drawing, f"{{{SVG}}}circle", at)
+        if self.nearest is not None and self.nearest is not self.path:
+            points = 1e3 * self.nearest.at(np.linspace(-np.pi, np.pi, 181)) * (1, -1)
+            line = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+            shape = {"points": line, "fill": "none", "stroke": "green"}
+            ElementTree.SubElement(drawing, f"{{{SVG}}}polyline", shape)
+        return ElementTree.tostring(drawing, encoding="unicode")
+
+
+def check_path(path: Curve | str, robot: str = "five_bar") -> PathCheck:
+    """Whether a robot can follow a path, and the nearest path that it can follow.
+
+    The nearest one is looked for among smoothed, scaled and moved versions of the path.
+
+    Args:
+        path: as for `onpath.simulate`.
+        robot: one of `onpath.robots()`.
+
+    Raises:
+        ValueError: an unknown robot or path.
+
+    >>> import onpath
+    >>> check = onpath.check_path(onpath.circle(0.006))
+    >>> check.ok, check.nearest.length() > 0.05
+    (False, True)
+    """
+    entry, curve = entry_named(robot), curve_of("path", path)
+    margin = entry.make(entry.parameters()).margin
+    faults = curve_faults(margin, curve)
+    nearest: Curve | None = curve
+    if faults:
+        finite = all(fault.check != "not_numbers" for fault in faults)
+        nearest = nearest_path(margin, curve) if finite and curve.dimension == 2 else None
+    places = [fault.points[:, :2] for fault in faults]
+    return PathCheck(
+        path=curve,
+        reasons=tuple(str(fault.reason) for fault in faults),
+        remarks=tuple(str(each.reason) for each in ambiguities(curve)),
+        places=np.concatenate(places) if places else np.zeros((0, 2)),
+        nearest=nearest,
+    )

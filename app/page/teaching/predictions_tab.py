@@ -1,0 +1,164 @@
+"""Tab of the teacher's page: the step for all, and the class's answers to it.
+
+What leads the class is in a folder that stays in sight above the answers; the menus are below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import viser
+
+from onpath.app.classroom.classroom import Display
+from onpath.app.classroom.results import prediction_at
+from onpath.app.lab.commands import TakeStep
+from onpath.app.page.panels.widgets import note, on_press, on_user_update
+from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teaching.class_answers import ClassAnswers
+from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_label, step_titles
+from onpath.app.page.teaching.route_sender import RouteSender
+from onpath.app.page.teaching.sketch_choice import SketchChoice
+from onpath.app.page.teaching.steps_for_all import StepsForAll
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words
+
+
+class PredictionsTab:
+    """Back and next for all, peer instruction, the answers, and menus of lessons and steps.
+
+    Asking again hides the answers, so that nobody follows the majority during the discussion.
+
+    Args:
+        look_again: updates the page.
+        present: called when large type is switched on or off.
+    """
+
+    def __init__(
+        self,
+        gui: viser.GuiApi,
+        words: Words,
+        course: Course,
+        teaching: TeacherContext,
+        look_again: Callable[[], None],
+        present: Callable[[bool], None],
+    ) -> None:
+        self._words, self._course, self._look_again = words, course, look_again
+        self._class, self._steps = teaching.classroom, StepsForAll(course, words.language)
+        self._answers = ClassAnswers(course, words, teaching)
+        self._lessons = lesson_titles(course, words)
+        self._titles = {name: title for title, name in self._lessons.items()}
+        display = self._class.display
+        lesson, index = self._steps.place(display)
+        steps = self._step_titles(lesson)
+
+        icons = viser.Icon
+        with gui.add_folder(words("class.lead")):  # widgets.css keeps it in sight
+            self._back = gui.add_button(
+                words("class.back"), color="gray", icon=icons.PLAYER_SKIP_BACK, visible=False
+            )
+            self._next = gui.add_button(words("class.next"), icon=icons.PLAYER_SKIP_FORWARD)
+            self._message = gui.add_html("")
+            self._shown = gui.add_checkbox(words("class.show_answers"), display.shown)
+            self._revealed = gui.add_checkbox(words("class.truth"), display.revealed)
+            again = gui.add_button(words("class.ask_again"), color="gray", icon=icons.REPEAT)
+        self._prediction = gui.add_html("")
+        self._lesson = gui.add_dropdown(
+            words("class.lesson"), list(self._lessons), initial_value=self._titles[lesson]
+        )
+        self._step = gui.add_dropdown(words("class.step_head"), steps, initial_value=steps[index])
+        push = gui.add_button(words("class.push_step"), color="gray", icon=icons.SEND)
+        self._sketches = SketchChoice(gui, words, teaching.chosen, look_again)
+        RouteSender(gui, words, course, self._class)
+        large = gui.add_checkbox(words("lesson.presenting"), teaching.progress().presenting)
+
+        on_press(self._back, lambda: self._lead(-1))
+        on_press(self._next, lambda: self._lead(1))
+        on_press(again, self._ask_again)
+        on_press(push, lambda: self._push(TakeStep(*self._steps.place(self._class.display))))
+        on_user_update(self._shown, lambda on: self._show(shown=on))
+        on_user_update(self._revealed, self._reveal)
+        on_user_update(self._lesson, lambda label: self._choose(self._lessons[label], 0))
+        on_user_update(self._step, self._choose_step)
+        on_user_update(large, present)
+
+    def look(self, large: bool) -> None:
+        """Show what the class displays now, which may have been chosen in another window."""
+        display, words = self._class.display, self._words
+        lesson, index = self._steps.place(display)
+        steps = self._step_titles(lesson)
+        _show(self._lesson, self._titles[lesson])
+        if tuple(self._step.options) != tuple(steps):
+            self._sketches.clear()  # another step has other ones
+            self._step.options = steps
+        if self._step.value != steps[index]:
+            self._sketches.clear()
+            self._step.value = steps[index]
+        _show(self._shown, display.shown)
+        _show(self._revealed, display.revealed)
+        for button, by in ((self._back, -1), (self._next, 1)):
+            step = self._steps.beside(display, self._class.orders, by)
+            if button.visible != (step is not None):
+                button.visible = step is not None
+            if step is not None and by > 0:
+                there = self._course.lesson(step.lesson, words.language)
+                label = step_label(there, step.step, words, large)
+                if step.lesson != lesson:
+                    label = f"{self._titles[step.lesson]}, {label}"
+                label = words("class.next_step", step=label)
+                if button.label != label:
+                    button.label = label
+        view = self._answers.view(large)
+        if self._prediction.content != view:
+            self._prediction.content = view
+
+    def _step_titles(self, lesson: str) -> list[str]:
+        return step_titles(self._course.lesson(lesson, self._words.language), self._words)
+
+    def _lead(self, by: int) -> None:
+        """Take the class one step on, or back."""
+        step = self._steps.beside(self._class.display, self._class.orders, by)
+        if step is not None:
+            self._push(step)
+
+    def _push(self, step: TakeStep) -> None:
+        self._class.push(step)
+        self._tell(self._words("class.sent", count=len(self._class.members())))
+
+    def _ask_again(self) -> None:
+        name, index = self._steps.place(self._class.display)
+        found = prediction_at(self._course.lesson(name, self._words.language), index)
+        if found is None:
+            self._tell(self._words("class.no_prediction"))
+        else:
+            self._push(TakeStep(name, found[0], again=True))
+
+    def _tell(self, text: str) -> None:
+        self._message.content = note(text)
+        self._look_again()
+
+    def _choose(self, lesson: str, step: int) -> None:
+        """Display a step, with its answers hidden."""
+        self._class.show(Display(lesson, step))
+        self._message.content = ""
+        self._look_again()
+
+    def _choose_step(self, label: str) -> None:
+        lesson, _ = self._steps.place(self._class.display)
+        steps = self._step_titles(lesson)
+        if label in steps:
+            self._choose(lesson, steps.index(label))
+
+    def _reveal(self, on: bool) -> None:
+        """The truth is shown among the answers."""
+        self._show(revealed=on, **({"shown": True} if on else {}))
+
+    def _show(self, **changes: bool) -> None:
+        self._class.show(replace(self._class.display, **changes))
+        self._look_again()
+
+
+def _show(handle: Any, value: object) -> None:
+    if handle.value != value:
+        handle.value = value

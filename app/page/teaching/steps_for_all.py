@@ -1,0 +1,58 @@
+"""The steps of a course in the order in which a class goes through them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from onpath.app.classroom.classroom import Display, Orders
+from onpath.app.lab.commands import TakeStep
+from onpath.lessons.course import Course
+from onpath.lessons.schema import Step
+
+
+@dataclass(frozen=True, slots=True)
+class StepsForAll:
+    """Steps before and after one another, in the lessons, or on the route that was sent last.
+
+    Steps that are meant for some answers only are passed over: students come to them by themselves.
+    """
+
+    course: Course
+    language: str
+
+    def place(self, display: Display) -> tuple[str, int]:
+        """Lesson and index of the displayed step, or of one that exists."""
+        if not self.course.has(display.lesson):
+            return next(iter(self.course.lessons)), 0
+        return display.lesson, min(display.step, self._count(display.lesson) - 1)
+
+    def beside(self, display: Display, orders: Orders, by: int) -> TakeStep | None:
+        """The next step for all (`by` is 1) or the one before (-1); None if there is none."""
+        name = orders.push.route if isinstance(orders.push, TakeStep) else ""
+        at: tuple[str, int] | None = self.place(display)
+        while at is not None:
+            at = self._moved(at, name, by)
+            if at is not None and not self._steps(at[0])[at[1]].when:
+                return TakeStep(at[0], at[1], name)
+        return None
+
+    def _moved(self, at: tuple[str, int], route: str, by: int) -> tuple[str, int] | None:
+        lesson, index = at
+        if route in self.course.routes:
+            found = self.course.routes[route].beside(lesson, index, by)
+        else:
+            found = lesson, index + by
+        if found is None or found[1] in range(self._count(found[0])):
+            return found
+        lessons = list(self.course.lessons)
+        if lesson not in lessons or lessons.index(lesson) + by not in range(len(lessons)):
+            return None
+        other = lessons[lessons.index(lesson) + by]
+        return other, 0 if by > 0 else self._count(other) - 1
+
+    def _steps(self, lesson: str) -> Sequence[Step]:
+        return self.course.lesson(lesson, self.language).steps
+
+    def _count(self, lesson: str) -> int:
+        return len(self._steps(lesson))

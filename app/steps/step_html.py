@@ -1,0 +1,76 @@
+"""A step of a lesson as HTML, readable without scripts; assets/web makes it answerable."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import partial
+
+from msgspec.structs import replace
+
+from onpath.app.common.templates import Markup, part_of_page
+from onpath.lessons.adaptive.own_numbers import filled, marked
+from onpath.lessons.progress import Notes
+from onpath.lessons.safe_html import safe
+from onpath.lessons.schema import KINDS, Block, Lesson, Text
+from onpath.lessons.symbols import marked_symbols
+from onpath.lessons.words import Words
+
+
+@dataclass(frozen=True, slots=True)
+class StepPart:
+    """A part of a step.
+
+    Attributes:
+        kind: see `onpath.lessons.schema.KINDS`.
+        place: index among the step's blocks.
+        here: whether a task can be done on the page; True for other parts.
+    """
+
+    kind: str
+    place: int
+    block: Block
+    here: bool = True
+
+
+def part_of(lesson: Lesson, index: int, place: int, words: Words, here: bool = True) -> StepPart:
+    """A part of a step; the student's own numbers in a text have defaults, and are marked."""
+    block = lesson.steps[index].blocks[place]
+    if isinstance(block, Text):
+        html = marked(block.html, lesson.steps, index)
+        block = replace(block, html=filled(html, lesson.steps, index, Notes(), words))
+    return StepPart(KINDS[type(block)], place, block, here)
+
+
+def step_html(
+    lesson: Lesson,
+    index: int,
+    parts: list[StepPart],
+    words: Words,
+    plays: bool = False,
+    lacking: str = "",
+) -> Markup:
+    """The column of a step: its heading, texts, questions and tasks.
+
+    Args:
+        parts: its blocks, see `part_of`.
+        plays: whether the page can play the step's script.
+        lacking: what the page lacks here, in words; may be empty.
+    """
+    if lesson.steps[index].kind == "predict":  # what to draw is seen together with the board
+        parts = sorted(parts, key=lambda part: part.kind != "sketch")
+    return part_of_page(
+        "step/step.html",
+        lesson=lesson,
+        step=lesson.steps[index],
+        index=index,
+        parts=parts,
+        plays=plays,
+        lacking=lacking,
+        words=words,
+        live=partial(live, lesson),
+    )
+
+
+def live(lesson: Lesson, text: str) -> Markup:
+    """A text of a lesson with the places of its symbols, which a page can show."""
+    return marked_symbols(safe(text), lesson.front.symbols)

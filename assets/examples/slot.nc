@@ -1,0 +1,7 @@
+(a slot with a flat end)
+G21 G90
+G0 X-40 Y-20
+G1 X30 Y-20 F300
+G3 X30 Y20 I0 J20
+G1 X-40 Y20
+G1 X-40 Y-20

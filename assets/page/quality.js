@@ -1,0 +1,38 @@
+// How the scene is drawn: plainly in a browser that draws in software, for which pictures take most of
+// the time, and finely elsewhere. The lab builds the scene, and reads the same entry; see QUALITY_KEY in
+// app/server/lab_server.py. In software, edges are not smoothed, plots are not drawn like the scene, and
+// the picture behind the scene, which viser draws although there is none, is left out.
+const webgl = (() => {
+  "use strict";
+
+  const KEPT_AS = "viser-user:quality";
+  const SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
+
+  const canvas = HTMLCanvasElement.prototype, getContext = canvas.getContext;
+  const probe = document.createElement("canvas").getContext("webgl2");
+  if (probe === null) return { works: false };
+  const unmasked = probe.getExtension("WEBGL_debug_renderer_info")?.UNMASKED_RENDERER_WEBGL;
+  const plain = SOFTWARE.test(probe.getParameter(unmasked ?? probe.RENDERER));
+  probe.getExtension("WEBGL_lose_context")?.loseContext();
+  try {
+    localStorage.setItem(KEPT_AS, plain ? "plain" : "fine");
+  } catch {}  // a browser without storage has a fine scene
+  if (!plain) return { works: true };
+
+  canvas.getContext = function (kind, options) {
+    const cheap = kind === "2d" ? { willReadFrequently: true } : { antialias: false };
+    return getContext.call(this, kind, { ...options, ...cheap });
+  };
+  const tools = window.__THREE_DEVTOOLS__ ??= new EventTarget();
+  tools.addEventListener("observe", ({ detail: scene }) => {
+    if (scene?.isScene !== true) return;
+    const add = scene.add;
+    scene.add = (...objects) => {
+      for (const each of objects) {
+        if (each?.material?.uniforms?.depthMap) Object.defineProperty(each, "visible", { value: false });
+      }
+      return add.apply(scene, objects);
+    };
+  });
+  return { works: true };
+})();

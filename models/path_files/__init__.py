@@ -1,0 +1,1 @@
+"""Paths from files that other programs wrote: points, SVG drawings, G-code."""

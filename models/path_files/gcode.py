@@ -1,0 +1,179 @@
+"""Reads the lines that a tool draws from G-code.
+
+    G0        moves to the beginning of a line      G20, G21  lengths are in inches, in millimetres
+    G1        draws a straight line                 G90, G91  X and Y are absolute, relative
+    G2, G3    draw an arc clockwise, anticlockwise, with its centre at (I, J) from its beginning or
+              with radius R, negative for the longer arc
+
+Codes hold until the next one. F, N, comments and % have no effect. Everything else is refused: a
+tool that is lifted, for example, or compensated, would follow another path than the one read here.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from math import atan2, ceil, cos, hypot, isfinite, pi, sin, sqrt
+
+from onpath.models.errors import CodedError
+from onpath.models.path_files.stroke import UNITS, Stroke, check_count, drawn_stroke
+
+LONGEST_LINE = 1000  # [characters]
+TURN = pi / 90  # [rad], largest turn between two points of an arc
+UNEVEN = 0.01  # largest relative difference of an arc's radius at its ends
+ROUNDED = 2e-5  # [m], difference that rounded numbers may make
+MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
+SIZES = {"20": UNITS["in"], "21": UNITS["mm"]}
+WAYS = {"90": False, "91": True}
+_COMMENT = re.compile(r"\([^()]*\)|;.*")
+_WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
+
+Point = tuple[float, float]
+
+
+@dataclass(slots=True)
+class _Machine:
+    """The state of the machine, and the lines drawn so far."""
+
+    at: Point = (0.0, 0.0)
+    motion: int | None = None
+    unit: float = SIZES["21"]
+    relative: bool = False
+    count: int = 0
+    drawn: list[tuple[int, list[Point]]] = field(default_factory=list[tuple[int, list[Point]]])
+    fresh: bool = True  # the next line begins where the machine is
+
+    def go(self, points: list[Point], line: int) -> None:
+        """Move through points, and draw unless the motion is G0."""
+        if self.motion == 0:
+            self.fresh = True
+        else:
+            if self.fresh:
+                self.drawn.append((line, [self.at]))
+                self.fresh = False
+            self.drawn[-1][1].extend(points)
+            self.count += len(points)
+            check_count(self.count, line)
+        self.at = points[-1]
+
+
+def strokes_of_gcode(text: str) -> list[Stroke]:
+    """The lines that a tool draws, in the order of the file.
+
+    Raises:
+        CodedError: the text has anything else than the codes above, or an impossible arc; the
+            message names line and column.
+    """
+    machine = _Machine()
+    for number, line in enumerate(text.splitlines(), start=1):
+        if len(line) > LONGEST_LINE:
+            raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
+        bare = _COMMENT.sub(lambda found: " " * len(found[0]), line.upper())  # columns stay
+        if bare.strip() != "%":
+            _obey(machine, _words(bare, number), number)
+    return [drawn_stroke(points, f"line {line}") for line, points in machine.drawn]
+
+
+def _words(bare: str, line: int) -> dict[str, float]:
+    """The words of a line by letter; codes as G0, G20 and so on, with the value 1.
+
+    Raises:
+        CodedError: a word that is not read, or is repeated.
+    """
+    words, place, end = dict[str, float](), 0, len(bare.rstrip())
+    while place < end:
+        found = _WORD.match(bare, place)
+        if found is None:
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
+        letter, number = found[1], found[2]
+        name, value = letter, float(number)
+        if letter == "G":
+            whole, _, rest = number.partition(".")
+            name = f"G{whole.lstrip('0') or '0'}" if not rest.strip("0") else number
+        known = name[1:] in (*MOTIONS, *SIZES, *WAYS) if letter == "G" else letter in "XYIJRFN"
+        if not known or not isfinite(value):
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
+        if name in words:
+            column, text = _at(bare, place)
+            raise CodedError("error.gcode_twice", line=str(line), column=column, text=text)
+        words[name] = value
+        place = found.end()
+    return words
+
+
+def _at(bare: str, place: int) -> tuple[str, str]:
+    """Column and text of what stands at a place of a line, for a message."""
+    begin = place + len(bare[place:]) - len(bare[place:].lstrip())
+    word = re.match(r"\S[^A-Z\s]*", bare[begin:])
+    return str(begin + 1), repr((word[0] if word else bare[begin:])[:20])
+
+
+def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:
+    """Do what a line says."""
+    for codes, name in ((MOTIONS, "motion"), (SIZES, "unit"), (WAYS, "relative")):
+        said = [code for code in codes if f"G{code}" in words]
+        if len(said) > 1:
+            raise CodedError("error.gcode_both", line=str(line), text=f"G{said[0]}, G{said[1]}")
+        if said:
+            setattr(machine, name, codes[said[0]])
+    moves = words.keys() & set("XYIJR")
+    if not moves:
+        return
+    if machine.motion is None:
+        raise CodedError("error.gcode_no_motion", line=str(line))
+    base = machine.at if machine.relative else (0.0, 0.0)
+    x, y = (
+        base[i] + machine.unit * words[name] if name in words else machine.at[i]
+        for i, name in enumerate("XY")
+    )
+    if machine.motion < 2:
+        if moves & set("IJR"):
+            raise CodedError("error.gcode_no_arc", line=str(line))
+        machine.go([(x, y)], line)
+    else:
+        machine.go(_arc(machine, words, (x, y), line), line)
+
+
+def _arc(machine: _Machine, words: dict[str, float], end: Point, line: int) -> list[Point]:
+    """Points of an arc after its beginning."""
+    begin, clockwise = machine.at, machine.motion == 2
+    if ("R" in words) == bool(words.keys() & {"I", "J"}):
+        raise CodedError("error.gcode_arc_form", line=str(line))
+    if "R" in words:
+        x, y = _centre(begin, end, machine.unit * words["R"], clockwise, line)
+    else:
+        x, y = (begin[i] + machine.unit * words.get(name, 0.0) for i, name in enumerate("IJ"))
+    first, last = (hypot(p[0] - x, p[1] - y) for p in (begin, end))
+    if not first or abs(first - last) > max(UNEVEN * first, ROUNDED):
+        one, other = f"{1e3 * first:.4g}", f"{1e3 * last:.4g}"
+        raise CodedError("error.gcode_arc_ends", line=str(line), first=one, last=other)
+    angle = atan2(begin[1] - y, begin[0] - x)
+    sweep = (atan2(end[1] - y, end[0] - x) - angle) % (2 * pi)
+    if hypot(end[0] - begin[0], end[1] - begin[1]) < ROUNDED / 20:
+        sweep = 2 * pi  # the whole circle
+    elif clockwise:
+        sweep -= 2 * pi
+    sweep = -2 * pi if clockwise and sweep == 2 * pi else sweep
+    count = max(2, ceil(abs(sweep) / TURN))
+    points = list[Point]()
+    for i in range(1, count + 1):
+        radius, turned = first + (last - first) * i / count, angle + sweep * i / count
+        points.append((x + radius * cos(turned), y + radius * sin(turned)))
+    points[-1] = end
+    return points
+
+
+def _centre(begin: Point, end: Point, radius: float, clockwise: bool, line: int) -> Point:
+    """The centre of an arc given by its radius."""
+    dx, dy = end[0] - begin[0], end[1] - begin[1]
+    chord = hypot(dx, dy)
+    if chord < ROUNDED / 20 or abs(radius) < chord / 2 - ROUNDED:
+        raise CodedError("error.gcode_radius", line=str(line), radius=f"{1e3 * radius:g}")
+    height = sqrt(max(radius**2 - chord**2 / 4, 0.0))
+    side = -1 if clockwise == (radius > 0) else 1
+    return (
+        (begin[0] + end[0]) / 2 - side * height * dy / chord,
+        (begin[1] + end[1]) / 2 + side * height * dx / chord,
+    )

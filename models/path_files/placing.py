@@ -1,0 +1,166 @@
+"""Places a line in the plane of a path, and rounds its corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import inf
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError
+from onpath.models.path_files.stroke import Stroke
+from onpath.models.paths.curve_fit import along, fitted, with_deviation
+from onpath.models.paths.curves import Curve
+
+LARGEST = 1.0  # [m], of any coordinate
+FLAT = 1e-5  # [m], from a straight line, below which points of a line are no corners
+SMOOTH, ROUND = "smooth", "round"
+RADIUS = 0.01  # [m], of corners
+FINEST = 0.02  # [rad], turn between two points of an arc
+CORNERED = 500  # corners of a line that are rounded
+
+
+@dataclass(frozen=True, slots=True)
+class Placing:
+    """What is done with a line of a file before it is a path.
+
+    Attributes:
+        unit: of the numbers in the file, a name of `UNITS`; None: the one that the file states,
+            else metres for points, millimetres for G-code, and 1/96 inch for drawings.
+        scale: factor of all lengths.
+        fit: larger side of its bounding box after scaling, [m]; None: as it is.
+        centre: of its bounding box, [m]; None: where it is, or with `fit` at the origin.
+        corners: "smooth", or "round" for arcs of a radius in the place of corners.
+        radius: of these arcs, [m].
+        closed: whether its end is joined to its beginning; None: as the file says, else closed.
+        part: number of the line in a file with several, from 1; None: the longest.
+    """
+
+    unit: str | None = None
+    scale: float = 1.0
+    fit: float | None = None
+    centre: tuple[float, float] | None = None
+    corners: str = SMOOTH
+    radius: float = RADIUS
+    closed: bool | None = None
+    part: int | None = None
+
+
+def placed(stroke: Stroke, placing: Placing) -> Stroke:
+    """The line at its place in the plane, [m].
+
+    Raises:
+        CodedError: it is then too large, or a line without length that is to fit.
+    """
+    points = stroke.points * placing.scale
+    low, high = points.min(0), points.max(0)
+    if placing.fit is not None:
+        side = float((high - low).max())
+        if not side > 0:
+            raise CodedError("error.points_coincide", least=2)
+        points, low, high = (each * (placing.fit / side) for each in (points, low, high))
+    if placing.fit is not None or placing.centre is not None:
+        points = points - (low + high) / 2 + np.array(placing.centre or (0.0, 0.0))
+    farthest = float(np.abs(points).max())
+    if not farthest <= LARGEST:
+        raise CodedError("error.file_too_large", farthest=f"{farthest:.4g}", most=f"{LARGEST:g}")
+    closed = stroke.closed if placing.closed is None else placing.closed
+    return replace(stroke, points=points, closed=closed is not False)
+
+
+def curve_of(stroke: Stroke, placing: Placing) -> Curve:
+    """The path of a placed line, with its deviation from it.
+
+    Raises:
+        CodedError: the line is too short, or has too few points.
+    """
+    points, closed = stroke.points, stroke.closed is not False
+    if placing.corners == ROUND:
+        curve = along(rounded(points, closed, placing.radius), closed)
+    elif stroke.straight and len(points) > 2:
+        curve = along(points, closed)
+    else:
+        return fitted(points, closed)
+    return with_deviation(curve, points)
+
+
+def rounded(points: Array, closed: bool, radius: float) -> Array:
+    """The polyline with arcs in the place of its corners, shape (n, 2) -> (k, 2), [m].
+
+    An arc takes at most half of the shorter line beside it, and has a smaller radius if need be.
+
+    Args:
+        points: [m].
+        radius: of the arcs, [m].
+
+    Raises:
+        CodedError: it has more than `CORNERED` corners.
+    """
+    if closed and len(points) > 1 and np.linalg.norm(points[0] - points[-1]) < FLAT:
+        points = points[:-1]
+    corners = _corners(points, closed)
+    if len(corners) > CORNERED:
+        raise CodedError("error.file_corners", count=len(corners), most=CORNERED)
+    if len(corners) < 3:
+        return corners
+    before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+    line = list[Array]()
+    for i, (a, corner, b) in enumerate(zip(before, corners, after, strict=True)):
+        end = not closed and i in (0, len(corners) - 1)
+        line += [corner] if end else _arc(a, corner, b, radius)
+    return np.array(line)
+
+
+def _arc(a: Array, corner: Array, b: Array, radius: float) -> list[Array]:
+    """Points of the arc in the place of the corner between two others."""
+    back, ahead = a - corner, b - corner
+    lengths = np.linalg.norm(back), np.linalg.norm(ahead)
+    back, ahead = back / lengths[0], ahead / lengths[1]
+    cross = float(back[0] * ahead[1] - back[1] * ahead[0])
+    turn = np.pi - abs(float(np.arctan2(cross, back @ ahead)))
+    if turn < FINEST or turn > np.pi - FINEST:
+        return [corner]
+    reach = min(radius * np.tan(turn / 2), 0.5 * float(min(lengths)))
+    begin, end, radius = corner + reach * back, corner + reach * ahead, reach / np.tan(turn / 2)
+    middle = back + ahead
+    centre = corner + middle * (np.hypot(reach, radius) / np.linalg.norm(middle))
+    first, count = begin - centre, int(turn / FINEST) + 2
+    angles = np.linspace(0, turn if cross < 0 else -turn, count)[1:-1]
+    arc = [np.array([[np.cos(t), -np.sin(t)], [np.sin(t), np.cos(t)]]) @ first for t in angles]
+    return [begin, *(centre + each for each in arc), end]
+
+
+def _corners(points: Array, closed: bool) -> Array:
+    """The points without those on straight lines between others, by Ramer, Douglas and Peucker."""
+    if closed and len(points) > 2:
+        far = int(np.linalg.norm(points - points[0], axis=1).argmax())
+        halves = points[: far + 1], np.vstack([points[far:], points[:1]])
+        return np.vstack([_simplified(half)[:-1] for half in halves])
+    return _simplified(points)
+
+
+def _simplified(points: Array) -> Array:
+    kept, waiting = {0, len(points) - 1}, [(0, len(points) - 1)]
+    while waiting:
+        begin, end = waiting.pop()
+        if end - begin < 2:
+            continue
+        line, inner = points[end] - points[begin], points[begin + 1 : end] - points[begin]
+        length = float(np.linalg.norm(line))
+        if length > 0:
+            share = np.clip(inner @ line / length**2, 0, 1)
+            inner = inner - share[:, None] * line
+        distance = np.linalg.norm(inner, axis=1)
+        farthest = int(distance.argmax())
+        if distance[farthest] > FLAT:
+            middle = begin + 1 + farthest
+            kept.add(middle)
+            waiting += [(begin, middle), (middle, end)]
+    return points[sorted(kept)]
+
+
+def least_radius(curve: Curve) -> float:
+    """The smallest radius of curvature of a path, [m]; infinite for a line."""
+    most = float(np.abs(curve.curvature(curve.sample(1024))).max())
+    return 1 / most if most > 1e-3 else inf

@@ -1,0 +1,207 @@
+"""A path from a file, whatever program wrote it, with remarks on what was done to it.
+
+@points.csv                      a path in a file
+@logo.svg fit=0.1 corners=round  with options, see `Placing`
+@plate.nc scale=0.5 centre=0,0.01 part=2 open
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError, Message
+from onpath.models.path_files.gcode import strokes_of_gcode
+from onpath.models.path_files.placing import (
+    LARGEST,
+    RADIUS,
+    ROUND,
+    SMOOTH,
+    Placing,
+    curve_of,
+    least_radius,
+    placed,
+)
+from onpath.models.path_files.stroke import UNITS, Stroke, text_of
+from onpath.models.path_files.svg import strokes_of_svg
+from onpath.models.path_files.table import stroke_of_table
+from onpath.models.paths.curve_fit import deviation_remark, distinct
+from onpath.models.paths.curves import Curve
+from onpath.models.studies.path_text import LONGEST_TEXT, curve_from_text, is_described
+from onpath.models.studies.table_file import encoding_of
+from onpath.models.systems.parameter_specs import unknown_name
+
+MOST_BYTES = 20_000_000
+GCODE = (".nc", ".gcode", ".ngc", ".gc", ".tap", ".cnc", ".g")
+NUMBERS = ("scale", "fit", "radius")
+WORDS = ("open", "closed")
+_GCODE = re.compile(r"\s*(%|N\d+|[GM]\s*\d|[;(])", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PathFile:
+    """What was read.
+
+    Attributes:
+        curve: the path.
+        remarks: what its user should know of it: which line was taken, how far the path is from
+            it, the smallest radius of its bends.
+    """
+
+    curve: Curve
+    remarks: tuple[Message, ...] = ()
+
+
+def path_in(file: Path, placing: Placing = Placing()) -> PathFile:  # noqa: B008, it is frozen
+    """The path in a file.
+
+    Raises:
+        CodedError: there is no such path; the message names the line.
+        OSError: the file cannot be read.
+    """
+    with file.open("rb") as opened:
+        data = opened.read(MOST_BYTES + 1)
+    return path_of(data, file.name, placing)
+
+
+def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) -> PathFile:
+    """The path in the content of a file.
+
+    Args:
+        name: of the file; its ending tells G-code.
+        most: largest size, [B].
+
+    Raises:
+        CodedError: there is no such path; the message names the line.
+    """
+    if len(data) > most:
+        raise CodedError("error.file_size", most=f"{most / 1e6:g}")
+    check_placing(placing)
+    if not data.strip():
+        raise CodedError("error.file_empty")
+    head = data[:400].decode(encoding_of(data[:4]), errors="replace")
+    if len(data) <= 4 * LONGEST_TEXT and is_described(head):
+        if placing != Placing():
+            raise CodedError("error.file_described")
+        return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
+    strokes = _strokes(data, name, head, placing)
+    stroke, remarks = _chosen(strokes, placing.part)
+    return _path(stroke, placing, remarks)
+
+
+def path_through(points: Array, placing: Placing) -> PathFile:
+    """The path through an array of points, shape (n, 2), [m].
+
+    Raises:
+        ValueError: there is no such path.
+    """
+    check_placing(placing)
+    distinct(points, least=2)
+    return _path(Stroke(points, placing.closed, straight=False), placing, [])
+
+
+def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> PathFile:
+    """The path of a line, with the remarks on it and some more."""
+    curve = curve_of(placed(stroke, placing), placing)
+    if placing.corners == ROUND:
+        radius = f"{1e3 * least_radius(curve):.1f}"
+        remarks.append(Message("say.rounded", {"radius": radius}))
+    return _remarked(curve, remarks)
+
+
+def read_reference(text: str) -> tuple[Path, Placing]:
+    """File and options of a text such as `logo.svg fit=0.1 open`; the name may have blanks.
+
+    Raises:
+        CodedError: an option is unknown or has an impossible value.
+    """
+    words, placing = text.split(" "), Placing()
+    while len(words) > 1 and (found := _option(words[-1])) is not None:
+        placing = replace(placing, **found)
+        words.pop()
+    return Path(" ".join(words).strip()), placing
+
+
+def _option(word: str) -> dict[str, object] | None:
+    """An option by the name of its field; None if the word is not one."""
+    if not word or word in WORDS:
+        return {"closed": word == "closed"} if word else {}
+    name, equals, value = word.partition("=")
+    if not equals:
+        return None
+    try:
+        if name in NUMBERS:
+            return {name: float(value)}
+        if name == "part":
+            return {name: int(value)}
+        if name == "centre":
+            first, second = value.split(",")
+            return {name: (float(first), float(second))}
+    except ValueError:
+        raise CodedError("error.file_option", name=name, value=repr(value[:20])) from None
+    if name in ("unit", "corners"):
+        return {name: value}
+    raise unknown_name(name, [*NUMBERS, "part", "centre", "unit", "corners", *WORDS], "option")
+
+
+def check_placing(placing: Placing) -> None:
+    """Refuse impossible options."""
+    for name in NUMBERS:
+        value = getattr(placing, name)
+        if value is not None and not 1e-6 <= value <= 1e6:
+            raise CodedError("error.file_option", name=name, value=f"{value:g}")
+    for value in placing.centre or ():
+        if not abs(value) <= LARGEST:
+            raise CodedError("error.file_option", name="centre", value=f"{value:g}")
+    if placing.unit is not None and placing.unit not in UNITS:
+        raise unknown_name(placing.unit, list(UNITS), "unit")
+    if placing.corners not in (SMOOTH, ROUND):
+        raise unknown_name(placing.corners, [SMOOTH, ROUND], "corners")
+    if placing.corners == SMOOTH and placing.radius != RADIUS:
+        raise CodedError("error.file_radius")
+
+
+def _strokes(data: bytes, name: str, head: str, placing: Placing) -> Sequence[Stroke]:
+    if name.lower().endswith(".svg") or head.lstrip("\ufeff \t\r\n").startswith("<"):
+        return _in_units(strokes_of_svg(data), placing, UNITS["px"])
+    if name.lower().endswith(GCODE) or _GCODE.match(head):
+        text = text_of(data, encoding_of(data[:4]))
+        return _in_units(strokes_of_gcode(text), placing, UNITS["mm"])
+    return [stroke_of_table(data, placing.unit)]
+
+
+def _in_units(strokes: list[Stroke], placing: Placing, usual: float) -> list[Stroke]:
+    """The strokes of a file whose unit is said otherwise."""
+    if placing.unit is None:
+        return strokes
+    factor = UNITS[placing.unit] / usual
+    return [replace(stroke, points=factor * stroke.points) for stroke in strokes]
+
+
+def _chosen(strokes: Sequence[Stroke], part: int | None) -> tuple[Stroke, list[Message]]:
+    """The line to follow, and a remark if there are others.
+
+    Raises:
+        CodedError: there is no such line.
+    """
+    if not strokes:
+        raise CodedError("error.file_no_line")
+    if part is not None:
+        if not 1 <= part <= len(strokes):
+            raise CodedError("error.file_part", part=str(part), count=len(strokes))
+        return strokes[part - 1], []
+    longest = max(range(len(strokes)), key=lambda i: strokes[i].length)
+    stroke = strokes[longest]
+    if len(strokes) == 1:
+        return stroke, []
+    number, count = str(longest + 1), len(strokes)
+    taken = Message("say.one_of_lines", {"name": stroke.name, "part": number, "count": count})
+    return stroke, [taken]
+
+
+def _remarked(curve: Curve, remarks: list[Message]) -> PathFile:
+    far = deviation_remark(curve)
+    return PathFile(curve, (*remarks, far) if far else tuple(remarks))

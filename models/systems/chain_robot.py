@@ -1,0 +1,347 @@
+"""A robot that is a chain of rigid bodies, such as one that a file describes.
+
+With M(q), c(q, v) and h(q) of `rigid_chain.py`, a motor at each joint, B = I, viscous friction D
+and a payload at the end-point,
+
+    M(q) v' + c(q, v) + D v = u + J_h^T F.
+
+The controller's model differs from the plant by a factor e of all masses and inertias, by the
+gravity that it assumes, and by the payload, which it does not know. A robot whose tip can only move
+in a plane has p = 2 outputs, others p = 3. With more joints than outputs it is redundant, and holds
+a posture by
+
+    u0 = c + D v - M (k_d v + k_p (q - q_home)),
+
+of which `linearization` takes the part that does not move the end-point.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache, partial
+from itertools import pairwise
+
+import casadi as ca
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import Message
+from onpath.models.paths.frames import LevelPlane, Plane
+from onpath.models.systems.drawing import Depths, Drawing, Point
+from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
+from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
+from onpath.models.systems.rigid_chain import (
+    Chain,
+    ChainSource,
+    bias_forces,
+    chain_frames,
+    chain_inertias,
+    height_of_mass,
+    mass_matrix,
+    solved,
+    tip_of,
+)
+from onpath.models.systems.robots import (
+    AT_A_LIMIT,
+    LEAST_REGULARITY,
+    Robot,
+    RobotEntry,
+    StopCondition,
+)
+from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
+
+STEPS = (0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0)
+"""Shares of the way from home to y, each with a step of Newton's method."""
+SOLVED = 1e-9  # [m], least accuracy of the inverse
+NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0 at its end
+UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not tell
+FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
+MOST_STEPS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class ChainParameters(Parameters):
+    """Additional parameters of every chain."""
+
+    torque_limit: float = number(
+        0.0,
+        "%",
+        (0, 100, 1),
+        "motors give no more than this share of the limits in the robot's file; 0: no limit",
+        group="realism",
+        label="Torque limit",
+        on=50.0,
+    )
+    error_inertia: float = model_error(
+        "Error in inertia", "the controller's masses and inertias are off by this"
+    )
+    error_gravity: float = model_error(
+        "Error in gravity", "the controller's weights are off by this", on=10.0
+    )
+    payload: float = unknown_payload((0, 3, 0.05), on=0.2)
+
+
+@dataclass(frozen=True, slots=True)
+class SpatialChainParameters(ChainParameters):
+    """Parameters of a chain whose tip moves in space."""
+
+    rise: float = path_rise()
+
+
+def _posture_stiffness() -> float:
+    return number(
+        100.0,
+        "1/s²",
+        (0, 400, 1),
+        "spring that pulls the joints home where that does not move the end-point; 0: none",
+        group="robot",
+        label="Posture spring",
+    )
+
+
+def _posture_damping() -> float:
+    return number(
+        20.0,
+        "1/s",
+        (0, 40, 0.5),
+        "damper of the joints' motion that does not move the end-point; 0: none",
+        group="robot",
+        label="Posture damper",
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class RedundantPlanarParameters(ChainParameters):
+    """Parameters of a chain with more joints than its planar path needs."""
+
+    posture_stiffness: float = _posture_stiffness()
+    posture_damping: float = _posture_damping()
+
+
+@dataclass(frozen=True, slots=True)
+class RedundantSpatialParameters(SpatialChainParameters):
+    """Parameters of a chain with more joints than its path in space needs."""
+
+    posture_stiffness: float = _posture_stiffness()
+    posture_damping: float = _posture_damping()
+
+
+def parameters_of(source: ChainSource) -> type[ChainParameters]:
+    """The type of a chain's parameters."""
+    if len(source.axes) == 2:
+        return RedundantPlanarParameters if source.redundant else ChainParameters
+    return RedundantSpatialParameters if source.redundant else SpatialChainParameters
+
+
+def output_axes(chain: Chain) -> tuple[Point, ...]:
+    """Directions of the outputs: two in the plane of the tip's motion, or x, y and z.
+
+    The tip moves in a plane if the joints that turn have parallel axes, and those that slide are
+    across them. Of a plane that is not horizontal, the first direction is horizontal.
+    """
+    frames = chain_frames(chain, ca.SX(ca.DM.zeros(chain.n)))
+    lines: list[Array] = [
+        ca.evalf(ca.densify(rotation[:, 2])).full()[:, 0] for rotation in frames.rotations
+    ]
+    turning = [a for a, joint in zip(lines, chain.joints, strict=True) if not joint.slides]
+    sliding = [a for a, joint in zip(lines, chain.joints, strict=True) if joint.slides]
+    space = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    if not turning and len(sliding) < 2:
+        return space
+    normal: Array = turning[0] if turning else np.cross(sliding[0], sliding[1])
+    if not np.linalg.norm(normal) > 1e-6:
+        return space
+    normal = normal / np.linalg.norm(normal)
+    parallel = all(np.linalg.norm(np.cross(normal, a)) < 1e-6 for a in turning)
+    if not parallel or any(abs(normal @ a) > 1e-6 for a in sliding):
+        return space
+    if abs(normal[2]) > 1 - 1e-9:
+        return space[:2]
+    along = np.array([-normal[1], normal[0], 0.0]) / math.hypot(normal[0], normal[1])
+    along *= -1.0 if along[0] < -1e-9 or (abs(along[0]) <= 1e-9 and along[1] < 0) else 1.0
+    up = np.cross(normal, along)
+    up *= np.sign(up[2])
+    return _point(along), _point(up)
+
+
+def _point(values: Array) -> Point:
+    x, y, z = (float(v) for v in np.round(values, 15) + 0.0)
+    return x, y, z
+
+
+def chain_entry(source: ChainSource) -> RobotEntry:
+    """The catalogue's entry of a chain. The robot is made when it is needed."""
+    return RobotEntry(
+        name=source.name,
+        label=source.label,
+        text=source.text,
+        parameters=parameters_of(source),
+        make=partial(_make, source),
+        source=source,
+    )
+
+
+def _make(source: ChainSource, _: Parameters) -> Robot:
+    return chain_robot(source)
+
+
+@lru_cache(maxsize=64)
+def chain_system(source: ChainSource) -> MechanicalSystem:
+    """The equations of motion; see this module's docstring."""
+    chain, n = source.chain, source.chain.n
+    q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
+    names = ("inertia", "gravity", "payload")
+    names += ("posture_stiffness", "posture_damping") if source.redundant else ()
+    parameters = ca.SX.sym("parameters", len(names))
+    p = dict(zip(names, ca.vertsplit(parameters), strict=True))
+    frames, inertias = chain_frames(chain, q), chain_inertias(chain, p["payload"])
+    mass = p["inertia"] * mass_matrix(chain, frames, inertias)
+    friction = ca.DM([joint.damping for joint in chain.joints]) * v
+    bias = p["inertia"] * bias_forces(chain, frames, inertias, v, p["gravity"]) + friction
+    posture = None
+    if source.redundant:
+        away = p["posture_damping"] * v + p["posture_stiffness"] * (q - ca.DM(source.home))
+        posture = bias - mass @ away
+    efforts = [min(joint.effort, UNLIMITED) / 100 for joint in chain.joints]
+    return mechanical_system(
+        name=source.name,
+        q=q,
+        v=v,
+        parameters=parameters,
+        parameter_names=names,
+        coordinate_names=tuple(
+            f"q{i + 1}_m" if joint.slides else f"q{i + 1}_rad"
+            for i, joint in enumerate(chain.joints)
+        ),
+        mass=mass,
+        bias=bias,
+        inputs=n,
+        output=ca.densify(ca.DM(source.axes) @ (tip_of(chain, frames) - ca.DM(_home_of(source)))),
+        potential_energy=p["inertia"] * p["gravity"] * height_of_mass(frames, inertias),
+        solve=solved,
+        posture=posture,
+        strength=tuple(efforts),
+    )
+
+
+@lru_cache(maxsize=64)
+def _home_of(source: ChainSource) -> Point:
+    """The end-point at home in the frame of the base, [m]."""
+    frames = chain_frames(source.chain, ca.SX(ca.DM(source.home)))
+    x, y, z = ca.evalf(ca.densify(tip_of(source.chain, frames))).full()[:, 0].tolist()
+    return x, y, z
+
+
+@lru_cache(maxsize=64)
+def chain_robot(source: ChainSource) -> Robot:
+    """The robot of a source."""
+    system, chain = chain_system(source), source.chain
+    jacobian = ca.jacobian(system.output, system.q)
+    kind = parameters_of(source)
+    reached = ca.Function("reached", [system.q], [system.output, ca.densify(jacobian)])
+
+    def plant(parameters: Parameters) -> Array:
+        chosen = own_parameters(kind, parameters)
+        values = {"inertia": 1.0, "gravity": GRAVITY, "payload": chosen.payload}
+        return system.parameter_vector(values | _posture(chosen))
+
+    def model(parameters: Parameters) -> Array:
+        chosen = own_parameters(kind, parameters)
+        inertia = 1 + chosen.error_inertia / 100
+        weight = GRAVITY * (1 + chosen.error_gravity / 100)
+        values = {"inertia": inertia, "gravity": weight / inertia, "payload": 0.0}
+        return system.parameter_vector(values | _posture(chosen))
+
+    def inverse(y: ca.SX) -> ca.SX:
+        q = ca.SX(ca.DM(source.home))
+        for share in STEPS:
+            h, slope = reached(q)
+            q = q + slope.T @ solved(slope @ slope.T, share * y - h)
+        error = reached(q)[0] - y
+        off = ca.dot(error, error) - SOLVED**2
+        return q + ca.if_else(off < 0, 0, ca.sqrt(-ca.fabs(off)))  # NaN where it has not converged
+
+    def skeleton(q: ca.SX, exaggeration: ca.SX) -> tuple[ca.SX, ca.SX]:
+        frames = chain_frames(chain, q)
+        points = [ca.SX(3, 1), *frames.origins, tip_of(chain, frames)]
+        pairs = [(a, b) for a, b in pairwise(points) if not (b - a).is_zero()]
+        return ca.densify(ca.horzcat(*[end for pair in pairs for end in pair])), ca.SX(3, 0)
+
+    spread = ca.sqrt(ca.fmax(ca.det(ca.densify(jacobian @ jacobian.T)), 0))
+    absolute = ca.Function("spread", [system.q], [spread])
+    at_home = float(ca.evalf(absolute(ca.DM(source.home))))
+    regularity = spread / at_home
+    for i, joint in enumerate(chain.joints):
+        if (width := joint.high - joint.low) < math.inf:
+            left = ca.fmin(system.q[i] - joint.low, joint.high - system.q[i])
+            regularity = ca.fmin(regularity, left / (NEAR_LIMIT * width))
+    beyond, low, high = ca.SX(0), *_limits(chain)
+    for i, joint in enumerate(chain.joints):
+        if joint.high - joint.low < math.inf:
+            passed = ca.logic_or(system.q[i] < joint.low, system.q[i] > joint.high)
+            beyond = ca.fmax(beyond, passed)
+
+    def limit_passed(q: Array | None, parameters: Parameters) -> Message:
+        if q is None:
+            return Message("stop.joints")
+        worst = int(np.argmax(np.maximum(low - q, q - high)))
+        joint = chain.joints[worst]
+        limit = joint.low if q[worst] < joint.low else joint.high
+        unit = f"{1e3 * limit:.0f} mm" if joint.slides else f"{math.degrees(limit):.0f}°"
+        return Message("stop.joint", {"joint": joint.name, "limit": unit})
+
+    return Robot(
+        system=system,
+        plant=plant,
+        model=model,
+        inverse=inverse,
+        skeleton=skeleton,
+        home=_home_of(source),
+        reach=_reach(chain),
+        regularity=regularity,
+        stops=(
+            StopCondition(beyond, limit_passed),
+            StopCondition(spread < LEAST_REGULARITY * at_home, AT_A_LIMIT),
+        ),
+        frame=LevelPlane() if system.p == 3 else Plane(),
+        drawing=_drawing(source),
+        substeps=source.substeps,
+        chain=chain,
+    )
+
+
+def _posture(parameters: ChainParameters) -> dict[str, float]:
+    """The gains of the posture, if the robot is redundant."""
+    if not isinstance(parameters, RedundantPlanarParameters | RedundantSpatialParameters):
+        return {}
+    return {
+        "posture_stiffness": parameters.posture_stiffness,
+        "posture_damping": parameters.posture_damping,
+    }
+
+
+def _limits(chain: Chain) -> tuple[Array, Array]:
+    """Low and high ends of the joints' coordinates, shape (n,) each."""
+    ends = np.array([(joint.low, joint.high) for joint in chain.joints])
+    return ends[:, 0], ends[:, 1]
+
+
+def _reach(chain: Chain) -> float:
+    """A distance from the base's origin that the tip cannot exceed, [m]."""
+    steps = sum(float(np.linalg.norm(body.translation)) for body in chain.bodies)
+    slides = [max(abs(j.low), abs(j.high)) for j in chain.joints if j.slides]
+    return steps + float(np.linalg.norm(chain.tip)) + sum(slides) + 1e-9
+
+
+def _drawing(source: ChainSource) -> Drawing:
+    """The drawing: from in front of its plane, or a little from above."""
+    planar = len(source.axes) == 2
+    level = planar and source.axes[1][2] == 0
+    return Drawing(
+        base="links",
+        axes=source.axes if planar else None,
+        depths=Depths(back=0.0, front=0.0, boss=0.0, pen=0.0),
+        elevation=math.radians(60.0 if level else 9.0 if planar else 20.0),
+        azimuth=math.radians(0.0 if planar else 18.0),
+    )

@@ -1,0 +1,216 @@
+"""Reads a robot from an MJCF file, by MuJoCo, which is an extra of this package."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError, Message
+from onpath.models.systems.file_chain import FileChain, Group, Options, Place, aligned, exact
+from onpath.models.systems.file_chain import turn as turned
+from onpath.models.systems.rigid_chain import Chain, Joint
+from onpath.models.systems.xml_elements import Element, Fault, shown
+
+MOST_JOINTS = 8
+FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
+REFUSED = ("include", "plugin", "extension")  # which would read other files, or run code
+
+
+def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
+    """The chain of an MJCF file, from the world to the body or site that is the tip.
+
+    A keyframe named "home", or the first one, is its pose at home. Springs, tendons and equality
+    constraints are left out, and contacts, too.
+
+    Args:
+        root: its outermost element.
+
+    Raises:
+        Fault: something in the file is refused.
+        CodedError: MuJoCo is not installed or cannot read the file, or an option names a joint or
+            tip that does not exist.
+    """
+    for element in _all(root):
+        if element.tag in REFUSED:
+            raise Fault(element, Message("robot_file.refused", {"element": element.tag}))
+    try:
+        mujoco: Any = import_module("mujoco")
+    except ImportError:
+        raise CodedError("robot_file.mujoco") from None
+    try:
+        model = mujoco.MjModel.from_xml_path(str(file))
+    except (ValueError, RuntimeError) as error:
+        reason = shown(str(error).splitlines()[0]) if str(error) else type(error).__name__
+        raise CodedError("robot_file.mjcf", file=file.name, reason=reason) from None
+    return _Model(model, root, options).read()
+
+
+def _all(root: Element) -> Iterator[Element]:
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        yield element
+        waiting += element.children
+
+
+class _Model:
+    """A model of MuJoCo.
+
+    Args:
+        root: of its file, for the places of faults.
+    """
+
+    def __init__(self, model: Any, root: Element, options: Options) -> None:
+        self._model, self._root, self._options = model, root, options
+        self._joints = {model.joint(i).name or f"joint{i}": i for i in range(model.njnt)}
+        for name in (*options.lock, *options.pose):
+            if name not in self._joints:
+                names = ", ".join(self._joints)
+                raise CodedError("robot_file.no_joint", joint=shown(name), names=names)
+
+    def read(self) -> FileChain:
+        """The chain, its home and remarks."""
+        model = self._model
+        tip, place = self._tip()
+        way, body = set[int](), tip
+        while body:
+            way.add(body)
+            body = int(model.body_parentid[body])
+        groups, frames = [Group("world")], [(0, Place())]
+        for body in range(1, model.nbody):
+            number, before = frames[int(model.body_parentid[body])]
+            here = before @ _place(model.body_pos[body], model.body_quat[body])
+            number, here = self._joined(body, body in way, number, here, groups)
+            frames.append((number, here))
+            inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
+            inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
+            groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
+        number, here = frames[tip]
+        if number == 0:
+            raise Fault(self._root, Message("robot_file.still_tip"))
+        here = here @ place
+        chain = Chain(
+            bodies=tuple(group.body() for group in groups[1:]),
+            tip=here.translation,
+            facing=here.rotation[:, 2],
+        )
+        return FileChain(chain=chain, home=self._home(), remarks=tuple(self._remarks()))
+
+    def _joined(
+        self, body: int, on_way: bool, number: int, here: Place, groups: list[Group]
+    ) -> tuple[int, Place]:
+        """The group of a body behind its joints, and its place in that."""
+        model = self._model
+        first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
+        for i in range(first, first + count):
+            name = model.joint(i).name or f"joint{i}"
+            kind = int(model.jnt_type[i])
+            if kind in (FREE, BALL):
+                if on_way:
+                    raise Fault(self._root, Message("robot_file.free", {"type": shown(name)}))
+                continue
+            anchor = Place(translation=np.array(model.jnt_pos[i]))
+            back = Place(translation=-anchor.translation)
+            axis = np.array(model.jnt_axis[i])
+            if not on_way or name in self._options.lock:
+                here = here @ anchor @ _moved(kind, axis, self._locked(i, name)) @ back
+                continue
+            frame = Place(aligned(axis))
+            groups.append(Group(model.body(body).name, self._joint(i, name), here @ anchor @ frame))
+            if len(groups) - 1 > MOST_JOINTS:
+                raise Fault(self._root, Message("robot_file.joints", {"most": MOST_JOINTS}))
+            number, here = len(groups) - 1, Place(frame.rotation.T) @ back
+        return number, here
+
+    def _joint(self, i: int, name: str) -> Joint:
+        model = self._model
+        dof, reference = int(model.jnt_dofadr[i]), float(model.qpos0[model.jnt_qposadr[i]])
+        low, high = -math.inf, math.inf
+        if model.jnt_limited[i]:
+            low, high = (float(end) - reference for end in model.jnt_range[i])
+        return Joint(
+            name=name,
+            slides=int(model.jnt_type[i]) == SLIDE,
+            low=low,
+            high=high,
+            effort=self._effort(i),
+            damping=float(np.ravel(model.dof_damping[dof])[0]),
+            armature=float(model.dof_armature[dof]) + self._options.armature,
+        )
+
+    def _effort(self, i: int) -> float:
+        """The largest torque of the actuators of a joint; infinite if they have no limit."""
+        model = self._model
+        if model.jnt_actfrclimited[i]:
+            return float(np.abs(model.jnt_actfrcrange[i]).max())
+        efforts = [
+            float(np.abs(model.actuator_forcerange[a] * model.actuator_gear[a][0]).max())
+            for a in range(model.nu)
+            if model.actuator_trnid[a][0] == i and model.actuator_forcelimited[a]
+        ]
+        return sum(efforts) or math.inf
+
+    def _locked(self, i: int, name: str) -> float:
+        """How far a locked joint is from its reference."""
+        options, at = self._options, int(self._model.jnt_qposadr[i])
+        reference = float(self._model.qpos0[at])
+        return options.lock.get(name, options.pose.get(name, reference)) - reference
+
+    def _home(self) -> dict[str, float]:
+        """Coordinates of the joints in the keyframe."""
+        model = self._model
+        if not model.nkey:
+            return {}
+        names = [model.key(i).name for i in range(model.nkey)]
+        values = model.key_qpos[names.index("home") if "home" in names else 0]
+        turning = {n: i for n, i in self._joints.items() if model.jnt_type[i] not in (FREE, BALL)}
+        at = {name: int(model.jnt_qposadr[i]) for name, i in turning.items()}
+        return {name: float(values[k] - model.qpos0[k]) for name, k in at.items()}
+
+    def _tip(self) -> tuple[int, Place]:
+        """The body of the tip, and the tip in it."""
+        model, wanted = self._model, self._options.tip
+        sites = {model.site(i).name: i for i in range(model.nsite) if model.site(i).name}
+        bodies = {model.body(i).name: i for i in range(1, model.nbody) if model.body(i).name}
+        if not wanted:
+            parents = set(model.body_parentid[1:].tolist())
+            leaves = [name for name, i in bodies.items() if i not in parents]
+            choice = list(sites) if len(sites) == 1 else leaves
+            if len(choice) != 1:
+                names = ", ".join([*sites, *leaves])
+                raise CodedError("robot_file.which_tip", names=names)
+            wanted = choice[0]
+        if wanted in sites:
+            i = sites[wanted]
+            return int(model.site_bodyid[i]), _place(model.site_pos[i], model.site_quat[i])
+        if wanted not in bodies:
+            names = ", ".join([*sites, *bodies])
+            raise CodedError("robot_file.no_tip", tip=shown(wanted), names=names)
+        return bodies[wanted], Place()
+
+    def _remarks(self) -> Iterator[Message]:
+        model = self._model
+        springs = np.ravel(model.jnt_stiffness).any()
+        parts = {"<equality>": model.neq, "<tendon>": model.ntendon, "stiffness": springs}
+        if left := [name for name, count in parts.items() if count]:
+            yield Message("robot_file.left_out", {"parts": ", ".join(left)})
+
+
+def _place(position: Any, quaternion: Any) -> Place:
+    """A frame from a position and a unit quaternion, its scalar first."""
+    w, x, y, z = (float(part) for part in quaternion)
+    vector = np.array([x, y, z])
+    sine = float(np.linalg.norm(vector))
+    if sine == 0:
+        return Place(translation=np.array(position))
+    return Place(exact(turned(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
+
+
+def _moved(kind: int, axis: Array, value: float) -> Place:
+    return Place(translation=value * axis) if kind == SLIDE else Place(turned(axis, value))

@@ -1,0 +1,380 @@
+"""Reads a robot from a URDF file as a chain of bodies, and refuses what it cannot take.
+
+The chain leads from the root of the tree of links to the tip. Its joints move, unless they are
+fixed or locked; all other joints are locked, and links that do not move against each other are one
+body. Source: http://wiki.ros.org/urdf/XML.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from urllib.parse import unquote, urlsplit
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.errors import CodedError, Message
+from onpath.models.systems.file_chain import FileChain, Group, Options, Place, aligned, exact, turn
+from onpath.models.systems.rigid_chain import Chain, Joint, Shape
+from onpath.models.systems.xml_elements import Element, Fault, shown
+
+MOST_LINKS = 64
+MOST_JOINTS = 8  # that move on the way to the tip
+MESHES = (".stl", ".obj", ".dae")
+LARGEST_MESH = 20_000_000  # [B]
+TURNING, SLIDING, STILL = ("revolute", "continuous"), ("prismatic",), ("fixed",)
+FREE = ("floating", "planar")
+
+
+def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
+    """The chain of a URDF file.
+
+    Args:
+        root: its outermost element.
+
+    Raises:
+        Fault: something in the file is refused.
+        CodedError: an option names a link or joint that does not exist.
+    """
+    tree = _Tree(file, root, options)
+    return FileChain(chain=tree.chain(), home={}, remarks=tuple(tree.remarks))
+
+
+class _Tree:
+    """The links and joints of a file."""
+
+    def __init__(self, file: Path, root: Element, options: Options) -> None:
+        if root.tag != "robot":
+            raise Fault(root, Message("robot_file.root"))
+        _refuse_xacro(root)
+        self.remarks = list[Message]()
+        self._folders = _Folders(file, options.packages)
+        self._options = options
+        self._root = root
+        self._links = _named(root, "link", MOST_LINKS)
+        self._joints = _named(root, "joint", MOST_LINKS)
+        self._before = self._parents()
+        self._after = dict[str, list[Element]]()
+        for joint in self._joints.values():
+            self._after.setdefault(joint.need("parent").name("link"), []).append(joint)
+        self._base = self._checked_base()
+        self._way = self._way_to(self._tip())
+        self._check_names()
+
+    def _parents(self) -> dict[str, Element]:
+        """The joint before each link."""
+        before = dict[str, Element]()
+        for joint in self._joints.values():
+            for end in ("parent", "child"):
+                named = joint.need(end)
+                if named.name("link") not in self._links:
+                    raise Fault(named, Message("robot_file.no_link", {"name": named.name("link")}))
+            child = joint.need("child").name("link")
+            if child in before:
+                other = before[child].name()
+                raise Fault(
+                    joint, Message("robot_file.two_parents", {"name": child, "other": other})
+                )
+            before[child] = joint
+        return before
+
+    def _checked_base(self) -> str:
+        """The link from which all others can be reached."""
+        roots = [name for name in self._links if name not in self._before]
+        if not roots:
+            raise Fault(self._root, Message("robot_file.loop"))
+        reached, waiting = set[str](), [roots[0]]
+        while waiting:
+            name = waiting.pop()
+            reached.add(name)
+            waiting += [j.need("child").name("link") for j in self._after.get(name, [])]
+        for name, link in self._links.items():
+            if name not in reached and name in roots:
+                raise Fault(link, Message("robot_file.apart", {"name": roots[0]}))
+            if name not in reached:
+                raise Fault(link, Message("robot_file.loop"))
+        return roots[0]
+
+    def _tip(self) -> str:
+        tip = self._options.tip
+        if tip:
+            if tip not in self._links:
+                names = ", ".join(self._links)
+                raise CodedError("robot_file.no_tip", tip=shown(tip), names=names)
+            return tip
+        leaves = [name for name in self._links if name not in self._after]
+        if len(leaves) > 1:
+            raise CodedError("robot_file.which_tip", names=", ".join(leaves))
+        return leaves[0]
+
+    def _way_to(self, tip: str) -> set[str]:
+        """The joints from the base to the tip."""
+        way, link = set[str](), tip
+        while link in self._before:
+            joint = self._before[link]
+            way.add(joint.name())
+            link = joint.need("parent").name("link")
+        self._tip_link = tip
+        return way
+
+    def _check_names(self) -> None:
+        for name in (*self._options.lock, *self._options.pose):
+            if name not in self._joints:
+                names = ", ".join(self._joints)
+                raise CodedError("robot_file.no_joint", joint=shown(name), names=names)
+
+    def chain(self) -> Chain:
+        """The moving bodies, from the base to the tip."""
+        groups, tip = [Group(self._base)], Place()
+        waiting = [(self._base, 0, Place())]
+        while waiting:
+            name, number, place = waiting.pop()
+            if name == self._tip_link:
+                last, tip = number, place
+                _check_last(self._links[name], last, groups)
+            self._add_link(groups[number], self._links[name], place)
+            # the way to the tip comes last, and so is taken first
+            further = self._after.get(name, [])
+            for joint in sorted(further, key=lambda each: each.name() in self._way):
+                child = joint.need("child").name("link")
+                origin = place @ _origin(joint)
+                moving = self._moving(joint)
+                if moving is None:
+                    waiting.append((child, number, origin @ self._locked(joint)))
+                    continue
+                frame = Place(aligned(_axis(joint)))
+                groups.append(Group(child, moving, origin @ frame))
+                if len(groups) - 1 > MOST_JOINTS:
+                    raise Fault(joint, Message("robot_file.joints", {"most": MOST_JOINTS}))
+                waiting.append((child, len(groups) - 1, Place(frame.rotation.T)))
+        return Chain(
+            bodies=tuple(group.body() for group in groups[1:]),
+            tip=tip.translation,
+            facing=tip.rotation[:, 2],
+            base=tuple(groups[0].shapes),
+        )
+
+    def _moving(self, joint: Element) -> Joint | None:
+        """The joint if it is on the way to the tip and moves; None if it is locked."""
+        kind, name = joint.text("type"), joint.name()
+        if kind not in (*TURNING, *SLIDING, *STILL, *FREE):
+            raise Fault(joint, Message("robot_file.type", {"type": shown(kind)}))
+        data = _joint(joint, kind, self._options.armature)
+        if name not in self._way or kind in STILL:
+            return None
+        if kind in FREE:
+            raise Fault(joint, Message("robot_file.free", {"type": kind}))
+        if name in self._options.lock:
+            return None
+        if joint.first("mimic") is not None:
+            raise Fault(joint, Message("robot_file.mimic"))
+        if data.low == data.high:
+            self.remarks.append(Message("robot_file.still", {"joint": name}))
+            return None
+        return data
+
+    def _locked(self, joint: Element) -> Place:
+        """The motion of a joint that stays where it is."""
+        kind, name = joint.text("type"), joint.name()
+        if kind in (*STILL, *FREE):
+            return Place()
+        data = _joint(joint, kind, 0.0)
+        options = self._options
+        wanted = options.lock.get(name, options.pose.get(name, 0.0))
+        value = min(max(wanted, data.low), data.high)
+        if name in (*options.lock, *options.pose) and value != wanted:
+            low, high = f"{data.low:.3g}", f"{data.high:.3g}"
+            raise Fault(
+                joint,
+                Message("robot_file.outside", {"value": f"{wanted:.3g}", "low": low, "high": high}),
+            )
+        axis = _axis(joint)
+        if data.slides:
+            return Place(translation=value * axis)
+        return Place(turn(axis, value))
+
+    def _add_link(self, group: Group, link: Element, place: Place) -> None:
+        inertial = link.first("inertial")
+        if inertial is not None:
+            mass, centre, inertia = self._inertial(link, inertial)
+            here = place @ centre
+            group.add(mass, here.translation, here.rotation @ inertia @ here.rotation.T)
+        for visual in link.all("visual"):
+            shape = self._shape(visual, place)
+            if shape is not None:
+                group.shapes.append(shape)
+
+    def _inertial(self, link: Element, inertial: Element) -> tuple[float, Place, Array]:
+        mass = inertial.need("mass").number("value")
+        if mass < 0:
+            raise Fault(inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"}))
+        element = inertial.need("inertia")
+        xx, xy, xz = (element.number(key, 0.0) for key in ("ixx", "ixy", "ixz"))
+        yy, yz, zz = (element.number(key, 0.0) for key in ("iyy", "iyz", "izz"))
+        inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        least, middle, most = np.linalg.eigvalsh(inertia)
+        if least < -1e-6 * abs(most):
+            raise Fault(element, Message("robot_file.inertia"))
+        if least + middle < 0.99 * most:
+            self.remarks.append(Message("robot_file.triangle", {"link": link.name()}))
+        return mass, _origin(inertial), inertia
+
+    def _shape(self, visual: Element, place: Place) -> Shape | None:
+        geometry = visual.first("geometry")
+        here = place @ _origin(visual)
+        for element in geometry.children if geometry is not None else ():
+            kind, size, file = element.tag, (1.0, 1.0, 1.0), ""
+            if kind == "mesh":
+                x, y, z = element.numbers("scale", 3, "1 1 1")
+                address, size = element.text("filename"), (x, y, z)
+                found = self._folders.mesh(address)
+                if found is None or not any(size):
+                    left = Message("robot_file.mesh_left_out", {"mesh": shown(address)})
+                    self.remarks.append(left)
+                    return None
+                file = str(found)
+            elif kind == "box":
+                x, y, z = element.numbers("size", 3)
+                size = (x, y, z)
+            elif kind == "sphere":
+                radius = element.number("radius")
+                size = (radius, radius, radius)
+            elif kind == "cylinder":
+                radius = element.number("radius")
+                size = (radius, radius, element.number("length"))
+            else:
+                continue
+            if kind != "mesh" and not 0 < min(size) <= max(size) < 100:
+                raise Fault(element, Message("robot_file.shape"))
+            return Shape(
+                kind=kind,
+                file=file,
+                size=size,
+                rotation=here.rotation,
+                translation=here.translation,
+            )
+        return None
+
+
+class _Folders:
+    """Where the meshes of a robot may be.
+
+    Args:
+        file: of the robot.
+        packages: folders of packages by name.
+    """
+
+    def __init__(self, file: Path, packages: Mapping[str, Path]) -> None:
+        self._home = file.resolve().parent
+        inside = (self._home, *self._home.parents)
+        self._package = next((f for f in inside if (f / "package.xml").is_file()), None)
+        self._packages = {name: folder.resolve() for name, folder in packages.items()}
+
+    def mesh(self, address: str) -> Path | None:
+        """The file of a mesh; None if it is not there, not a mesh, too large, or elsewhere."""
+        try:
+            path = self._resolved(address)
+            if path is None or path.suffix.lower() not in MESHES:
+                return None
+            path = path.resolve()
+            allowed = self._package or self._home, *self._packages.values()
+            if not any(path.is_relative_to(folder) for folder in allowed) or not path.is_file():
+                return None
+            return path if path.stat().st_size <= LARGEST_MESH else None
+        except (OSError, ValueError, RuntimeError):  # not a path, or links in a circle
+            return None
+
+    def _resolved(self, address: str) -> Path | None:
+        if "://" not in address:
+            return self._home / address
+        parts = urlsplit(address)
+        if parts.scheme == "file":
+            return Path(unquote(parts.path))
+        if parts.scheme != "package":
+            return None
+        folder = self._packages.get(parts.netloc, self._package)
+        return None if folder is None else folder / unquote(parts.path).lstrip("/")
+
+
+def _named(root: Element, tag: str, most: int) -> dict[str, Element]:
+    """The elements of a kind by name."""
+    found = dict[str, Element]()
+    for element in root.all(tag):
+        name = element.name()
+        if name in found:
+            raise Fault(element, Message("robot_file.twice", {"line": found[name].line}))
+        found[name] = element
+        if len(found) > most:
+            raise Fault(element, Message("robot_file.many", {"most": most}))
+    if tag == "link" and not found:
+        raise Fault(root, Message("robot_file.without", {"what": "<link>"}))
+    return found
+
+
+def _refuse_xacro(root: Element) -> None:
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        values = element.values.values()
+        if element.tag.startswith("xacro:") or any("${" in v or "$(" in v for v in values):
+            raise Fault(element, Message("robot_file.xacro"))
+        waiting += element.children
+
+
+def _check_last(link: Element, number: int, groups: list[Group]) -> None:
+    """Check that something moves at all."""
+    if number == 0 or len(groups) < 2:
+        raise Fault(link, Message("robot_file.still_tip"))
+
+
+def _joint(joint: Element, kind: str, armature: float) -> Joint:
+    """Limits and friction of a joint."""
+    limit, dynamics = joint.first("limit"), joint.first("dynamics")
+    low, high, effort = -math.inf, math.inf, math.inf
+    if limit is not None:
+        effort = limit.number("effort", 0.0) or math.inf
+        if effort < 0:
+            raise Fault(limit, Message("robot_file.negative", {"field": "effort"}))
+    if kind in ("revolute", *SLIDING):
+        if limit is None:
+            raise Fault(joint, Message("robot_file.without", {"what": "<limit>"}))
+        low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
+        if low > high:
+            raise Fault(
+                limit, Message("robot_file.limits", {"low": f"{low:g}", "high": f"{high:g}"})
+            )
+    damping = 0.0 if dynamics is None else dynamics.number("damping", 0.0)
+    if dynamics is not None and damping < 0:
+        raise Fault(dynamics, Message("robot_file.negative", {"field": "damping"}))
+    return Joint(
+        name=joint.name(),
+        slides=kind in SLIDING,
+        low=low,
+        high=high,
+        effort=effort,
+        damping=damping,
+        armature=armature,
+    )
+
+
+def _axis(joint: Element) -> Array:
+    """The unit vector of a joint's axis, shape (3,)."""
+    element = joint.first("axis")
+    axis = np.array((1.0, 0.0, 0.0) if element is None else element.numbers("xyz", 3))
+    length = np.linalg.norm(axis)
+    if not length > 1e-6:
+        raise Fault(joint if element is None else element, Message("robot_file.axis"))
+    return axis / length
+
+
+def _origin(element: Element) -> Place:
+    """The place that an <origin> in an element gives."""
+    origin = element.first("origin")
+    if origin is None:
+        return Place()
+    roll, pitch, yaw = origin.numbers("rpy", 3, "0 0 0")
+    x, y, z = np.eye(3)
+    rotation = turn(z, yaw) @ turn(y, pitch) @ turn(x, roll)
+    return Place(exact(rotation), np.array(origin.numbers("xyz", 3, "0 0 0")))

@@ -1,0 +1,166 @@
+"""Files with paths from a browser: read in another process, and refused in words."""
+
+from __future__ import annotations
+
+import re
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onpath.app.exports import path_upload
+from onpath.app.exports.export_process import ExportProcess
+from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
+from onpath.app.lab import commands as c
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.lessons.words import ENGLISH
+from onpath.models.path_files.placing import ROUND, Placing
+from onpath.models.paths.curve_faults import curve_faults
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.lab import do, new_lab, run
+
+pytest.importorskip("svgpathtools")
+
+HEAD = b'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9">'
+BOMB = b"<!DOCTYPE a [" + b"".join(
+    b'<!ENTITY a%d "%s">' % (i, b"&a%d;" % (i - 1) * 10 if i else b"x" * 99) for i in range(9)
+)
+HOSTILE = {
+    "entities that inflate": (BOMB + b"]><svg>&a8;</svg>", "a.svg", "DOCTYPE"),
+    "a file of the server": (
+        b'<!DOCTYPE s [<!ENTITY a SYSTEM "file:///etc/passwd">]><svg><text>&a;</text></svg>',
+        "a.svg",
+        "DOCTYPE",
+    ),
+    "too large": (b"0,0\n" * (MOST_BYTES // 4 + 1), "a.csv", "larger than 1 MB"),
+    "too many points": (b"0,0\n" * 100_001, "a.csv", "more than"),
+    "too many pieces": (
+        HEAD + b'<path d="M0 0' + b"q1 1 2 0" * 50_000 + b'"/></svg>',
+        "a.svg",
+        "more than|too long",
+    ),
+    "deeply nested": (HEAD + b"<g>" * 100_000, "a.svg", "in each other"),
+    "transforms of transforms": (
+        HEAD + b'<g transform="' + b"scale(2)" * 50_000 + b'"><circle r="3"/></g></svg>',
+        "a.svg",
+        ".",
+    ),
+    "not finite": (HEAD + b'<path d="M0 0L1e999 0L1 1z"/></svg>', "a.svg", "."),
+    "a picture": (b"\x89PNG\r\n\x1a\n" + bytes(range(256)) * 99, "a.svg", "."),
+    "a program": (b"import os; os.remove('x')", "a.py", "line 1"),
+    "nothing": (b"", "a.csv", "empty"),
+    "a name that is a path": (b"", "../../../etc/passwd", "empty"),
+    "a pickle": (b"cos\nsystem\n(S'touch x'\ntR.", "a.pkl", "line 1"),
+}
+WAIT = 60.0
+
+
+@pytest.fixture(scope="module", autouse=True)
+def stopped() -> Iterator[None]:
+    yield
+    path_upload.process.stop()
+
+
+SIZED = Placing(fit=0.1)
+
+
+def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
+    """The command, or the reason of the refusal."""
+    found, done = list[Any](), threading.Event()
+
+    def take(result: Any) -> None:
+        found.append(result)
+        done.set()
+
+    upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
+    PathReader("en").read(upload, take, take)
+    assert done.wait(WAIT)
+    return found[0]
+
+
+@pytest.mark.parametrize("case", HOSTILE)
+def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) -> None:
+    content, name, words = HOSTILE[case]
+    refusal = answer(content, name)
+    text = ENGLISH.sentence(refusal)
+    assert "Traceback" not in text and "\n" not in text and len(text) < 300
+    assert re.search(words, text), text
+    good = answer(b"0,0\n4,0\n4,3\n0,3\n", "a.csv")
+    assert isinstance(good, c.FollowCurve)
+
+
+def test_a_file_that_takes_for_ever_is_ended_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(path_upload, "read_upload", wait_for_ever)
+    monkeypatch.setattr(path_upload, "SECONDS", 2.0)
+    process = ExportProcess()
+    monkeypatch.setattr(path_upload, "process", process)
+    assert "took too long" in ENGLISH.sentence(answer(b"0,0\n", "a.csv"))
+    process.stop()
+
+
+def wait_for_ever(_upload: Upload, _language: str) -> None:
+    threading.Event().wait()
+
+
+def test_a_library_that_fails_is_not_quoted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(path_upload, "read_upload", fail)
+    monkeypatch.setattr(path_upload, "log_error", lambda _: None)
+    assert ENGLISH.sentence(answer(b"0,0\n", "a.csv")) == "the file could not be read"
+
+
+def fail(_upload: Upload, _language: str) -> None:
+    raise RuntimeError("/home/teacher/secret")
+
+
+def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    reader, found, done = PathReader("en"), list[Any](), threading.Event()
+    hold = threading.Event()
+
+    class Slow:
+        def call(self, *_: Any) -> Any:
+            hold.wait(WAIT)
+            return c.FollowCurve(True, np.zeros((25, 2)))
+
+    monkeypatch.setattr(path_upload, "process", Slow())
+    upload = Upload("a.csv", b"0,0", Placing(), FIVE_BAR.name, FIVE_BAR.parameters())
+    reader.read(upload, lambda _: done.set(), found.append)
+    reader.read(upload, found.append, found.append)
+    assert [message.code for message in found] == ["export.busy"]
+    hold.set()
+    assert done.wait(WAIT)
+
+
+def test_the_lab_follows_the_path_of_a_file_and_draws_the_line_if_it_is_far() -> None:
+    lab = new_lab(0.2)
+    do(lab, answer(b"0,0\n4,0\n4,4\n0,4\n", "a.csv", Placing(fit=0.1, corners=ROUND, radius=0.02)))
+    design = lab.session.editor.design
+    assert design.name == "drawn" and not lab.session.editor.faults
+    assert "tightest bend" in lab.message and "mm away from the lines" in lab.message
+    assert len(take_page_snapshot(lab, 1.0).path.given) > 4
+    run(lab, 1.0)
+    assert all(each.diverged is None for each in lab.session.runs.values())
+    do(lab, c.Undo())
+    assert not len(take_page_snapshot(lab, 1.0).path.given)
+
+
+def test_what_cannot_be_followed_is_red_and_the_nearest_that_can_is_followed() -> None:
+    lab = new_lab(0.2)
+    do(lab, answer(b"G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n", "a.nc"))
+    editor, snapshot = lab.session.editor, take_page_snapshot(lab, 1.0)
+    assert not curve_faults(lab.session.robot.margin, editor.design.curve)
+    assert "bends too sharply" in lab.message and "nearest path" in lab.message
+    assert len(snapshot.path.refused)
+    run(lab, 1.0)
+    assert all(each.diverged is None for each in lab.session.runs.values())
+    do(lab, c.MovePoint(0, editor.design.points[0] + 1e-3))
+    assert not len(take_page_snapshot(lab, 1.0).path.refused)
+
+
+def test_what_nothing_near_could_follow_is_refused_and_the_old_path_kept() -> None:
+    lab = new_lab(0.2)
+    before = lab.session.editor.design
+    do(lab, answer(b"0,0\n1,0.001\n2,0\n1,-0.001\n", "a.csv"))
+    assert lab.session.editor.design is before and "refused" in lab.message
+    assert len(take_page_snapshot(lab, 1.0).path.refused)

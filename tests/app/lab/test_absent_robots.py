@@ -1,0 +1,63 @@
+"""Set-ups with a robot from a file name it with its digest, and say so where it is absent."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.setups.capture import capture
+from onpath.app.lab.setups.share_code import decode, encode
+from onpath.app.lab.setups.stored import to_data
+from onpath.app.storage.lab_state import LabState, put_back
+from onpath.models.errors import CodedError
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.robot_file import read_robot
+from onpath.models.systems.robots import RobotEntry
+from tests.support.lab import store
+from tests.support.robot_files import PLANAR, urdf
+
+
+def own(folder: Path, mass: str = "0.6") -> RobotEntry:
+    file = folder / "Own Arm.urdf"
+    file.write_text(urdf("own", PLANAR).replace('mass value="0.6"', f'mass value="{mass}"'))
+    return read_robot(file, Options(pose={"joint1": 2.0, "joint2": -1.3, "joint3": -0.9})).entry
+
+
+def test_the_name_follows_from_the_file_and_the_options(tmp_path: Path) -> None:
+    first = own(tmp_path)
+    assert first.name.startswith("own_arm_") and first.label == "Own Arm"
+    assert own(tmp_path).name == first.name != own(tmp_path, mass="0.7").name
+
+
+def test_a_share_code_restores_the_robot_or_says_that_it_is_absent(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = own(tmp_path)
+    monkeypatch.setitem(ROBOTS, entry.name, entry)
+    lab = Lab(store(), entry)
+    setup = capture(lab.session)
+    code = encode(setup)
+    assert decode(code) == setup and setup.robot == entry.name
+    monkeypatch.delitem(ROBOTS, entry.name)
+    with pytest.raises(CodedError) as caught:
+        decode(code)
+    assert entry.name in str(caught.value) and "--robot" in str(caught.value)
+
+
+def test_a_kept_lab_goes_on_without_an_absent_robot_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry = own(tmp_path)
+    monkeypatch.setitem(ROBOTS, entry.name, entry)
+    lab = Lab(store(), entry)
+    lab.session.choose_robot(ROBOTS["two_link_arm"])
+    lab.session.choose_robot(entry)
+    state: LabState = {"setup": to_data(capture(lab.session)), "lessons": {}, "before": None}
+    monkeypatch.delitem(ROBOTS, entry.name)
+    other = Lab(store())
+    put_back(other, state)
+    assert other.session.entry.name == "five_bar"
+    assert entry.name in other.message

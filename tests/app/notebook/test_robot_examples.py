@@ -1,0 +1,27 @@
+"""The examples with robots of assets/examples, as a reader runs them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from onpath.assets import asset_path
+
+EXAMPLES = {
+    "robot_from_file": ("7 joints, from seven_axes.urdf.", "to 100 %"),
+    "posture": ("'posture_stiffness': 0", "mm off"),
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_an_example_runs_and_prints_what_it_promises(name: str) -> None:
+    file = asset_path(f"examples/{name}.py")
+    done = subprocess.run(
+        [sys.executable, "-W", "error", str(file)], capture_output=True, text=True, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    for text in EXAMPLES[name]:
+        assert text in done.stdout
+    assert sum(line.strip() != "" for line in file.read_text("utf-8").splitlines()) <= 13

@@ -1,0 +1,98 @@
+"""Back and next for a whole class: every step once, forwards and backwards."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from msgspec import structs
+
+from onpath.app.classroom.classroom import Classroom, Display
+from onpath.app.lab.commands import TakeSetup, TakeStep
+from onpath.app.lab.setups.setup import Setup
+from onpath.app.page.teaching.lesson_menu_labels import step_label
+from onpath.app.page.teaching.steps_for_all import StepsForAll
+from onpath.app.server.built_in_course import built_in_course
+from onpath.lessons.course import Course
+from onpath.lessons.words import ENGLISH
+
+
+def with_a_branch(course: Course) -> Course:
+    """A course whose third step is for some answers only."""
+    name = next(iter(course.lessons))
+    lesson = course.lesson(name, "en")
+    steps = list(lesson.steps)
+    steps[2] = structs.replace(steps[2], when="no")
+    branched = structs.replace(lesson, steps=tuple(steps))
+    return replace(course, lessons={**course.lessons, name: {"en": branched}})
+
+
+COURSE = with_a_branch(built_in_course())
+STEPS = StepsForAll(COURSE, "en")
+
+
+def for_all(lesson: str, first: int = 0, last: int | None = None) -> list[tuple[str, int]]:
+    """The steps of a lesson that everybody is meant to see."""
+    steps = COURSE.lesson(lesson, "en").steps
+    indices = range(len(steps))[first:last]
+    return [(lesson, index) for index in indices if not steps[index].when]
+
+
+def led(room: Classroom, by: int) -> list[tuple[str, int]]:
+    """Everywhere a class is led from where it is, until there is nothing more."""
+    been = list[tuple[str, int]]()
+    while (step := STEPS.beside(room.display, room.orders, by)) is not None:
+        room.push(step)
+        been.append((step.lesson, step.step))
+    return been
+
+
+def test_next_leads_through_all_lessons_and_back_leads_through_them_backwards() -> None:
+    room, everything = Classroom(), [each for name in COURSE.lessons for each in for_all(name)]
+    assert everything[:3] == [(everything[0][0], index) for index in (0, 1, 3)]
+    room.push(TakeStep(*everything[0]))
+    assert led(room, 1) == everything[1:]
+    assert led(room, -1) == everything[-2::-1]
+
+
+@pytest.mark.parametrize("name", COURSE.routes)
+def test_on_a_route_next_leads_along_the_route(name: str) -> None:
+    stops = COURSE.routes[name].stop
+    route = [e for stop in stops for e in for_all(stop.lesson, stop.steps[0] - 1, stop.steps[1])]
+    room = Classroom()
+    room.push(TakeStep(*route[0], name))
+    assert led(room, 1) == route[1:]
+    assert isinstance(room.orders.push, TakeStep) and room.orders.push.route == name
+    assert led(room, -1) == route[-2::-1]
+
+
+@pytest.mark.parametrize("test", COURSE.tests)
+def test_a_concept_test_ends_with_its_last_question(test: str) -> None:
+    room = Classroom()
+    room.push(TakeStep(test, 0))
+    assert led(room, 1) == for_all(test)[1:]
+
+
+displays = st.builds(
+    Display, st.sampled_from(["", "gone", *COURSE.lessons, *COURSE.tests]), st.integers(0, 99)
+)
+
+
+@given(displays, st.sampled_from((-1, 1)))
+def test_from_any_stored_place_there_is_a_step_that_exists(display: Display, by: int) -> None:
+    lesson, index = STEPS.place(display)
+    assert index in range(len(COURSE.lesson(lesson, "en").steps))
+    room = Classroom()
+    room.push(TakeSetup(Setup()))
+    step = STEPS.beside(display, room.orders, by)
+    assert step is None or step.step in range(len(COURSE.lesson(step.lesson, "en").steps))
+
+
+def test_on_a_projector_the_step_that_comes_next_does_not_tell_what_will_happen() -> None:
+    for name in COURSE.lessons:
+        lesson = COURSE.lesson(name, "en")
+        for index, step in enumerate(lesson.steps):
+            assert step.title in step_label(lesson, index, ENGLISH)
+            assert f": {step.title}" not in step_label(lesson, index, ENGLISH, large=True)

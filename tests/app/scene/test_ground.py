@@ -1,0 +1,68 @@
+"""The painted ground has the shadow of what stands on it, on the side away from the light."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from onpath.app.common import palette
+from onpath.app.scene.ground import DARKEST, KEY_LIGHT, PIXELS, RADIUS, painted_ground, shadow
+from onpath.app.scene.meshes import Mesh
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.models.systems.catalogue import ROBOTS
+
+PITCH = 2 * RADIUS / PIXELS
+FLOOR = -0.1
+
+
+def box(low: tuple[float, float, float], high: tuple[float, float, float]) -> Mesh:
+    made = trimesh.creation.box(bounds=[low, high])
+    return Mesh(np.asarray(made.vertices), np.asarray(made.faces))
+
+
+def middle(dark: np.ndarray) -> np.ndarray:
+    """Middle of a shadow in the world's x and y, shape (2,), [m]."""
+    rows, columns = np.indices(dark.shape)
+    x, y = (columns + 0.5) * PITCH - RADIUS, RADIUS - (rows + 0.5) * PITCH
+    return np.array([np.sum(x * dark), np.sum(y * dark)]) / dark.sum()
+
+
+@pytest.mark.parametrize("height", [0.0, 0.1, 0.3])
+@pytest.mark.parametrize("place", [(0.0, 0.0), (0.2, -0.3)])
+def test_a_shadow_lies_where_the_light_throws_it(height: float, place: tuple[float, float]) -> None:
+    (x, y), flat = place, 0.0005
+    low, high = FLOOR + height, FLOOR + height + flat
+    solid = box((x - 0.05, y - 0.05, low), (x + 0.05, y + 0.05, high))
+    dark = shadow([solid], np.zeros((1, 3)), FLOOR)
+    wanted = np.array(place) - height / KEY_LIGHT[2] * np.array(KEY_LIGHT[:2])
+    np.testing.assert_allclose(middle(dark), wanted, atol=PITCH)
+    assert dark.sum() * PITCH**2 == pytest.approx(0.01, rel=0.25)
+
+
+def test_nothing_on_the_ground_leaves_it_light() -> None:
+    far = box((5.0, 5.0, 0.0), (5.1, 5.1, 0.1))
+    assert np.abs(shadow([far], np.zeros((1, 3)), FLOOR)).max() < 1e-9
+
+
+def pixels(png: bytes) -> np.ndarray:
+    """An 8-bit RGBA picture whose rows are decoded here, shape (rows, columns, 4)."""
+    image = pytest.importorskip("imageio.v3")
+    return np.asarray(image.imread(png))
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_the_ground_fades_to_the_horizon_and_is_darker_beside_a_base(name: str) -> None:
+    stage = stage_of(ROBOTS[name].make(ROBOTS[name].parameters()))
+    solids = tuple(mesh for _, mesh, _ in stage.parts())
+    origins = tuple(map(tuple, stage.origins.tolist()))
+    png = painted_ground(solids, origins, stage.floor, palette.FLOOR)
+    assert png is painted_ground(solids, origins, stage.floor, palette.FLOOR)  # painted once
+    picture = pixels(png)
+    edge = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
+    assert picture.shape == (PIXELS, PIXELS, 4) and edge[:, 3].max() == 0
+    assert picture[PIXELS // 2, PIXELS // 2, 3] > 250
+    share = picture[..., :3] / np.array(palette.FLOOR.rgb)
+    assert share.max() == pytest.approx(1.0, abs=0.01)
+    assert 1.0 - DARKEST - 0.02 < share.min() < 1.0 - 0.8 * DARKEST
+    assert len(png) < 60_000

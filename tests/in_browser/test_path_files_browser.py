@@ -1,0 +1,45 @@
+"""A file with a path is chosen in the path editor, and the lab follows it, or says why not."""
+
+from __future__ import annotations
+
+import pytest
+
+from onpath.app.exports.path_upload import MOST_BYTES
+from tests.support.browser import Tab
+from tests.support.waiting import wait_for
+
+pytest.importorskip("svgpathtools")
+
+LEAF = b"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 80">
+<path d="M8 40 C8 10 60 2 88 14 S118 66 84 68 S8 70 8 40 Z"/></svg>"""
+BOMB = b'<!DOCTYPE a [<!ENTITY a "xxxxxxxxxx"><!ENTITY b "&a;&a;">]>\n<svg>&b;</svg>'
+WAIT = 60.0
+
+
+def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
+    page, session = tab.page, tab.session
+    page.get_by_text("Path editor", exact=True).click()
+    page.get_by_text("From a file", exact=True).click()
+
+    def choose(name: str, content: bytes) -> None:
+        with page.expect_file_chooser() as chooser:
+            page.get_by_role("button", name="Choose a file").click()
+        file = {"name": name, "mimeType": "text/plain", "buffer": content}
+        chooser.value.set_files(file)  # type: ignore[arg-type]
+
+    choose("leaf.svg", LEAF)
+    wait_for(lambda: session.editor.design.name == "drawn", WAIT)
+    width = 1e3 * session.editor.design.curve.at(session.editor.design.curve.sample(200))
+    assert (width.max(0) - width.min(0)).max() == pytest.approx(100, abs=2)
+    design = session.editor.design
+    for name, content, words in (
+        ("bomb.svg", BOMB, "line 1: a DOCTYPE"),
+        ("tool.nc", b"G0 X0 Y0\nM3 S1000\n", "line 2, column 1: 'M3'"),
+        ("big.csv", b"0.01,0.02\n" * (MOST_BYTES // 10 + 1), "larger than 1 MB"),
+    ):
+        choose(name, content)
+        page.get_by_text(words).wait_for(timeout=1e3 * WAIT)
+        assert session.editor.design is design
+    choose("points.csv", b"0;0\n4;0\n4;3\n0;3\n")
+    wait_for(lambda: session.editor.design is not design, WAIT)
+    assert tab.errors == []

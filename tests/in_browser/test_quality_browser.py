@@ -1,0 +1,58 @@
+"""A browser that draws in software gets a scene that is quickly drawn, any other a fine one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.server.lab_feed import LabFeed
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import Tab
+
+pytestmark = pytest.mark.thorough
+
+UNMASKED_RENDERER = 0x9246
+NAMED = """
+    const get = WebGL2RenderingContext.prototype.getParameter
+    WebGL2RenderingContext.prototype.getParameter = function (name) {
+        return name === %d ? "%s" : get.call(this, name)
+    }
+"""
+SMOOTHED = (
+    'document.querySelector("canvas[data-engine]").getContext("webgl2").getContextAttributes()'
+)
+RENDERERS = {
+    "ANGLE (NVIDIA, NVIDIA GeForce RTX 3060 Direct3D11 vs_5_0 ps_5_0, D3D11)": False,
+    "Apple GPU": False,
+    "llvmpipe (LLVM 15.0.7, 256 bits)": True,
+    "ANGLE (Microsoft, Microsoft Basic Render Driver, D3D11)": True,
+}
+
+
+@pytest.fixture(params=[*RENDERERS, ""])
+def renderer(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+@pytest.fixture
+def tab(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
+    context = browser.new_context()
+    if renderer:
+        context.add_init_script(NAMED % (UNMASKED_RENDERER, renderer))
+    tab = Tab(server, context, draws=False)
+    yield tab
+    assert tab.errors == []
+    context.close()
+
+
+def test_the_scene_is_as_fine_as_the_browser_can_draw_it(tab: Tab, renderer: str) -> None:
+    is_plain = RENDERERS.get(renderer, True)  # that of the tests draws in software
+    assert isinstance(tab.view, LabFeed)
+    assert tab.view.page._scene.stage.plain == is_plain
+    assert tab.page.evaluate(SMOOTHED)["antialias"] == (not is_plain)
+    assert not tab.page.get_by_text("Software WebGL").filter(visible=True).count()

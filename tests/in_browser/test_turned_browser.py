@@ -1,0 +1,75 @@
+"""A window that is turned or stretched keeps the robots in sight, and its panel beside or below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.lab import commands as c
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.server.lab_feed import LabFeed
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import Tab, wait_for
+
+pytestmark = pytest.mark.thorough
+
+WIDE, UPRIGHT, DESK, TALL = (1180, 820), (820, 1180), (1280, 800), (1280, 1600)
+SHEET = '.mantine-Paper-root[style*="bottom: 0"]'
+
+
+@pytest.fixture(params=[(WIDE, UPRIGHT, WIDE), (UPRIGHT, WIDE, UPRIGHT), (DESK, TALL, DESK)])
+def sizes(request: pytest.FixtureRequest) -> list[tuple[int, int]]:
+    return list(request.param)
+
+
+@pytest.fixture
+def tab(browser: Browser, server: LabServer, sizes: list[tuple[int, int]]) -> Iterator[Tab]:
+    width, height = sizes[0]
+    context = browser.new_context(viewport={"width": width, "height": height})
+    tab = Tab(server, context, draws=False)
+    yield tab
+    assert tab.errors == []
+    context.close()
+
+
+def seen(tab: Tab) -> tuple[np.ndarray, dict[str, float]]:
+    """Pixels of the corners of the robots' boxes, and the part of the scene that is in sight."""
+    stage = stage_of(tab.session.robot)
+    left = next(iter(stage.bases))
+    corners = [tab.pixel(left, corner - stage.bases[left]) for corner in stage.corners]
+    box = tab._canvas()
+    sheet = tab.page.locator(SHEET)
+    covered = sheet.bounding_box() if sheet.count() else None
+    bottom = covered["y"] if covered else box["y"] + box["height"]
+    return np.array(corners), {**box, "bottom": bottom}
+
+
+def in_sight(tab: Tab) -> bool:
+    """Whether both robots are large and in the uncovered part of the scene."""
+    corners, box = seen(tab)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    free = np.array([box["width"], box["bottom"] - box["y"]])
+    inside = low[0] > box["x"] - 5 and high[0] < box["x"] + box["width"] + 5
+    above = low[1] > box["y"] - 5 and high[1] < box["bottom"] + 5
+    return bool(inside and above and ((high - low) / free).max() > 0.75)
+
+
+@pytest.mark.parametrize("lesson", [False, True])
+def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson: bool) -> None:
+    if lesson:
+        tab.ask(c.OpenLesson("01-path-or-timetable"))
+    for width, height in sizes:
+        tab.page.set_viewport_size({"width": width, "height": height})
+        upright = width <= 0.8 * height
+        view = tab.view
+        assert isinstance(view, LabFeed)
+        wait_for(lambda v=view, u=upright: v.page.is_ready and v.page._narrow == u)
+        wait_for(lambda u=upright: bool(tab.page.locator(SHEET).count()) == u)
+        wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
+        tab.ask(c.SetRunning(False))

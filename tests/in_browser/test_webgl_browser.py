@@ -1,0 +1,124 @@
+"""A lost picture comes back, and a browser that cannot draw one is told so in its language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+
+import numpy as np
+import pytest
+
+pytest.importorskip("playwright")
+
+from PIL import Image
+from playwright.sync_api import Browser, expect
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.server.lab_server import LabServer
+from tests.support.browser import CHROMIUM, COARSER, PLAIN, WAIT, Tab, wait_for
+from tests.support.free_lab import fresh
+
+pytestmark = pytest.mark.thorough
+
+COURSE = "https://school.example/course/?a=1&b=</script>"
+LOSE = """
+    window.isFirst = true
+    window.lose = document.querySelector("canvas[data-engine]").getContext("webgl2")
+        .getExtension("WEBGL_lose_context")
+    window.lose.loseContext()
+"""
+NONE = """
+    const get = HTMLCanvasElement.prototype.getContext
+    HTMLCanvasElement.prototype.getContext = function (kind, ...how) {
+        return kind.startsWith("webgl") ? null : get.call(this, kind, ...how)
+    }
+"""
+ON_TOP = """document.elementFromPoint(innerWidth / 2, innerHeight / 2)
+    .closest("#op-no-webgl") !== null"""
+WORDS = {
+    "de-AT": ("Dieser Browser kann das Labor nicht zeichnen", "Zum Kurs"),
+    "en-GB": ("This browser cannot draw the lab", "To the course"),
+    "fr": ("This browser cannot draw the lab", "To the course"),
+}
+
+
+def test_a_lost_picture_is_reported_and_comes_back_with_the_lab(
+    browser: Browser, server: LabServer
+) -> None:
+    context = fresh(browser)
+    tab = Tab(server, context, draws=False)
+    tab.ask(c.SetParameter("K1", 640.0))
+    lab, time = tab.lab, tab.session.time
+    told = tab.page.get_by_role("alert").filter(has_text="picture of the robots was lost")
+    assert told.count() == 0
+    tab.page.evaluate(LOSE)
+    told.wait_for(timeout=WAIT * 1e3)
+    wait_for(lambda: tab.session.time > time + 0.5)  # the lab goes on
+    tab.page.evaluate("setTimeout(() => window.lose.restoreContext())")
+    tab.page.wait_for_function("window.isFirst === undefined", timeout=WAIT * 1e3)
+    tab.button("Pause").wait_for()
+    wait_for(lambda: tab.scheduled.view is not None and tab.scheduled.view is not tab.view)
+    assert tab.scheduled.lab is lab and lab.session.parameters.K1 == 640.0
+    assert told.count() == 0
+    context.close()
+
+
+@pytest.fixture(scope="module")
+def with_course() -> Iterator[LabServer]:
+    server = LabServer("127.0.0.1", 0, LoopCache(), course_url=COURSE)
+    yield server
+    server.stop()
+
+
+@pytest.mark.parametrize("locale", WORDS)
+def test_without_webgl_there_are_words_and_a_way_to_the_course(
+    browser: Browser, with_course: LabServer, locale: str
+) -> None:
+    heading, link = WORDS[locale]
+    context = browser.new_context(locale=locale)
+    context.add_init_script(NONE)
+    page = context.new_page()
+    page.goto(f"{with_course.address}?{COARSER}")
+    page.get_by_role("heading", name=heading).wait_for(timeout=WAIT * 1e3)
+    expect(page.get_by_role("link", name=link)).to_have_attribute("href", COURSE)
+    page.wait_for_function(ON_TOP, timeout=WAIT * 1e3)
+    context.close()
+
+
+def test_without_an_address_the_page_says_how_there_is_a_course(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(locale="en")
+    context.add_init_script(NONE)
+    page = context.new_page()
+    page.goto(f"{server.address}?{COARSER}")
+    page.get_by_text("onpath export site course").wait_for(timeout=WAIT * 1e3)
+    assert page.locator("#op-no-webgl a").count() == 0
+    context.close()
+
+
+def test_a_browser_whose_3d_is_switched_off_is_told_so(browser: Browser, server: LabServer) -> None:
+    arguments = (*PLAIN, "--disable-3d-apis")
+    without = browser.browser_type.launch(executable_path=CHROMIUM, args=arguments)
+    page = without.new_page(locale="en")
+    page.goto(f"{server.address}?{COARSER}")
+    page.get_by_role("heading", name=WORDS["en-GB"][0]).wait_for(timeout=WAIT * 1e3)
+    without.close()
+
+
+def test_a_page_that_is_darkened_by_force_has_readable_axes(
+    browser: Browser, server: LabServer
+) -> None:
+    """Such a browser asks for dark pages, and leaves canvases as they are: dark on dark paper."""
+    arguments = (*PLAIN, "--force-dark-mode", "--enable-features=WebContentsForceDark")
+    forced = browser.browser_type.launch(executable_path=CHROMIUM, args=arguments)
+    tab = Tab(server, forced.new_context(color_scheme="null"), draws=False)
+    plot = tab.page.locator(".uplot canvas").first
+    plot.scroll_into_view_if_needed()
+    tab.settle()
+    picture = Image.open(BytesIO(plot.screenshot())).convert("L")
+    numbers = np.asarray(picture)[:-20, :30] / 255.0  # left of the axis
+    paper = float(np.median(numbers))
+    assert np.abs(numbers - paper).max() > 0.5
+    forced.close()

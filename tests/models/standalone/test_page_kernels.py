@@ -1,0 +1,275 @@
+"""What a page computes of paths and poles is what Python computes, step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_vectors import settings_layout
+from onpath.models.closed_loop.simulation import kind_of
+from onpath.models.closed_loop.wasm_loop import Scan
+from onpath.models.control.poles import channels
+from onpath.models.control.settable import changed
+from onpath.models.errors import CodedError, Message
+from onpath.models.evaluated import evaluated
+from onpath.models.paths.curve_blend import blend
+from onpath.models.paths.curve_faults import ambiguities, curve_faults
+from onpath.models.paths.curve_fit import closed_through, open_through
+from onpath.models.paths.curves import TERMS, Curve, circle, ellipse, from_terms
+from onpath.models.paths.path_checks import SAMPLES
+from onpath.models.paths.path_design import REACH, presets
+from onpath.models.standalone.edit import CHECKS, ROW, edit_scans
+from onpath.models.standalone.fit import (
+    PIECE,
+    arc_scan,
+    resample_scan,
+    spline_function,
+    table_function,
+)
+from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, pole_functions, roots_scan
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.five_bar_parameters import FiveBarParameters
+
+
+def scanned(
+    scan: Scan, state: Array, constants: Array, rows: Array, count: int
+) -> tuple[Array, Array]:
+    """The last state, and all results as columns."""
+    if not count:
+        return state, np.zeros((scan.step.numel_out(1), 0))
+    given = np.tile(constants, (1, count))
+    states, results = scan.step.mapaccum(count)(state, given, rows)
+    return states.full()[:, -1], results.full()
+
+
+def fitted(points: Array, closed: bool) -> tuple[Array, float]:
+    """The table of the curve through control points, and how many samples it was made of."""
+    pieces, state, bad = (each.full() for each in spline_function(closed, len(points))(points.T))
+    assert bad[0] == 0
+    state, arcs = state.ravel(), list[tuple[Array, Array]]()
+    for i, count in enumerate(pieces[1, :-1].astype(int)):
+        pair = pieces[:, i : i + 2]
+        state, rows = scanned(arc_scan(), state, pair, np.zeros((0, count)), count)
+        arcs.append((pair, rows))
+    sums = np.zeros(3 + 2 * TERMS)
+    sums[1:3] = state[1], state[4]
+    for pair, rows in arcs:
+        sums, _ = scanned(resample_scan(closed), sums, pair, rows, rows.shape[1])
+    return table_function(closed)(sums).full().ravel(order="F"), float(sums[0])
+
+
+@pytest.mark.thorough
+@settings(max_examples=12)
+@given(st.booleans(), st.integers(3, 16), st.randoms(use_true_random=False))
+def test_a_curve_is_fitted_as_in_the_lab(closed: bool, count: int, random: Any) -> None:
+    points = np.array([[random.uniform(-0.2, 0.2) for _ in range(2)] for _ in range(count)])
+    ring = np.vstack([points, points[:1]])
+    assume(np.linalg.norm(np.diff(ring, axis=0), axis=1).min() > 2e-4)
+    table, samples = fitted(points, closed)
+    expected = (closed_through if closed else open_through)(points)
+    assert samples == 256
+    np.testing.assert_allclose(table, expected.table(), atol=1e-10)
+
+
+@pytest.mark.thorough
+def test_points_that_coincide_and_short_paths_are_refused() -> None:
+    points = presets()["circle"].points.copy()
+    points[3] = points[2] + 5e-5
+    assert spline_function(True, len(points))(points.T)[2][0] == 1
+    short = np.array([[0.0, 0.0], [0.015, 0.0]])
+    assert spline_function(False, 2)(short.T)[2].full().ravel() == pytest.approx([2, 15])
+    with pytest.raises(CodedError):
+        open_through(short)
+    assert spline_function(False, 2)(2 * short.T)[2][0] == 0
+
+
+Checks = Callable[[Curve], dict[str, Array]]
+"""Curve -> check -> where it fails."""
+
+
+@cache
+def page_checks(name: str, closed: bool) -> Checks:
+    """What a page without a server finds wrong with a curve."""
+    entry = ROBOTS[name]
+    robot = entry.make(entry.parameters())
+    kind = kind_of("path_following", entry.parameters(), circle(0.05) if closed else LINE)
+    scans = edit_scans(robot, kind)
+    check = scans["check"].step.mapaccum(SAMPLES + 1)
+    i, j = np.triu_indices(SAMPLES, 1)
+    strands = scans["strands"].step.map(len(i))
+
+    def found(curve: Curve) -> dict[str, Array]:
+        every = np.tile(curve.table(), SAMPLES + 1)
+        _, rows = evaluated(check, np.zeros(4), every, np.zeros((SAMPLES + 1, 0)))
+        state = np.zeros((len(i), 5))
+        state[:, 4] = rows[-1, 2]
+        both = np.hstack([rows[:-1], rows[1:]])
+        after, _ = evaluated(strands, state, both[i], both[j])
+        for end in (i, j):
+            np.maximum.at(rows[:, ROW - 1], end, after[:, 0])
+        crossings = after[after[:, 1] > 0, 2:4]
+        failed = {
+            each: rows[:SAMPLES, :2][bad]
+            for k, each in enumerate(CHECKS)
+            if (bad := rows[:SAMPLES, 3 + k] > 0).any()
+        }
+        if len(crossings):
+            failed.pop("narrow", None)
+            failed["crosses"] = crossings
+        return failed
+
+    return found
+
+
+@cache
+def lab_checks(name: str) -> Checks:
+    """What the lab finds wrong with it, for the same robot."""
+    entry = ROBOTS[name]
+    margin = entry.make(entry.parameters()).margin
+
+    def found(curve: Curve) -> dict[str, Array]:
+        faults = curve_faults(margin, curve) + ambiguities(curve)
+        return {fault.check: fault.points for fault in faults}
+
+    return found
+
+
+LINE = presets()["segment"].curve
+
+
+def agreed(name: str, curve: Curve) -> set[str]:
+    """The checks that a curve fails, the same ones in the same places in lab and page."""
+    lab, page = lab_checks(name)(curve), page_checks(name, curve.closed)(curve)
+    assert list(lab) == list(page)
+    for check, points in lab.items():
+        if check != "crosses":  # a page marks one crossing for each point of the curve
+            np.testing.assert_array_equal(points, page[check])
+    return set(lab)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("name", ROBOTS)
+def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
+    robot = ROBOTS[name].make(ROBOTS[name].parameters())
+    rng, seen = np.random.default_rng(3), set[str]()
+    for design in (presets()[preset] for preset in ("clover", "segment", "figure of eight")):
+        for index in range(8):
+            aside = robot.reach * rng.uniform(-0.5, 0.5, 2)
+            moved = design.moved(index % len(design.points), aside)
+            seen |= agreed(name, moved.curve)
+    corners = REACH * np.array([(1, 1), (1, -1), (-1, 1), (-1, -1)])
+    beyond = {"outside"} if (robot.margin(corners) == 0).any() else set[str]()
+    assert seen >= {"bends", "crosses"} | beyond
+    assert agreed(name, presets()["clover"].moved(0, np.array([0.03, 0.0])).curve)
+
+
+def wavy(rng: np.random.Generator) -> Curve:
+    """A random closed or open curve, some of them as good paths as the presets."""
+    start = presets()[str(rng.choice(["circle", "clover", "segment", "figure of eight"]))].curve
+    terms = start.terms().copy()
+    terms[:9] += rng.normal(0, rng.choice([0.0, 0.002, 0.02]), terms[:9].shape)
+    return from_terms(start.closed, rng.uniform(0.5, 1.5) * terms)
+
+
+WAIST = [[8, 0], [5, 3], [0, 0.6], [-5, 3], [-8, 0], [-5, -3], [0, -0.6], [5, -3]]
+"""Control points of a path with a waist of 12 mm, [cm]."""
+
+
+def flat(half_width: float) -> Curve:
+    return ellipse((0.06, half_width))
+
+
+def test_lab_and_page_agree_on_both_sides_of_every_threshold() -> None:
+    """Where a check changes its mind on the way from one curve to another, to the last bit."""
+    rng, seen, name = np.random.default_rng(1), set[str](), "five_bar"
+    pinched, apart = (closed_through(np.array(WAIST) * (0.01, each)) for each in (0.01, 0.03))
+    ways = [(wavy(rng), wavy(rng)) for _ in range(10)]
+    ways += [(circle(0.05), circle(0.15)), (circle(0.05), flat(0.004)), (flat(1e-3), flat(1e-5))]
+    ways += [(apart, pinched), (apart, presets()["figure of eight"].curve)]
+    for begin, end in ways:
+        if begin.closed == end.closed:
+            for check in agreed(name, begin) ^ agreed(name, end):
+                sides = threshold(name, check, begin, end)
+                before, after = (agreed(name, blend(begin, end, share)) for share in sides)
+                assert check in before ^ after
+                seen.add(check)
+    assert seen == {*CHECKS, "crosses"}
+
+
+def threshold(name: str, check: str, begin: Curve, end: Curve) -> tuple[float, float]:
+    """Neighbouring shares of the way between which a check of the lab changes its mind."""
+    low, high, first = 0.0, 1.0, check in lab_checks(name)(begin)
+    while low < (middle := (low + high) / 2) < high:
+        same = (check in lab_checks(name)(blend(begin, end, middle))) == first
+        low, high = (middle, high) if same else (low, middle)
+    return low, high
+
+
+GAINS = st.floats(0, 1000)
+
+
+@pytest.mark.thorough
+@settings(max_examples=30)
+@given(
+    st.tuples(GAINS, st.floats(0, 100), st.sampled_from([0.0, 50.0, 3000.0])),
+    st.tuples(st.floats(0, 50), st.floats(0, 40), st.sampled_from(["speed", "position"])),
+    st.sampled_from([100, 200, 1000]),
+    st.sampled_from([0.0, 0.5, 1.0, 1.5, 2.0]),
+)
+def test_poles_are_those_of_the_lab(
+    across: tuple[float, float, float],
+    along: tuple[float, float, str],
+    rate: int,
+    delay: float,
+) -> None:
+    parameters = replace(FiveBarParameters(), control_rate=rate, delay=delay)
+    for name, gain in zip(("K1", "K2", "K3"), across, strict=True):
+        parameters = changed(parameters, name, gain)
+    for name, value in zip(("K4", "K5", "task"), along, strict=True):
+        parameters = changed(parameters, name, value)
+    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system)
+    numbers = np.zeros(layout.size)
+    for gain in ("K1", "K2", "K3", "K4", "K5"):
+        numbers[layout.slices[gain]] = getattr(parameters, gain)
+    functions, scan = pole_functions(parameters, layout), roots_scan(parameters)
+    *polynomials, first = functions["polynomials"](numbers)
+    for channel, polynomial in zip(channels(parameters), polynomials, strict=True):
+        values = polynomial.full()
+        roots, _ = scanned(scan, first.full().ravel(), values, np.zeros((0, STEPS)), STEPS)
+        found = functions["settling"](roots, values, 1 / rate).full().ravel()
+        poles = np.sort(found[1 : 1 + 2 * SLOW : 2][: int(found[0])])
+        expected = np.sort(channel.poles.real)
+        scale = max(1.0, float(np.abs(expected).max()))
+        np.testing.assert_allclose(poles / scale, expected / scale, atol=1e-4)
+        near = np.abs(expected + 1e-3).min() < 1e-5 or abs(found[-1] - 0.995) < 1e-3
+        if near:
+            continue  # rounding decides
+        said = channel.behaviour()
+        kind = said.arguments.get("kind", said)
+        assert isinstance(kind, Message)
+        assert f"behaviour.{BEHAVIOURS[int(found[-3])]}" == kind.code
+        if "seconds" in said.arguments:
+            assert float(str(said.arguments["seconds"])) == pytest.approx(found[-2], rel=0.06)
+
+
+@pytest.mark.thorough
+def test_the_poles_of_a_new_lab_are_the_double_ones_of_the_text() -> None:
+    parameters = replace(FiveBarParameters(), K1=400.0, K2=40.0, K3=0.0)
+    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system)
+    numbers = np.zeros(layout.size)
+    numbers[layout.slices["K1"]], numbers[layout.slices["K2"]] = 400.0, 40.0
+    functions, scan = pole_functions(parameters, layout), roots_scan(parameters)
+    across, _, first = functions["polynomials"](numbers)
+    roots, _ = scanned(scan, first.full().ravel(), across.full(), np.zeros((0, STEPS)), STEPS)
+    found = functions["settling"](roots, across, 1e-3).full().ravel()
+    assert found[0] == 2 and found[2] == found[4] == 0
+    np.testing.assert_allclose(found[[1, 3]], -20, rtol=0.02)
+    assert PIECE == 10

@@ -1,0 +1,254 @@
+"""Files that are refused, by line and element, and mangled ones: never a traceback or a hang."""
+
+from __future__ import annotations
+
+import re
+import tracemalloc
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from onpath.models.errors import CodedError, Message
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.robot_file import read_robot
+from onpath.models.systems.urdf_file import read_urdf
+from onpath.models.systems.xml_elements import Fault, root_of
+from tests.support.robot_files import PLANAR, urdf
+from tests.support.some_chains import random_arm
+
+ARM = urdf("arm", PLANAR)
+POSE = {f"joint{i + 1}": x for i, x in enumerate((2.0, -1.3, -0.9))}
+LINK3 = 8  # line of its element in ARM
+
+
+def refused(folder: Path, text: str | bytes, options: Options | None = None) -> CodedError:
+    file = folder / "arm.urdf"
+    file.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(CodedError) as caught:
+        read_robot(file, options or Options(pose=POSE))
+    for language in ("en", "de"):
+        assert caught.value.message.text(language)
+    return caught.value
+
+
+def changed(old: str, new: str, count: int = 1) -> str:
+    assert old in ARM
+    return ARM.replace(old, new, count)
+
+
+def joint(child: str) -> str:
+    ends = f'<parent link="tip"/><child link="{child}"/>'
+    return f'<joint name="to_{child}" type="fixed">{ends}</joint>'
+
+
+def link(name: str) -> str:
+    return f'{joint(name)}<link name="{name}"/>'
+
+
+def added(text: str) -> str:
+    return ARM.replace("</robot>", f"{text}\n</robot>")
+
+
+MASS = '<mass value="0.6"/>'
+CASES = {
+    "doctype": ('<!DOCTYPE robot [<!ENTITY a "b">]>\n' + ARM.split("\n", 1)[1], 1, "!DOCTYPE"),
+    "xml": (ARM.replace("</robot>", "<link"), 12, ""),
+    "root": ("<sdf/>", 1, "sdf"),
+    "xacro": (changed(MASS, '<mass value="${m}"/>'), 5, "mass"),
+    "without": (changed(MASS, "<mass/>"), 5, "mass"),
+    "name": (changed('link name="link1"', 'link name="&lt;b&gt;"'), 5, "link <b>"),
+    "numbers": (changed(MASS, '<mass value="0,6"/>'), 5, "mass"),
+    "large": (changed(MASS, '<mass value="1e400"/>'), 5, "mass"),
+    "no_link": (changed('child link="link2"', 'child link="link9"'), 6, "child"),
+    "two_parents": (added(joint("link3")), 12, "joint to_link3"),
+    "loop": (changed('<parent link="base"/>', '<parent link="tip"/>'), 5, "link link1"),
+    "apart": (added('<link name="lonely"/>'), 12, "link lonely"),
+    "twice": (added('<link name="tip"/>'), 12, "link tip"),
+    "many": (added("\n".join(link(f"more{i}") for i in range(70))), 0, "link more"),
+    "type": (changed('type="revolute"', 'type="magic"'), 4, "joint joint1"),
+    "free": (changed('type="revolute"', 'type="floating"'), 4, "joint joint1"),
+    "mimic": (changed("</joint>", '<mimic joint="joint2"/></joint>'), 4, "joint joint1"),
+    "mass": (changed(MASS, '<mass value="-0.6"/>'), 5, "mass"),
+    "inertia": (re.sub('ixx="[^"]*"', 'ixx="-1"', ARM, count=1), 5, "inertia"),
+    "negative": (changed('damping="0.02"', 'damping="-1"'), 4, "dynamics"),
+    "limits": (changed('lower="-3"', 'lower="4"'), 4, "limit"),
+    "axis": (changed('axis xyz="0 -1 0"', 'axis xyz="0 0 0"'), 4, "axis"),
+    "elements": (added("<a>" * 40 + "</a>" * 40), 12, "a"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_a_fault_is_named_with_its_line_and_element(tmp_path: Path, case: str) -> None:
+    text, line, element = CASES[case]
+    error = refused(tmp_path, text)
+    said = error.message.arguments
+    assert error.message.code == "robot_file.at" and said["file"] == "arm.urdf"
+    assert isinstance(reason := said["reason"], Message) and reason.code == f"robot_file.{case}"
+    assert said["line"] == line or not line
+    assert str(said["element"]).startswith(element)
+
+
+@pytest.mark.parametrize("number", ["nan", "inf", "-inf", "1e999", "1_0", "0x10", "", "1 2", "é"])
+def test_only_finite_decimal_numbers_are_read(tmp_path: Path, number: str) -> None:
+    said = refused(tmp_path, changed(MASS, f'<mass value="{number}"/>')).message.arguments
+    assert isinstance(reason := said["reason"], Message)
+    assert reason.code in ("robot_file.numbers", "robot_file.large")
+
+
+def code_of(error: CodedError) -> str:
+    return error.message.code.removeprefix("robot_file.")
+
+
+def test_options_that_do_not_fit_are_refused(tmp_path: Path) -> None:
+    assert code_of(refused(tmp_path, ARM, Options(tip="nose"))) == "no_tip"
+    assert code_of(refused(tmp_path, ARM, Options(pose={"knee": 0}))) == "no_joint"
+    assert code_of(refused(tmp_path, ARM, Options(pose={"joint1": 99}))) == "pose_outside"
+    assert code_of(refused(tmp_path, ARM, Options(pose={"joint1": float("nan")}))) == "pose"
+    assert code_of(refused(tmp_path, ARM, Options(armature=-1))) == "armature"
+    stretched = {"joint1": 0.0, "joint2": 0.0, "joint3": 0.0}
+    assert code_of(refused(tmp_path, ARM, Options(pose=stretched))) == "singular"
+    fork = added(link("left") + link("right"))
+    assert code_of(refused(tmp_path, fork)) == "which_tip"
+    still = {"joint1": 0.5, "joint2": 0.5}
+    assert code_of(refused(tmp_path, ARM, Options(lock=still))) == "few_joints"
+
+
+def test_files_that_are_none_or_too_large_are_refused(tmp_path: Path) -> None:
+    with pytest.raises(CodedError) as caught:
+        read_robot(tmp_path / "nothing.urdf", Options())
+    assert code_of(caught.value) == "absent"
+    with pytest.raises(CodedError) as caught:
+        read_robot(tmp_path, Options())
+    assert code_of(caught.value) == "absent"
+    assert code_of(refused(tmp_path, b" " * 1_000_001)) == "size"
+    for data in (b"", b"\x00\xff", b"<?xml version='1.0' encoding='klingon'?><robot/>"):
+        assert refused(tmp_path, data).message.code == "robot_file.at"
+
+
+def test_many_joints_must_be_locked(tmp_path: Path) -> None:
+    long = urdf("long", PLANAR * 3)
+    said = refused(tmp_path, long, Options()).message.arguments
+    assert isinstance(reason := said["reason"], Message) and reason.code == "robot_file.joints"
+    assert said["element"] == "joint joint9"
+    lock = {f"joint{i}": 0.3 for i in range(4, 10)}
+    assert read_robot(tmp_path / "arm.urdf", Options(lock=lock)).circle >= 0.05
+
+
+def test_stiff_friction_is_refused_with_an_armature_that_suffices(tmp_path: Path) -> None:
+    text = re.sub('damping="[^"]*"', 'damping="8"', ARM)
+    error = refused(tmp_path, text)
+    assert code_of(error) == "damping"
+    armature = float(str(error.message.arguments["armature"]))
+    entry = read_robot(tmp_path / "arm.urdf", Options(pose=POSE, armature=armature)).entry
+    assert entry.source is not None and entry.source.substeps == 1
+
+
+def test_a_massless_arm_is_refused_until_it_has_an_armature(tmp_path: Path) -> None:
+    text = re.sub("<inertial>.*?</inertial>", "", ARM)
+    assert code_of(refused(tmp_path, text)) == "massless"
+    assert read_robot(tmp_path / "arm.urdf", Options(pose=POSE, armature=0.1)).circle >= 0.05
+
+
+PLACES = ("other/link.stl", "../link.stl", "/etc/passwd", "file:///etc/hosts", "http://a/b.stl")
+PLACES += ("package://x/../../../link.stl", "package://x/link.txt", "link\x00.stl", "~/link.stl")
+
+
+@pytest.mark.parametrize("place", [p for p in PLACES if "\x00" not in p])
+def test_a_mesh_from_elsewhere_is_left_out_with_a_remark(tmp_path: Path, place: str) -> None:
+    inside = tmp_path / "robot"
+    inside.mkdir()
+    (tmp_path / "link.stl").write_bytes(b"solid")
+    (inside / "link.txt").write_bytes(b"solid")
+    (inside / "package.xml").write_text("<package/>")
+    (inside / "linked.stl").symlink_to(tmp_path / "link.stl")
+    for address in (place, "linked.stl"):
+        visual = f'<visual><geometry><mesh filename="{address}"/></geometry></visual>'
+        file = inside / "arm.urdf"
+        file.write_text(changed('<link name="base">', f'<link name="base">{visual}'))
+        read = read_robot(file, Options(pose=POSE))
+        assert [remark.code for remark in read.remarks] == ["robot_file.mesh_left_out"]
+        assert read.entry.source is not None and read.entry.source.chain.base == ()
+
+
+def test_a_package_is_the_nearest_folder_with_its_file_or_one_that_is_named(tmp_path: Path) -> None:
+    deep, other = tmp_path / "arm" / "urdf" / "deep", tmp_path / "other"
+    deep.mkdir(parents=True)
+    (tmp_path / "arm" / "meshes").mkdir()
+    other.mkdir()
+    (tmp_path / "arm" / "package.xml").write_text("<package/>")
+    own, foreign = tmp_path / "arm" / "meshes" / "a.stl", other / "b.STL"
+    own.write_bytes(b"solid")
+    foreign.write_bytes(b"solid")
+    visuals = "".join(
+        f'<visual><geometry><mesh filename="{address}" scale="0.001 0.001 0.001"/>'
+        "</geometry></visual>"
+        for address in ("package://arm/meshes/a.stl", "package://other/b.STL")
+    )
+    file = deep / "arm.urdf"
+    file.write_text(changed('<link name="base">', f'<link name="base">{visuals}'))
+    read = read_robot(file, Options(pose=POSE, packages={"other": other}))
+    assert read.remarks == () and read.entry.source is not None
+    shapes = read.entry.source.chain.base
+    assert [shape.file for shape in shapes] == [str(own), str(foreign)]
+    assert shapes[0].size == (0.001,) * 3
+
+
+WORDS = st.sampled_from(
+    ["<", ">", '"', "/", "<robot>", "</link>", "nan", "-1", "1e308", "0", "&amp;", "<!--", "]]>"]
+    + ["base", "tip", "link1", "joint2", "prismatic", "floating", "mimic", "xyz", "\n", "é", "\x00"]
+)
+
+
+@st.composite
+def mangled(draw: st.DrawFn) -> bytes:
+    """A file in which pieces are deleted, repeated, moved or replaced."""
+    data = draw(st.sampled_from([ARM, random_arm(1)]))
+    for _ in range(draw(st.integers(1, 6))):
+        a, b = sorted(draw(st.tuples(*[st.integers(0, len(data))] * 2)))
+        b = min(b, a + draw(st.sampled_from([1, 5, 40, 400])))
+        piece = draw(st.one_of(WORDS, st.just(""), st.just(2 * data[a:b]), st.just(data[:200])))
+        data = data[:a] + piece + data[b:]
+    return data.encode("utf-8", "ignore")
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=2000)
+@given(mangled())
+def test_a_mangled_file_is_read_or_refused(tmp_path: Path, data: bytes) -> None:
+    """In less than two seconds and 30 MB, without any other error."""
+    tracemalloc.start()
+    try:
+        read_urdf(tmp_path / "arm.urdf", root_of(data), Options(tip="tip"))
+    except (Fault, CodedError):
+        pass
+    finally:
+        assert tracemalloc.get_traced_memory()[1] < 30e6
+        tracemalloc.stop()
+
+
+NUMBERS = st.sampled_from(["0", "-1", "1e9", "1e-9", "-1e9", "3.14159", "1e-300", "1000"])
+
+
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=25
+)
+@given(st.lists(st.tuples(st.integers(0, 60), NUMBERS), min_size=1, max_size=4))
+def test_a_file_with_strange_numbers_is_a_robot_or_refused(
+    tmp_path: Path, changes: list[tuple[int, str]]
+) -> None:
+    """Whatever the numbers: a sentence in both languages, or a robot that stands still at home."""
+    pieces = re.split(r'(?<=[" ])(-?\d[\d.e-]*)(?=[" ])', ARM)
+    for at, number in changes:
+        pieces[2 * (at % (len(pieces) // 2)) + 1] = number
+    file = tmp_path / "arm.urdf"
+    file.write_text("".join(pieces))
+    try:
+        entry = read_robot(file, Options(pose=POSE)).entry
+    except CodedError as error:
+        assert all(error.message.text(language) for language in ("en", "de"))
+        return
+    robot = entry.make(entry.parameters())
+    assert entry.source is not None
+    assert robot.margin(np.zeros(2)) == pytest.approx(1)

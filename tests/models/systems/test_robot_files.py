@@ -1,0 +1,222 @@
+"""Robots from files: against MuJoCo, their limits, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.simulation import (
+    FREE,
+    first_state,
+    kernel_of,
+    kind_of,
+    settings_vector,
+)
+from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.control.settable import with_values
+from onpath.models.paths.curves import circle
+from onpath.models.systems.contract import faults_of
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.robot_file import read_robot
+from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.system import GRAVITY
+from tests.support.robot_files import PLANAR, SEVEN, urdf
+from tests.support.some_chains import random_arm
+
+RADIUS = 0.05  # [m]
+POSES = {
+    "planar": {f"joint{i + 1}": x for i, x in enumerate((2.0, -1.3, -0.9))},
+    "seven": {f"joint{i + 1}": x for i, x in enumerate((0, 0.35, 0, 1.45, 0, 1.34, 0))},
+}
+
+
+def written(folder: Path, text: str, name: str = "arm.urdf") -> Path:
+    file = folder / name
+    file.write_text(text, "utf-8")
+    return file
+
+
+TEXTS = {
+    "planar": urdf("planar", PLANAR),
+    "seven": urdf("seven", SEVEN),
+    "random": random_arm(4),
+}
+"""A planar arm, a spatial one, and one with rotated frames and inertias and a sliding joint."""
+
+
+@pytest.fixture(scope="module", params=TEXTS)
+def arm(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Arm:
+    file = written(tmp_path_factory.mktemp("arm"), TEXTS[request.param])
+    read = read_robot(file, Options(pose=POSES.get(request.param, {})))
+    assert read.remarks == ()
+    return Arm(file, read.entry)
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A robot and its file."""
+
+    file: Path
+    entry: RobotEntry
+
+
+def states(entry: RobotEntry, count: int = 50) -> list[tuple[Array, Array]]:
+    rng = np.random.default_rng(0)
+    n = entry.make(entry.parameters()).system.n
+    return [(rng.uniform(-2, 2, n), 2 * rng.normal(size=n)) for _ in range(count)]
+
+
+def test_the_contract_of_every_robot_holds(arm: Arm) -> None:
+    assert faults_of(arm.entry) == []
+
+
+class MuJoCo:
+    """The same file in MuJoCo: an independent simulation, whose results must agree.
+
+    Its contacts and limits are switched off.
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.api: Any = pytest.importorskip("mujoco")
+        spec = self.api.MjSpec.from_file(str(file))
+        spec.compiler.fusestatic = False
+        spec.compiler.discardvisual = True
+        self.model = spec.compile()
+        self.model.opt.gravity = (0, 0, -GRAVITY)
+        flags = self.api.mjtDisableBit
+        self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_LIMIT
+        self.model.opt.integrator = self.api.mjtIntegrator.mjINT_RK4
+        self.model.opt.timestep = 1e-3
+        self.data = self.api.MjData(self.model)
+
+    def at(self, q: Array, v: Array) -> tuple[Array, Array, Array]:
+        """M, c less friction, and the tip."""
+        self.data.qpos[:], self.data.qvel[:] = q, v
+        self.api.mj_forward(self.model, self.data)
+        mass = np.zeros((self.model.nv, self.model.nv))
+        self.api.mj_fullM(self.model, self.data, mass)
+        bias = self.data.qfrc_bias - self.data.qfrc_passive
+        return mass, bias.copy(), self.data.body("tip").xpos.copy()
+
+    def step(self, torque: Array) -> tuple[Array, Array]:
+        """q and v a millisecond later."""
+        self.data.qfrc_applied[:] = torque
+        self.api.mj_step(self.model, self.data)
+        return self.data.qpos.copy(), self.data.qvel.copy()
+
+
+def test_equations_are_those_of_mujoco(arm: Arm) -> None:
+    """M, c and the tip to 1e-9, at random states."""
+    peer, parameters = MuJoCo(arm.file), arm.entry.parameters()
+    robot = arm.entry.make(parameters)
+    parts, plant = robot.system.function("mass", "bias", "output"), robot.plant(parameters)
+    for q, v in states(arm.entry):
+        mass, bias, y = (np.array(x) for x in parts(q, v, plant))
+        expected_mass, expected_bias, tip = peer.at(q, v)
+        scale = max(1.0, float(np.abs(expected_bias).max()))
+        assert np.abs(mass - expected_mass).max() < 1e-9
+        assert np.abs(bias[:, 0] - expected_bias).max() < 1e-9 * scale
+        assert np.abs(y[:, 0] - robot.unplace(tip)).max() < 1e-9
+        assert np.abs(robot.endpoint(q) - robot.unplace(tip)).max() < 1e-9
+
+
+@pytest.mark.parametrize("law", ["path_following", "trajectory_tracking"])
+def test_a_closed_loop_runs_as_with_mujoco_as_the_plant(arm: Arm, law: str) -> None:
+    """The joints agree to 1e-8 rad over 2 s; the tip starts on the path at rest.
+
+    MuJoCo takes the torques that our law gives for our states, one millisecond at a time.
+    """
+    peer, parameters = MuJoCo(arm.file), arm.entry.parameters()
+    robot, curve = arm.entry.make(parameters), circle(RADIUS)
+    kernel = kernel_of(robot, kind_of(law, parameters, curve))
+    loop = translate_loop(kernel)
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    state = first_state(robot, kernel, curve, robot.rest(robot.frame.lift(curve.at(np.array(0.0)))))
+    fields = kernel.state.slices
+    peer.data.qpos[:] = state[fields["q"]]
+    own, table = state.copy(), curve.table()
+    worst = 0.0
+    for _ in range(2000):
+        own, _ = loop.run(own, settings, table, 1)
+        state, rows = loop.run(state, settings, table, 1)
+        q, v = peer.step(kernel.log.unpack(rows)["u"][0])
+        state[fields["q"]], state[fields["v"]] = q, v
+        worst = max(worst, float(np.abs(q - own[fields["q"]]).max()))
+    assert worst < 1e-8
+
+
+def test_compiled_and_interpreted_loops_agree_bit_by_bit(arm: Arm) -> None:
+    parameters = with_values(arm.entry.parameters(), {"torque_limit": 30.0, "coulomb": 0.1})
+    robot, curve = arm.entry.make(parameters), circle(RADIUS)
+    kernel = kernel_of(robot, kind_of("path_following", parameters, curve))
+    settings = settings_vector(robot, kernel, parameters, curve, FREE)
+    state = first_state(robot, kernel, curve, robot.rest(robot.frame.lift(curve.at(np.array(0.0)))))
+    loops = translate_loop(kernel), InterpretedLoop(kernel)
+    (one, rows), (other, expected) = (x.run(state, settings, curve.table(), 40) for x in loops)
+    assert np.array_equal(one, other) and np.array_equal(rows, expected)
+
+
+@pytest.mark.parametrize("seed", [4, 7])
+def test_an_mjcf_file_gives_mujocos_own_equations(tmp_path: Path, seed: int) -> None:
+    """A random tree saved by MuJoCo, with armatures, a keyframe and a motor of limited torque."""
+    api: Any = pytest.importorskip("mujoco")
+    spec = api.MjSpec.from_file(str(written(tmp_path, random_arm(seed))))
+    spec.compiler.fusestatic = False
+    for i, joint in enumerate(spec.joints):
+        joint.armature = 0.01 * (i + 1)
+    spec.add_key(name="home", qpos=[0.3, -0.4, 0.1, 0.5, -0.6])
+    spec.compile()
+    file = written(tmp_path, spec.to_xml(), "arm.xml")
+    entry = read_robot(file, Options(tip="tip")).entry
+    assert entry.source is not None
+    assert entry.source.home == pytest.approx((0.3, -0.4, 0.1, 0.5, -0.6))
+    assert [joint.effort for joint in entry.source.chain.joints] == [50.0] * 5
+    test_equations_are_those_of_mujoco(Arm(file, entry))
+
+
+def test_each_motor_gives_no_more_than_the_share_of_its_own_limit(tmp_path: Path) -> None:
+    """A share of 6 % of 12, 6 and 2 N m; without a limit, more is given."""
+    file = written(tmp_path, urdf("planar", PLANAR))
+    entry = read_robot(file, Options(pose=POSES["planar"])).entry
+    efforts, most = np.array([link.effort for link in PLANAR]), list[Array]()
+    for limit in (0.0, 6.0):
+        parameters = with_values(entry.parameters(), {"torque_limit": limit, "at_limit": "cut"})
+        robot, curve = entry.make(parameters), circle(RADIUS)
+        kernel = kernel_of(robot, kind_of("trajectory_tracking", parameters, curve))
+        settings = settings_vector(robot, kernel, parameters, curve, FREE)
+        at = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
+        state = first_state(robot, kernel, curve, at)
+        _, rows = translate_loop(kernel).run(state, settings, curve.table(), 500)
+        most.append(np.abs(kernel.log.unpack(rows)["u"]).max(axis=0))
+    assert (most[0] > 0.06 * efforts).any()
+    assert (most[1] <= 0.06 * efforts * (1 + 1e-12)).all()
+    assert most[1] == pytest.approx(np.minimum(most[1], 0.06 * efforts)) and most[1].max() > 0.5
+
+
+def test_without_a_posture_the_arm_falls_to_a_limit_while_its_tip_stays(tmp_path: Path) -> None:
+    """η1 of (5): with gains no joint does; without them one does; the tip stays on its path."""
+    file = written(tmp_path, urdf("seven", SEVEN))
+    entry = read_robot(file, Options(pose=POSES["seven"])).entry
+    for gain in (0.0, 1.0):
+        gains = {"posture_stiffness": 100.0 * gain, "posture_damping": 20.0 * gain}
+        parameters = with_values(entry.parameters(), gains)
+        robot, curve = entry.make(parameters), circle(RADIUS)
+        kernel = kernel_of(robot, kind_of("path_following", parameters, curve))
+        settings = settings_vector(robot, kernel, parameters, curve, FREE)
+        at = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
+        state = first_state(robot, kernel, curve, at)
+        _, rows = translate_loop(kernel).run(state, settings, curve.table(), 8000)
+        log = kernel.log.unpack(rows)
+        fault = robot.fault(log["q"], log["v"], parameters)
+        assert (fault is None) == (gain > 0)
+        if fault is not None:
+            assert fault[1].code == "stop.joint"
+        sound = slice(0, None if fault is None else fault[0])
+        off = np.linalg.norm(robot.frame.planar(log["y"][sound]), axis=1) - RADIUS
+        assert np.abs(off[200:]).max() < 1e-4

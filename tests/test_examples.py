@@ -1,0 +1,31 @@
+"""The examples run as they are, from any folder, and are short."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.support.checkout import ROOT
+
+pytest.importorskip("svgpathtools")
+
+FOLDER = ROOT / "assets" / "examples"
+EXAMPLES = sorted(FOLDER.glob("*.py"))
+
+
+@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
+def test_an_example_runs_and_prints_its_result(file: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, str(file)], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() and "Traceback" not in done.stderr
+    code = [line for line in file.read_text("utf-8").splitlines() if line.strip()]
+    assert len(code) <= 13  # about ten lines besides imports
+
+
+def test_there_is_an_example_of_each_kind() -> None:
+    assert {"points", "drawing", "tool", "crossing"} <= {file.stem for file in EXAMPLES}

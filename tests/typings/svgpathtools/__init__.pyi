@@ -1,0 +1,4 @@
+from svgpathtools.path import Line as Line
+from svgpathtools.path import Path
+
+def parse_path(pathdef: str) -> Path: ...
