@@ -7,7 +7,7 @@ from typing import Any
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.data_channel import VERSION
-from onpath.lessons.sides import law_text, side_titles
+from onpath.lessons.sides import ROLES, law_text, robot_names, side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
@@ -23,6 +23,8 @@ def state_message(
     """
     words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
+    named = robot_names(laws, words)
+    names = {side: named[ROLES[side]] for side in laws} if snapshot.key.in_lesson else titles
     return {
         "is": "state",
         "v": VERSION,
@@ -30,6 +32,7 @@ def state_message(
         "robot": snapshot.key.robot,
         "laws": list(laws.values()),
         "titles": [titles[side] for side in laws],
+        "names": [names[side] for side in laws],
         "texts": [law_text(law, words) for law in laws.values()],
         "captions": [captions.get(side, "") for side in laws],
         "clocks": [law_named(law).by_clock for law in laws.values()],

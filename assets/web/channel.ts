@@ -36,6 +36,7 @@ export interface LabState {
     v: number
     language: string
     titles: string[]
+    names: string[]
     texts: string[]
     captions: string[]
     clocks: boolean[]
@@ -173,8 +174,8 @@ export class RemoteEngine implements Engine {
     get path(): PathShape { return this.route }
 
     get texts(): SideText[] {
-        const { titles, texts, captions } = this.lab!
-        return titles.map((title, i) => ({ side: i as 0 | 1, title, text: texts[i]!, caption: captions[i]! }))
+        const { titles, names, texts, captions } = this.lab!
+        return titles.map((title, i) => ({ side: i as 0 | 1, title, name: names[i]!, text: texts[i]!, caption: captions[i]! }))
     }
 
     get present(): Sample { return this.samples[this.samples.length - 1]! }
