@@ -78,11 +78,13 @@ class PageData:
         if messages:
             stream.hand_over(*messages)
 
-    def tell(self, snapshot: PageSnapshot, captions: Mapping[str, str], height: float) -> None:
+    def tell(
+        self, snapshot: PageSnapshot, captions: Mapping[str, str], height: float, apart: float
+    ) -> None:
         """Hand over the state, if it has changed; see `state_message`."""
         if not self._stream.is_open or self._stream.is_busy:
             return
-        state = state_message(snapshot, captions, height)
+        state = state_message(snapshot, captions, height, apart)
         if state != self._state:
             self._state = state
             self._stream.hand_over(partial(msgspec.json.encode, state))
