@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -11,12 +11,11 @@ import msgspec
 from onpath.app.lab.commands.command_codec import NoCommand, command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path_message
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import PathView
-from onpath.app.page.state_message import state_message
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
+_NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
 
@@ -78,16 +77,18 @@ class PageData:
         if messages:
             stream.hand_over(*messages)
 
-    def tell(
-        self, snapshot: PageSnapshot, captions: Mapping[str, str], height: float, apart: float
-    ) -> None:
-        """Hand over the state, if it has changed; see `state_message`."""
-        if not self._stream.is_open or self._stream.is_busy:
-            return
-        state = state_message(snapshot, captions, height, apart)
-        if state != self._state:
+    @property
+    def listens(self) -> bool:
+        """Whether the page is ready to be told something."""
+        return self._stream.is_open and not self._stream.is_busy
+
+    def tell(self, state: dict[str, Any]) -> None:
+        """Hand over what has changed of the state; see `state_message`."""
+        known = self._state
+        news = {key: value for key, value in state.items() if known.get(key, _NOTHING) != value}
+        if news:
             self._state = state
-            self._stream.hand_over(partial(msgspec.json.encode, state))
+            self._stream.hand_over(partial(msgspec.json.encode, {"is": "state", **news}))
 
     def send(self) -> None:
         """Send what has been handed over for all pages."""

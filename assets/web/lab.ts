@@ -8,6 +8,7 @@ import { retone } from "./ink"
 import { Lens } from "./lens"
 import { Strip } from "./strip"
 import { Transport } from "./transport"
+import { Bar, Voice } from "./voice"
 import { said, significant, written, type Texts } from "./words"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
@@ -82,7 +83,7 @@ class Face {
 
     /** Follow viser's canvas, which changes its size, or is replaced. */
     place(): void {
-        const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
+        const canvas = sceneOf()
         const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
         if (width !== this.width || height !== this.height) {
             clearTimeout(this.resizing)
@@ -157,26 +158,65 @@ class Face {
     }
 }
 
-/** Show our part of the page as soon as viser's has come, and as long as it wants it. */
+function sceneOf(): HTMLElement | null {
+    return document.querySelector("canvas[data-engine]")
+}
+
+/** What the lab says, and the strip with its stage, if the page wants it; in one language. */
+class Part {
+    private readonly ended = new AbortController()
+    private readonly voice: Voice
+    private readonly bar: Bar
+    private face: Face | null = null
+
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
+        this.voice = new Voice(engine, texts, this.ended.signal)
+        this.bar = new Bar(engine, texts, this.voice)
+    }
+
+    look(hasStrip: boolean): void {
+        const { engine, texts } = this
+        if (hasStrip && !this.face) this.face = new Face(engine, texts)
+        if (!hasStrip) {
+            this.face?.end()
+            this.face = null
+        }
+        const scene = sceneOf()?.getBoundingClientRect() ?? new DOMRect()
+        this.face?.place()
+        this.bar.place(scene)
+        this.voice.place(scene)
+    }
+
+    end(): void {
+        this.face?.end()
+        this.ended.abort()
+    }
+}
+
+/** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
 export function showLab(): void {
-    const engine = new RemoteEngine()
-    let face: Face | null = null
-    let words = ""
+    const engine = new RemoteEngine(), root = document.documentElement
+    let part: Part | null = null
+    let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    root.classList.add("op-loading")
     const look = () => {
         const source = document.querySelector<HTMLElement>("[data-page]")?.dataset
         if (!source) return // the page is being built
-        const wanted = source.parts ?? ""
-        if (wanted !== words) {
-            face?.end()
-            face = null
-            words = wanted
+        root.classList.remove("op-loading")
+        engine.open(source["ticket"] ?? "")
+        if (source["parts"] !== words) {
+            part?.end()
+            part = null
+            words = source["parts"]!
         }
-        if (words) engine.open(source.ticket ?? "")
-        else engine.close()
-        if (words && !face && engine.ready) face = new Face(engine, { words: JSON.parse(words) as Record<string, string> })
-        face?.place()
+        if (!engine.ready) return
+        part ??= new Part(engine, { words: JSON.parse(words) as Record<string, string> })
+        part.look(source["strip"] === "yes")
+        if (calmed) return
+        calmed = true // users who ask for less motion begin with a lab at rest
+        engine.act({ do: "run", on: false })
     }
     setInterval(look, LOOK)
-    new MutationObserver(retone).observe(document.documentElement, { attributeFilter: ["data-mantine-color-scheme"] })
+    new MutationObserver(retone).observe(root, { attributeFilter: ["data-mantine-color-scheme"] })
     Object.assign(window, { onpathLab: engine }) // for tests
 }
