@@ -13,8 +13,8 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
 from onpath.app.page.first_minute import FirstMinute, end_first_minute
+from onpath.app.page.lesson_column import LessonColumn
 from onpath.app.page.lesson_menu import LessonMenu
-from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.narration import Narration
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
@@ -22,9 +22,7 @@ from onpath.app.page.page_menus import PageMenus
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
-from onpath.app.page.panels.readout import Readout
 from onpath.app.page.panels.widgets import Post
-from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.step_controls import Build, StepControls, StepPlot
@@ -58,6 +56,7 @@ class Page:
     Attributes:
         is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
+        column: what the data channel tells of the lessons; None on a teacher's page.
     """
 
     def __init__(
@@ -154,10 +153,6 @@ class Page:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 
-    def _has_strip(self, snapshot: PageSnapshot) -> bool:
-        """Whether our own strip stands below the scene; see assets/web/lab.ts."""
-        return not snapshot.key.in_lesson
-
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
         return self._context.post
@@ -165,11 +160,10 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        stripped = self._has_strip(first)
         self._lay_out()
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
-        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=not stripped)
+        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
         self._scene.build(first)
         one_at_a_time.rest()
         self._overlays = Overlays(
@@ -182,7 +176,7 @@ class Page:
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
-        ticket, parts = self._context.ticket, strip_words(words) if stripped else ""
+        ticket, parts = self._context.ticket, strip_words(words)
         self._client.gui.add_html(
             render("panel/page.html", words=words, ticket=ticket, parts=parts)
         )
@@ -193,6 +187,7 @@ class Page:
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
+        self.column = self._column(first, words)
         self._build_panels(first, words, post)
         page_actions = {
             "view": self.reset_view,
@@ -201,6 +196,26 @@ class Page:
         }
         add_keys(self._client.gui, words, post, page_actions)
         self._building = self.is_outdated = False
+
+    def _column(self, first: PageSnapshot, words: Words) -> LessonColumn | None:
+        """What the data channel tells of the lessons."""
+        column = LessonColumn(
+            course=self._context.course,
+            words=words,
+            student=self._context.code,
+            submit=self._rebuilds.submit,
+            first=first,
+        )
+        self._parts.append(column)
+        return column
+
+    def _fold(self, away: bool) -> None:
+        """Fold viser's panel away, or show it."""
+        panel = self._client.gui.main_panel
+        if away:
+            panel.minimize()
+        else:
+            panel.expand()
 
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
@@ -213,45 +228,17 @@ class Page:
         if not first.key.in_lesson:
             self._build_free_lab(controls, first, words, post)
             return
-        lesson_tab = None
-        if self._narrow:  # a single panel with tabs: the lesson first, then the lab
-            tabs = gui.add_tab_group()
-            lesson_tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
-            step_tab = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
-            with step_tab:
-                self._build_head(first, words, post)
-        else:  # the controls stand beneath the text of the step; the plot comes last
-            self._build_numbers(words)
-            tabs = gui.add_tab_group()
-            step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        build = controls.of_step if lesson_tab is None else controls.run_of_step
-        self._parts.append(self._step_controls(step_tab, words, build, first))
-        if lesson_tab is not None:  # beside the text that mentions them
-            build = controls.listed_by_step
-            self._parts.append(self._step_controls(lesson_tab, words, build, first, pinned=True))
+        self._build_navigation(first, words, post)
+        tabs = gui.add_tab_group()
+        step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
+        self._parts.append(self._step_controls(step_tab, words, controls.of_step, first))
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
-                self._parts += controls.everything(first)
+                self._parts += controls.beside_strip(first)
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
-        if lesson_tab is None:
-            self._build_navigation(first, words, post)
-            self._build_distance(first, words)
-            self._build_step_plot(controls, first, words)
-        lesson = LessonPanel(
-            client=self._client,
-            words=words,
-            post=post,
-            course=self._context.course,
-            scene=self._scene,
-            change=self._rebuilds.change,
-            first=first,
-            report=self.exporter.report,
-            tab=lesson_tab,
-            student=self._context.code,
-        )
-        self._parts.append(lesson)
+        self._build_step_plot(controls, first, words)
 
     def _step_controls(
         self,
@@ -259,7 +246,6 @@ class Page:
         words: Words,
         build: Build,
         first: PageSnapshot,
-        pinned: bool = False,
     ) -> StepControls:
         return StepControls(
             gui=self._client.gui,
@@ -269,7 +255,7 @@ class Page:
             build=build,
             change=self._rebuilds.change,
             first=first,
-            pinned=pinned,
+            fold=self._fold,
         )
 
     def _build_free_lab(
@@ -306,12 +292,6 @@ class Page:
             reset_view=self.reset_view,
         )
 
-    def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        """Build the permanent widgets: readout, menus and distance plot."""
-        self._build_numbers(words)
-        self._build_navigation(first, words, post)
-        self._build_distance(first, words)
-
     def _build_navigation(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the menus, the lesson menu and the class panel."""
         gui = self._client.gui
@@ -325,22 +305,6 @@ class Page:
     def _build_menus(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the buttons for language, display and help."""
         PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
-
-    def _build_numbers(self, words: Words) -> None:
-        self._parts.append(Readout(self._client.gui, words))
-
-    def _build_distance(self, first: PageSnapshot, words: Words) -> None:
-        """Build the plot of the distance from the path."""
-        large = first.key.presenting
-        plot = LivePlot(
-            gui=self._client.gui,
-            words=words,
-            fields=first.key.fields,
-            plot=DISTANCE,
-            height=240 if large else 190,
-            large=large,
-        )
-        self._parts.append(plot)
 
     def _lay_out(self) -> None:
         """Put the panel beside the scene unless the window is narrow: it is below it then."""

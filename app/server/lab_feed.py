@@ -83,7 +83,7 @@ class LabFeed(CountingDisplay):
         self.page.show(snapshot)
         self.page.exporter.serve(lab)
         if self._data is not None:
-            self._data.tell(snapshot, self.page.captions, self.page.seen_height)
+            self._data.tell(snapshot, self.page)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
@@ -13,10 +13,12 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path_message
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.page.page import Page
 from onpath.app.page.state_message import state_message
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
+RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
 
@@ -36,7 +38,8 @@ class PageData:
         self._path: PathView | None = None
         self._robot: object = None
         self._state: dict[str, Any] = {}
-        self._is_resized = False
+        self._is_resized = self._wants_record = False
+        self._lesson = self._measured = b""
 
     @property
     def ticket(self) -> str:
@@ -62,6 +65,7 @@ class PageData:
             self._opened = stream.opened
             self._source.forget()
             self._path, self._state = None, {}
+            self._lesson = self._measured = b""
         if self._is_resized:
             self._is_resized = False
             on_resize()
@@ -78,14 +82,27 @@ class PageData:
         if messages:
             stream.hand_over(*messages)
 
-    def tell(self, snapshot: PageSnapshot, captions: Mapping[str, str], height: float) -> None:
-        """Hand over the state, if it has changed; see `state_message`."""
+    def tell(self, snapshot: PageSnapshot, page: Page) -> None:
+        """Hand over the state and what the lessons show, if they have changed."""
+        if self._wants_record:
+            self._wants_record = False
+            page.exporter.report()
         if not self._stream.is_open or self._stream.is_busy:
             return
-        state = state_message(snapshot, captions, height)
+        messages = list[Message]()
+        state = state_message(snapshot, page.captions, page.seen_height)
         if state != self._state:
             self._state = state
-            self._stream.hand_over(partial(msgspec.json.encode, state))
+            messages.append(partial(msgspec.json.encode, state))
+        if (column := page.column) is not None and column.message:
+            if column.message is not self._lesson:
+                self._lesson, self._measured = column.message, b""
+                messages.append(partial(bytes, column.message))
+            if column.measured != self._measured:
+                self._measured = column.measured
+                messages.append(partial(bytes, column.measured))
+        if messages:
+            self._stream.hand_over(*messages)
 
     def send(self) -> None:
         """Send what has been handed over for all pages."""
@@ -95,6 +112,9 @@ class PageData:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
         if text == RESIZED:
             self._is_resized = True
+            return b""
+        if text == RECORD:
+            self._wants_record = True
             return b""
         try:
             command = command_from(text)

@@ -2,6 +2,7 @@
 // buttons for time, a lens for each robot, and the robots' titles.
 
 import { RemoteEngine } from "./channel"
+import { Column } from "./column"
 import { made, tell } from "./controls"
 import { shown } from "./engine"
 import { retone } from "./ink"
@@ -32,6 +33,7 @@ class Face {
     private readonly transport: Transport
     private readonly lost: HTMLElement
     private readonly clock = made("span", "clock")
+    private readonly column: Column
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
@@ -59,23 +61,31 @@ class Face {
         this.transport.element.append(this.undo)
         const title = made("h2", "", said(texts, "chart.title"))
         const head = made("div", "head", title, this.clock, this.lost, this.transport.element)
-        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element)
+        this.column = new Column(texts, engine, () => !UPRIGHT.matches, signal)
+        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
-        document.body.append(this.stage, this.element)
+        document.body.append(this.column.element, this.stage, this.element)
         document.documentElement.classList.add("op-stripped")
-        engine.on(change => change !== "samples" && this.show(), signal)
+        engine.on(change => {
+            if (change === "lesson") this.column.hear(engine.lesson!)
+            else if (change === "measured") this.column.measure(engine.measured!)
+            else if (change !== "samples") this.show()
+        }, signal)
         UPRIGHT.addEventListener("change", () => this.arrange(), { signal })
         this.arrange()
         this.show()
+        if (engine.lesson) this.column.hear(engine.lesson)
+        if (engine.measured) this.column.measure(engine.measured)
         requestAnimationFrame(now => this.frame(now))
     }
 
     end(): void {
         this.ended.abort()
+        this.column.element.remove()
         this.stage.remove()
         this.element.remove()
-        document.documentElement.classList.remove("op-stripped", "op-large")
+        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits")
     }
 
     /** Follow viser's canvas, which changes its size, or is replaced. */
@@ -102,6 +112,7 @@ class Face {
             if (UPRIGHT.matches) this.readings[i]!.prepend(lens.element)
             else this.sides[i]!.append(lens.element)
         })
+        this.column.arrange()
         this.place()
     }
 
