@@ -43,6 +43,9 @@ from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 CONTROL_WIDTH = 330  # [px]
+TITLES = 44.0  # [px], of the scene, that the titles of the robots take
+MOST_TITLES = 0.1  # of its height
+ASIDE = 0.025  # of the scene's width, for the brakes, which stick out of the robots' boxes
 UPRIGHT_KEY = "upright"
 """Where a browser keeps whether the panel is below the scene; see assets/page/portrait.js."""
 
@@ -74,6 +77,7 @@ class Page:
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
+        self._folded = False
         self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
@@ -115,6 +119,11 @@ class Page:
         return float(2 * distance * np.tan(camera.fov / 2))
 
     @property
+    def apart(self) -> float:
+        """Distance between the robots in the picture, [m]."""
+        return float(np.linalg.norm(np.ptp(self._scene.stage.origins, axis=0)))
+
+    @property
     def captions(self) -> dict[str, str]:
         """What each robot is doing, by side; see `Captions.shown`."""
         return self._scene.captions.shown
@@ -153,6 +162,10 @@ class Page:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 
+    def _is_folded(self, snapshot: PageSnapshot) -> bool:
+        """Whether the panel makes room for the stage, as for a projector."""
+        return snapshot.key.presenting
+
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
         return self._context.post
@@ -160,7 +173,7 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        self._lay_out()
+        self._lay_out(self._is_folded(first))
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
@@ -209,14 +222,6 @@ class Page:
         self._parts.append(column)
         return column
 
-    def _fold(self, away: bool) -> None:
-        """Fold viser's panel away, or show it."""
-        panel = self._client.gui.main_panel
-        if away:
-            panel.minimize()
-        else:
-            panel.expand()
-
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
         end_first_minute(self._client)
@@ -255,7 +260,7 @@ class Page:
             build=build,
             change=self._rebuilds.change,
             first=first,
-            fold=self._fold,
+            fold=lambda away: self._fold(away or first.key.presenting),
         )
 
     def _build_free_lab(
@@ -306,12 +311,25 @@ class Page:
         """Build the buttons for language, display and help."""
         PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
 
-    def _lay_out(self) -> None:
-        """Put the panel beside the scene unless the window is narrow: it is below it then."""
+    def _lay_out(self, folded: bool) -> None:
+        """Put the panel beside the scene unless the window is narrow: it is below it then.
+
+        Args:
+            folded: whether only its bar is left.
+        """
+        panel = self._client.gui.main_panel
         if self._narrow is not False and not self._wanted_narrow:
-            self._client.gui.main_panel.dock_right()
-            self._client.gui.main_panel.set_width(CONTROL_WIDTH)
+            panel.dock_right()
+            panel.set_width(CONTROL_WIDTH)
         self._narrow = self._wanted_narrow
+        self._fold(folded)
+
+    def _fold(self, away: bool) -> None:
+        """Fold viser's panel away, or show it; there it stays until the user does otherwise."""
+        panel = self._client.gui.main_panel
+        if away != self._folded:
+            (panel.minimize if away else panel.expand)()
+        self._folded = away
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera
@@ -337,8 +355,13 @@ class Page:
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
             ask_item(self._client, UPRIGHT_KEY, self._heard_upright)
-            below = 0.0 if self._step_plot is None else self._step_plot.share
-            self._scene.frame_camera(Insets(bottom=height * (0.6 if self._narrow else below)))
+            self._scene.frame_camera(self._insets(width, height))
+
+    def _insets(self, width: float, height: float) -> Insets:
+        """What covers the canvas: our titles, and the window with a step's plot."""
+        top = min(TITLES, MOST_TITLES * height)
+        below = 0.0 if self._step_plot is None else self._step_plot.share * height
+        return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top, bottom=below)
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

@@ -13,13 +13,14 @@ from onpath.models.control.laws.registry import law_named
 
 
 def state_message(
-    snapshot: PageSnapshot, captions: Mapping[str, str], height: float
+    snapshot: PageSnapshot, captions: Mapping[str, str], height: float, apart: float
 ) -> dict[str, Any]:
     """The message of a lab's state, in the page's language; see app/viser_adapter/README.md.
 
     Args:
         captions: of the robots, by side; see `app.scene.captions.Captions`.
         height: that the canvas shows, see `Page.seen_height`, [m].
+        apart: distance between the robots in the picture, [m].
     """
     words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
@@ -45,5 +46,6 @@ def state_message(
         "level": snapshot.message_level if snapshot.message else "",
         "presenting": snapshot.key.presenting,
         "height": round(height, 3),
+        "apart": round(apart, 3),
         "own": not snapshot.key.student,
     }

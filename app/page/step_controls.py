@@ -10,7 +10,7 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.lesson_view import NO_SETUP, LessonView
-from onpath.app.page.panel_factory import Part, has_window
+from onpath.app.page.panel_factory import IN_STRIP, Part, has_window
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
@@ -82,7 +82,7 @@ class StepControls:
             self._folder.remove()
             self._folder = None
         self._scene = scene
-        self._fold(not set(scene.controls) - {"hold"})
+        self._fold(not has_controls(scene))
         with self._tab:
             self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:
@@ -154,3 +154,8 @@ class StepPlot:
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
         view = LessonView(self._course, self._words, snapshot.lesson)
         return StepSetup() if view.ended else view.setup
+
+
+def has_controls(setup: StepSetup) -> bool:
+    """Whether a step has controls besides those of the strip."""
+    return bool(set(setup.controls) - set(IN_STRIP))

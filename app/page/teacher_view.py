@@ -48,6 +48,10 @@ class TeacherView(Page):
         return None
 
     @override
+    def _is_folded(self, snapshot: PageSnapshot) -> bool:
+        return False  # it has what leads the class
+
+    @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
         gui, own_words, teaching = self._client.gui, self._own_words, self._teaching
         if first.key.student:

@@ -32,21 +32,27 @@ class ContactNodes:
 
     A brake leaves an end-point free in one direction, so it is drawn as a guide in which the
     end-point slides, where the brake was applied: it does not move.
+
+    Args:
+        labelled: whether forces have labels.
     """
 
-    def __init__(self, scene: viser.SceneApi, stage: Stage, words: Words) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, stage: Stage, words: Words, labelled: bool = True
+    ) -> None:
         self._scene, self._bases, self._words = scene, stage.bases, words
         self._metal = stage.tones.metal
         self._brakes = dict[str, np.ndarray]()
         self._guides: list[viser.BatchedMeshHandle] = []
-        self._labels = {side: ForceLabel(scene, stage, side, words) for side in stage.bases}
+        sides = stage.bases if labelled else ()
+        self._labels = {side: ForceLabel(scene, stage, side, words) for side in sides}
 
     def update(self, snapshot: Snapshot) -> None:
         """Show a snapshot; sends nothing if nothing has changed."""
         path = snapshot.path.points
         for side, view in snapshot.robots.items():
-            force = hypot(*view.force.tolist())
-            self._labels[side].show(force, view.tip, path)
+            if side in self._labels:
+                self._labels[side].show(hypot(*view.force.tolist()), view.tip, path)
         if not _same(snapshot.brakes, self._brakes):
             self._brakes = snapshot.brakes
             self._draw_guides()

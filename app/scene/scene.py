@@ -51,6 +51,7 @@ class Scene:
         stage: where the robots stand.
         hooks: callbacks of the scene.
         words: message catalogue for the labels.
+        titled: whether titles and the sizes of forces are drawn; else the page shows them.
 
     Attributes:
         mouse: the mouse on end-points and control points.
@@ -107,7 +108,9 @@ class Scene:
             laws=snapshot.laws,
             poses=poses_of(self._stage, motion),
         )
-        self._contacts = ContactNodes(self._client.scene, self._stage, self._words)
+        self._contacts = ContactNodes(
+            self._client.scene, self._stage, self._words, labelled=self._titled
+        )
         self._hands = HandNodes(self._client.scene, self._stage)
         self.mouse.connect_grips(self._machine.grips)
         self._notes = [

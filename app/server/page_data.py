@@ -90,7 +90,7 @@ class PageData:
         if not self._stream.is_open or self._stream.is_busy:
             return
         messages = list[Message]()
-        state = state_message(snapshot, page.captions, page.seen_height)
+        state = state_message(snapshot, page.captions, page.seen_height, page.apart)
         if state != self._state:
             self._state = state
             messages.append(partial(msgspec.json.encode, state))

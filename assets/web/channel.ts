@@ -51,6 +51,7 @@ export interface LabState {
     own: boolean
     presenting: boolean
     height: number
+    apart: number
 }
 
 interface Refusal { is: "refused"; why: string }

@@ -160,6 +160,7 @@ export class Column implements Robots {
 
     private leave(place: string): void {
         this.place = place
+        this.element.classList.remove("turned")
         this.view = null
         this.tasks = []
         for (const section of Object.values(this.sections)) section.remove()
@@ -262,6 +263,8 @@ export class Column implements Robots {
     }
 
     private press(event: MouseEvent): void {
+        const turn = (event.target as HTMLElement).closest<HTMLElement>(".turn")
+        if (turn) return turn.setAttribute("aria-pressed", String(this.element.classList.toggle("turned")))
         const sent = (event.target as HTMLElement).closest<HTMLElement>("[data-send]")?.dataset["send"]
         if (!sent) return
         const commands = JSON.parse(sent) as Record<string, unknown> | Record<string, unknown>[]

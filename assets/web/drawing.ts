@@ -95,8 +95,10 @@ export class Drawing {
     }
 
     private place({ clientX, clientY }: PointerEvent): [number, number] {
-        const box = this.chart.plot.getBoundingClientRect()
-        return this.chart.inverse(clientX - box.left, clientY - box.top).map(rounded) as [number, number]
+        const { plot, sheet } = this.chart
+        const box = plot.getBoundingClientRect()
+        const at = this.chart.inverse((clientX - box.left) / sheet.zoom, (clientY - box.top) / sheet.zoom)
+        return at.map(rounded) as [number, number]
     }
 
     /** Go on drawing; whoever goes back draws that part anew. */

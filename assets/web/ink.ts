@@ -33,15 +33,16 @@ export class Sheet {
     readonly canvas = document.createElement("canvas")
     width = 0
     height = 0
+    private magnified = 1
+    private box = { width: 0, height: 0 }
     // The browser then draws in memory: without a graphics card, the other way costs ten times as much.
     private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
 
     /** `changed`: everything is to be drawn anew. */
-    constructor(changed: () => void, ended?: AbortSignal) {
+    constructor(private readonly changed: () => void, ended?: AbortSignal) {
         const observer = new ResizeObserver(entries => {
-            const { width, height } = entries[entries.length - 1]!.contentRect
-            Object.assign(this, { width, height })
-            changed()
+            this.box = entries[entries.length - 1]!.contentRect
+            this.measure()
         })
         observer.observe(this.canvas)
         listeners.add(changed)
@@ -51,11 +52,25 @@ export class Sheet {
         })
     }
 
+    /** How much larger everything is drawn; `width` and `height` are what there is room for. */
+    get zoom(): number { return this.magnified }
+    set zoom(zoom: number) {
+        if (zoom === this.magnified) return
+        this.magnified = zoom
+        this.measure()
+    }
+
+    private measure(): void {
+        this.width = this.box.width / this.zoom
+        this.height = this.box.height / this.zoom
+        this.changed()
+    }
+
     /** The empty canvas; null if it cannot be seen. */
     cleared(): CanvasRenderingContext2D | null {
         const { canvas, ink, width, height } = this
         if (!ink || !width || !height) return null
-        const ratio = window.devicePixelRatio || 1
+        const ratio = (window.devicePixelRatio || 1) * this.zoom
         const [across, down] = [Math.round(width * ratio), Math.round(height * ratio)]
         if (canvas.width !== across || canvas.height !== down) Object.assign(canvas, { width: across, height: down })
         ink.setTransform(ratio, 0, 0, ratio, 0, 0)

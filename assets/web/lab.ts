@@ -15,7 +15,9 @@ const LOOK = 250 // [ms] between looks for what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
-const UPRIGHT = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)")
+const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
+const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
+const PHONE = matchMedia("(width <= 36em)") // in these words; portrait.js changes the others
 
 /** Our part of the page, in one language. */
 class Face {
@@ -37,6 +39,7 @@ class Face {
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
+    private apart = 0 // of the robots in the picture, [px]
     private resizing = 0
     private read = 0
 
@@ -72,7 +75,8 @@ class Face {
             else if (change === "measured") this.column.measure(engine.measured!)
             else if (change !== "samples") this.show()
         }, signal)
-        UPRIGHT.addEventListener("change", () => this.arrange(), { signal })
+        PHONE.addEventListener("change", () => this.arrange(), { signal })
+        UPRIGHT.addEventListener("change", () => this.column.arrange(), { signal })
         this.arrange()
         this.show()
         if (engine.lesson) this.column.hear(engine.lesson)
@@ -106,10 +110,10 @@ class Face {
         Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 
-    /** Put the lenses on the stage, or into the strip of an upright window. */
+    /** Put the lenses on the stage, or into the strip on a telephone. */
     private arrange(): void {
         this.lenses.forEach((lens, i) => {
-            if (UPRIGHT.matches) this.readings[i]!.prepend(lens.element)
+            if (PHONE.matches) this.readings[i]!.prepend(lens.element)
             else this.sides[i]!.append(lens.element)
         })
         this.column.arrange()
@@ -129,8 +133,21 @@ class Face {
         this.undo.hidden = !engine.lab!.undo
         transport.element.hidden = !engine.lab!.own
         tell(this.lost, engine.connected ? "" : said(texts, "strip.lost"))
-        document.documentElement.classList.toggle("op-large", engine.lab!.presenting)
+        this.enlarge(engine.lab!.presenting)
         this.read = 0
+    }
+
+    /** Give each robot's half of the stage the width that the robot has in the picture. */
+    private spread(apart: number): void {
+        if (Math.abs(apart - this.apart) < 1) return
+        this.apart = apart
+        this.stage.style.setProperty("--op-apart", `${apart.toFixed(0)}px`)
+    }
+
+    /** Draw for a projector, or for a screen. */
+    private enlarge(large: boolean): void {
+        document.documentElement.classList.toggle("op-large", large)
+        for (const { sheet } of [this.strip.chart, ...this.lenses]) sheet.zoom = large ? LARGER : 1
     }
 
     private frame(now: number): void {
@@ -138,9 +155,10 @@ class Face {
         const { engine, strip, lenses, texts } = this
         strip.draw(now)
         for (const lens of lenses) {
-            lens.scale = this.height / engine.lab!.height || lens.scale
+            lens.scale = this.height / engine.lab!.height / lens.sheet.zoom || lens.scale
             lens.draw(now)
         }
+        this.spread(engine.lab!.apart * this.height / engine.lab!.height)
         if (now > this.read + NUMBERS) {
             this.read = now
             const { time, sides } = shown(engine), { running } = engine.state

@@ -12,6 +12,7 @@ const FITS = 0.62 // of the radius: what is to be seen is within
 const CLOSER = 0.45 // the same before the lens goes closer
 const HIGHER = 0.92 // of the radius: the middle of what is to be seen is above the bar
 const LOWEST = 1.55 // of the radius: names are above the bar
+const SMALL = 55 // [px], of a radius with no room for words
 const PATIENCE = 900 // [ms] for which it could have gone closer
 const GLIDE = 120 // [ms], in which most of a change of scale is done
 const TRACE = 2 // [s]
@@ -29,7 +30,7 @@ export class Lens {
     lit = ""
     /** Pixels of the picture around the lens for a metre, of which factors are multiples. */
     scale = 1000
-    private readonly sheet: Sheet
+    readonly sheet: Sheet
     private readonly distance = made("b", "distance")
     private readonly more = made("span", "")
     private stale = true
@@ -76,7 +77,7 @@ export class Lens {
         if (this.lit) this.light(ink, sample, view, ([x, y]) => [
             radius + (x - middle[0]) * this.drawn, HIGHER * radius - (y + middle[1]) * this.drawn,
         ])
-        this.bar(ink, radius)
+        if (radius > SMALL) this.bar(ink, radius)
         ink.restore()
         ink.lineWidth = 3
         ink.strokeStyle = tones()[`side${engine.texts[side]!.side}`]
@@ -153,9 +154,10 @@ export class Lens {
         }
         disc(ink, tip, 7.5, all.paper)
         disc(ink, tip, 5.5, colour)
-        this.force(ink, tip, pixel, sample)
+        this.force(ink, tip, pixel, sample, radius)
         ink.font = "11px system-ui, sans-serif"
         ink.textBaseline = "middle"
+        if (radius < SMALL) return
         const named: [Pixel, string][] = [[closest, "lens.closest"]]
         if (sample.reference) named.unshift([from, "lens.reference"])
         const placed: Pixel[] = []
@@ -216,13 +218,13 @@ export class Lens {
         ink.closePath()
         ink.fill()
         ink.stroke()
-        if (far(at, tip) < 30) return
+        if (far(at, tip) < 30 || radius < SMALL) return
         ink.font = "11px system-ui, sans-serif"
         ink.textBaseline = "middle"
         this.name(ink, said(this.texts, "lens.straight"), at, tip, radius, soft)
     }
 
-    private force(ink: CanvasRenderingContext2D, tip: Pixel, pixel: (point: Vector) => Pixel, { tip: at, force }: SideSample): void {
+    private force(ink: CanvasRenderingContext2D, tip: Pixel, pixel: (point: Vector) => Pixel, { tip: at, force }: SideSample, radius: number): void {
         const size = Math.hypot(...force)
         if (size < WEAK) return
         const end = pixel(at.map((each, k) => each + force[k]! / size))
@@ -230,6 +232,7 @@ export class Lens {
         const length = Math.min(Math.max(FORCE * size, 12), LONGEST)
         const to: Pixel = [tip[0] + ((end[0] - tip[0]) / away) * length, tip[1] + ((end[1] - tip[1]) / away) * length]
         arrow(ink, tip, to, tones().force, 3)
+        if (radius < SMALL) return
         ink.font = "600 12px system-ui, sans-serif"
         ink.textAlign = "center"
         ink.textBaseline = "middle"

@@ -105,7 +105,7 @@ export class Strip {
     private grip(now: number): void {
         const { handle, chart, engine, texts } = this
         const sample = shown(engine)
-        handle.style.transform = `translateX(${chart.x(sample.time).toFixed(1)}px)`
+        handle.style.transform = `translateX(${(chart.sheet.zoom * chart.x(sample.time)).toFixed(1)}px)`
         if (now && now < this.spoken + SPOKEN && engine.state.past === null) return
         this.spoken = now
         const values = engine.texts.map(({ name }, i) => `${name} ${written(texts, 1e3 * sample.sides[i]!.distance, 1)} mm`).join(", ")
@@ -129,15 +129,16 @@ export class Strip {
             event.stopPropagation()
             this.look(to)
         })
-        const { plot } = chart
+        const { plot, sheet } = chart
+        const place = (event: PointerEvent): number => (event.clientX - plot.getBoundingClientRect().left) / sheet.zoom
         plot.addEventListener("pointerdown", event => {
             if (this.dragged || event.button !== 0) return
             this.dragged = { pointer: event.pointerId, x: 0 }
             plot.setPointerCapture(event.pointerId)
-            this.drag(event.clientX - plot.getBoundingClientRect().left)
+            this.drag(place(event))
         })
         plot.addEventListener("pointermove", event => {
-            if (event.pointerId === this.dragged?.pointer) this.drag(event.clientX - plot.getBoundingClientRect().left)
+            if (event.pointerId === this.dragged?.pointer) this.drag(place(event))
         })
         for (const end of ["pointerup", "pointercancel"] as const)
             plot.addEventListener(end, event => event.pointerId === this.dragged?.pointer && (this.dragged = null))

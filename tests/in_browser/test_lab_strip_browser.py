@@ -34,6 +34,17 @@ BOXES = """() => {
     }
 }"""
 
+COVERED = """() => [...document.querySelectorAll("#op-strip button, #root button")].filter(each => {
+    const box = each.getBoundingClientRect()
+    const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2]
+    if (!each.checkVisibility() || x < 0 || y < 0 || x > innerWidth || y > innerHeight) return false
+    const found = document.elementFromPoint(x, y)
+    const shown = each.closest(".mantine-ScrollArea-viewport")?.getBoundingClientRect()
+    if (shown && (y < shown.top || y > shown.bottom)) return false
+    return !each.contains(found)
+}).map(each => each.textContent)"""
+"""Buttons in the window that something covers."""
+
 
 def number(tab: Tab, title: str) -> float:
     """The large number of a robot, [mm]."""
@@ -120,7 +131,9 @@ def test_everything_fits_into_windows_of_all_shapes(shaped: Tab) -> None:
     boxes = shaped.page.evaluate(BOXES)
     assert boxes["strip"]["top"] >= boxes["scene"]["bottom"] - 1
     assert boxes["strip"]["bottom"] <= size["height"] + 1 and boxes["width"] <= size["width"]
-    assert boxes["scene"]["height"] > 0.5 * size["height"]
+    least = 0.5 if size["width"] > size["height"] else 0.34
+    assert boxes["scene"]["height"] > least * size["height"]
+    assert shaped.page.evaluate(COVERED) == []
     assert boxes["chart"]["height"] > 70 and boxes["chart"]["bottom"] <= size["height"]
     assert len(boxes["buttons"]) >= 6
     for button in boxes["buttons"]:

@@ -46,7 +46,9 @@ def seen(tab: Tab) -> tuple[np.ndarray, dict[str, float]]:
     box = tab._canvas()
     sheet = tab.page.locator(SHEET)
     covered = sheet.bounding_box() if sheet.count() else None
-    bottom = covered["y"] if covered else box["y"] + box["height"]
+    bottom = box["y"] + box["height"]
+    if covered:
+        bottom = min(bottom, covered["y"])
     return np.array(corners), {**box, "bottom": bottom}
 
 
