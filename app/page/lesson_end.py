@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-import viser
-
-from onpath.app.common.palette import BORDER
-from onpath.app.common.templates import render
+from onpath.app.common.templates import Markup, part_of_page
+from onpath.app.exports.concept_test_facts import results_of
 from onpath.app.exports.curve_words import curve_words
 from onpath.app.exports.report_facts import (
     Chapter,
@@ -19,17 +17,16 @@ from onpath.app.exports.report_facts import (
     predictions,
     quizzes,
 )
-from onpath.app.lab import commands as c
-from onpath.app.page.lesson_chart import PredictionChart
-from onpath.app.page.panels.widgets import Post, add_buttons, on_press
+from onpath.app.page.lesson_view import LessonView
+from onpath.app.page.step_navigation import RECORD, Sent, Way
+from onpath.app.steps.block_data import answer_data, curves_data, script_data, sketch_data
+from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.on_route import last_test
 from onpath.lessons.concept_test.titles import titles_of_tests
-from onpath.lessons.progress import Answer
+from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import Choice, Prediction, Sketch
 from onpath.lessons.sides import robot_names
-
-if TYPE_CHECKING:
-    from onpath.app.page.lesson_view import LessonView
+from onpath.lessons.words import Words
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,104 +91,126 @@ def next_lesson(run: LessonView) -> tuple[str, str] | None:
     return after[0], f"{numbers[after[0]]}: {title}"
 
 
-class LessonEnd:
-    """The widgets of the end, added to the open container.
+def end_html(run: LessonView) -> Markup:
+    """The end of a lesson, a route or a test; see `ended_charts` for the places of its charts."""
+    if run.is_test:
+        return _test_end(run)
+    parts = ended_parts(run)
+    fronts = {part.chapter.lesson.name: part.chapter.lesson.front for part in parts}
+    return part_of_page(
+        "lesson/end.html",
+        run=run,
+        counts=_counts(parts, run.words),
+        onward=_onward(run),
+        learnt=[front for front in fronts.values() if front.takeaway],
+        predicted=[each for part in parts for each in _predicted(part, run.words)],
+        parts=parts,
+        quizzes=quizzes,
+        numbers=numbers,
+        open_questions=open_questions,
+        words=run.words,
+    )
 
-    Args:
-        report: requests the record of all lessons.
+
+def ended_charts(run: LessonView) -> list[dict[str, Any]]:
+    """The charts of sketches at the end, in the order of their places in its HTML."""
+    charts = list[dict[str, Any]]()
+    for part in () if run.is_test else ended_parts(run):
+        lesson = part.chapter.lesson
+        for predicted in _predicted(part, run.words):
+            block, answer, truth = predicted.block, predicted.answer, predicted.truth
+            if not isinstance(block, Sketch) or not predicted.description:
+                continue
+            at = int(predicted.key)
+            played = lesson.steps[at if lesson.steps[at].kind == "run" else at + 1].script
+            charts.append(
+                {
+                    "data": sketch_data(block, lesson.laws_shown(at), run.words),
+                    "script": None if played is None else script_data(played),
+                    "answer": {} if answer is None else answer_data(answer),
+                    "truth": None if truth is None else curves_data(truth),
+                }
+            )
+    return charts
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """A prediction with its result.
 
     Attributes:
-        handles: all of them, each with `remove`.
+        key: of its step in the notes.
+        description: of the curves in words; empty if there are none, or for a choice.
     """
 
-    def __init__(
-        self, gui: viser.GuiApi, run: LessonView, post: Post, report: Callable[[], None]
-    ) -> None:
-        self._gui, self._run, self._words, self._post = gui, run, run.words, post
-        self.handles: list[Any] = []
-        parts = ended_parts(run)
-        fronts = {part.chapter.lesson.name: part.chapter.lesson.front for part in parts}
-        learnt = [front for front in fronts.values() if front.takeaway]
-        self._html("lesson/end.html", run=run, counts=self._counts(parts))
-        self._add_navigation(report)
-        self._html("lesson/takeaway.html", learnt=learnt)
-        for part in parts:
-            self._add_predictions(part)
-        self._html(
-            "lesson/end_rest.html",
-            parts=parts,
-            run=run,
-            quizzes=quizzes,
-            numbers=numbers,
-            open_questions=open_questions,
+    key: str
+    title: str
+    block: Prediction
+    answer: Answer | None
+    truth: Truth | None
+    second: Answer | None
+    unknown: bool
+    description: str
+
+
+def _predicted(part: EndedPart, words: Words) -> Iterator[Predicted]:
+    notes, lesson = part.chapter.notes, part.chapter.lesson
+    for key, block in part.predictions().items():
+        answer, truth, description = notes.answers.get(key), notes.truths.get(key), ""
+        if isinstance(block, Sketch):
+            names = robot_names(lesson.laws_shown(int(key)), words)
+            description = curve_words(block, answer, truth, words, names)
+        yield Predicted(
+            key=key,
+            title=lesson.steps[int(key)].title,
+            block=block,
+            answer=answer,
+            truth=truth,
+            second=notes.second.get(key),
+            unknown=key in notes.unknown,
+            description=description,
         )
 
-    def _add_navigation(self, report: Callable[[], None]) -> None:
-        """Buttons: the next lesson, the record, back, and the free lab."""
-        words, after = self._words, next_lesson(self._run)
-        if after is not None:
-            name, title = after
-            label = words("end.next", lesson=title)
-            forward = self._gui.add_button(label, icon=viser.Icon.ARROW_RIGHT)
-            on_press(forward, lambda: self._post(c.OpenLesson(name)))
-            self.handles.append(forward)
-        run = self._run
-        if test := last_test(run.route, run.course, run.progress):
-            title = titles_of_tests(run.course, words)[test]
-            label = words("test.open_name", title=title)
-            last = self._gui.add_button(label, icon=viser.Icon.ARROW_RIGHT)
-            on_press(last, lambda: self._post(c.OpenLesson(test)))
-            self.handles.append(last)
-        actions: dict[str, Callable[[], None]] = {
-            words("lesson.back"): lambda: self._post(c.GoToStep(-1)),
-            words("end.record"): report,
-            words("lesson.close"): lambda: self._post(c.CloseLesson()),
-        }
-        self.handles.append(add_buttons(self._gui, "", actions, lambda act: act()))
 
-    def _add_predictions(self, part: EndedPart) -> None:
-        """Each prediction with its result: the curves, or the chosen and the right option."""
-        chapter = part.chapter
-        notes, lesson = chapter.notes, chapter.lesson
-        for key, block in part.predictions().items():
-            answer, truth = notes.answers.get(key), notes.truths.get(key)
-            laws, description = lesson.laws_shown(int(key)), ""
-            if isinstance(block, Sketch):
-                names = robot_names(laws, self._words)
-                description = curve_words(block, answer, truth, self._words, names)
-            self._html(
-                "lesson/end_prediction.html",
-                title=lesson.steps[int(key)].title,
-                colour=BORDER.hex,
-                block=block,
-                answer=answer,
-                truth=truth,
-                description=description,
-                second=notes.second.get(key),
-                unknown=key in notes.unknown,
-            )
-            if isinstance(block, Sketch) and description:
-                chart = PredictionChart(
-                    gui=self._gui,
-                    sketch=block,
-                    answer=answer,
-                    laws=laws,
-                    words=self._words,
-                    truth=truth,
-                )
-                self.handles.append(chart)
+def _onward(run: LessonView) -> list[Way]:
+    """What one may do next: the next lesson, the test of a route, the record."""
+    words, ways = run.words, list[Way]()
+    if (after := next_lesson(run)) is not None:
+        name, title = after
+        ways.append(Way(words("end.next", lesson=title), [_opened(name)], main=True))
+    if test := last_test(run.route, run.course, run.progress):
+        title = titles_of_tests(run.course, words)[test]
+        ways.append(Way(words("test.open_name", title=title), [_opened(test)], main=True))
+    return [*ways, Way(words("end.record"), [RECORD])]
 
-    def _counts(self, parts: list[EndedPart]) -> list[str]:
-        """The student's results as short phrases: choices right, curves drawn, tasks passed."""
-        words, phrases = self._words, list[str]()
-        if right := [right for part in parts for right in part.chosen()]:
-            phrases.append(words("end.right", part=sum(right), all=len(right)))
-        if drawn := [drawn for part in parts for drawn in part.drawn()]:
-            phrases.append(words("end.drawn", part=sum(drawn), all=len(drawn)))
-        if passed := [passed for part in parts for passed in part.passed()]:
-            phrases.append(words("end.tasks", part=sum(passed), all=len(passed)))
-        return phrases
 
-    def _html(self, template: str, **values: object) -> None:
-        content = render(template, words=self._words, **values)
-        self.handles.append(self._gui.add_html(content))
+def _opened(name: str) -> Sent:
+    return {"do": "OpenLesson", "name": name}
+
+
+def _test_end(run: LessonView) -> Markup:
+    """Thanks and, after the second test, the right answers and why."""
+    words, route = run.words, run.progress.route
+    ways = [Way(words("end.record"), [RECORD])]
+    if run.progress.lesson == BEFORE and route in run.course.routes:
+        follow: Sent = {"do": "FollowRoute", "name": route}
+        ways = [Way(words("route.follow"), [follow], main=True), *ways]
+    return part_of_page(
+        "lesson/test_end.html",
+        title=titles_of_tests(run.course, words)[run.progress.lesson],
+        results=results_of(run),
+        ways=ways,
+        words=words,
+    )
+
+
+def _counts(parts: list[EndedPart], words: Words) -> list[str]:
+    """The student's results as short phrases: choices right, curves drawn, tasks passed."""
+    phrases = list[str]()
+    if right := [right for part in parts for right in part.chosen()]:
+        phrases.append(words("end.right", part=sum(right), all=len(right)))
+    if drawn := [drawn for part in parts for drawn in part.drawn()]:
+        phrases.append(words("end.drawn", part=sum(drawn), all=len(drawn)))
+    if passed := [passed for part in parts for passed in part.passed()]:
+        phrases.append(words("end.tasks", part=sum(passed), all=len(passed)))
+    return phrases

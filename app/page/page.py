@@ -15,8 +15,8 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
 from onpath.app.page.first_minute import FirstMinute, Invitation, end_first_minute
+from onpath.app.page.lesson_column import LessonColumn
 from onpath.app.page.lesson_menu import LessonMenu
-from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.narration import Narration
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
@@ -24,9 +24,7 @@ from onpath.app.page.page_menus import PageMenus
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import add_keys
-from onpath.app.page.panels.readout import Readout
 from onpath.app.page.panels.widgets import Post
-from onpath.app.page.plots import DISTANCE, LivePlot
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.state_message import state_message
@@ -64,6 +62,7 @@ class Page:
     Attributes:
         is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
+        column: what the data channel tells of the lessons; None on a teacher's page.
     """
 
     def __init__(
@@ -161,13 +160,9 @@ class Page:
         """Key of everything the page layout depends on; a change triggers a rebuild."""
         return (snapshot.key,)
 
-    def _has_strip(self, snapshot: PageSnapshot) -> bool:
-        """Whether our own strip stands below the scene; see assets/web/lab.ts."""
-        return not snapshot.key.in_lesson
-
     def _is_folded(self, snapshot: PageSnapshot) -> bool:
         """Whether the panel makes room for the stage, as for a projector."""
-        return snapshot.key.presenting and self._has_strip(snapshot)
+        return snapshot.key.presenting
 
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
@@ -176,11 +171,10 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built = self._key(first)
-        self._stripped = stripped = self._has_strip(first)
         self._lay_out(self._is_folded(first))
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
-        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=not stripped)
+        self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
         self._scene.build(first)
         one_at_a_time.rest()
         self._overlays = Overlays(
@@ -199,7 +193,6 @@ class Page:
                 words=words,
                 ticket=self._context.ticket,
                 parts=strip_words(words),
-                stripped=stripped,
             )
         )
         self._first_minute: FirstMinute | None = None
@@ -209,6 +202,7 @@ class Page:
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
+        self.column = self._column(first, words)
         self._build_panels(first, words, post)
         page_actions = {
             "view": self.reset_view,
@@ -222,6 +216,18 @@ class Page:
     def _invitation(self) -> Invitation | None:
         return None if self._first_minute is None else self._first_minute.shown
 
+    def _column(self, first: PageSnapshot, words: Words) -> LessonColumn | None:
+        """What the data channel tells of the lessons."""
+        column = LessonColumn(
+            course=self._context.course,
+            words=words,
+            student=self._context.code,
+            submit=self._rebuilds.submit,
+            first=first,
+        )
+        self._parts.append(column)
+        return column
+
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
         end_first_minute(self._client)
@@ -233,45 +239,17 @@ class Page:
         if not first.key.in_lesson:
             self._build_free_lab(controls, first, words, post)
             return
-        lesson_tab = None
-        if self._narrow:  # a single panel with tabs: the lesson first, then the lab
-            tabs = gui.add_tab_group()
-            lesson_tab = tabs.add_tab(words("lesson.lessons"), viser.Icon.SCHOOL)
-            step_tab = tabs.add_tab(words("lesson.lab"), viser.Icon.ROBOT)
-            with step_tab:
-                self._build_head(first, words, post)
-        else:  # the controls stand beneath the text of the step; the plot comes last
-            self._build_numbers(words)
-            tabs = gui.add_tab_group()
-            step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        build = controls.of_step if lesson_tab is None else controls.run_of_step
-        self._parts.append(self._step_controls(step_tab, words, build, first))
-        if lesson_tab is not None:  # beside the text that mentions them
-            build = controls.listed_by_step
-            self._parts.append(self._step_controls(lesson_tab, words, build, first, pinned=True))
+        self._build_navigation(first, words, post)
+        tabs = gui.add_tab_group()
+        step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
+        self._parts.append(self._step_controls(step_tab, words, controls.of_step, first))
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
-                self._parts += controls.everything(first)
+                self._parts += controls.beside_strip(first)
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
-        if lesson_tab is None:
-            self._build_navigation(first, words, post)
-            self._build_distance(first, words)
-            self._build_step_plot(controls, first, words)
-        lesson = LessonPanel(
-            client=self._client,
-            words=words,
-            post=post,
-            course=self._context.course,
-            scene=self._scene,
-            change=self._rebuilds.change,
-            first=first,
-            report=self.exporter.report,
-            tab=lesson_tab,
-            student=self._context.code,
-        )
-        self._parts.append(lesson)
+        self._build_step_plot(controls, first, words)
 
     def _step_controls(
         self,
@@ -279,7 +257,6 @@ class Page:
         words: Words,
         build: Build,
         first: PageSnapshot,
-        pinned: bool = False,
     ) -> StepControls:
         return StepControls(
             gui=self._client.gui,
@@ -289,7 +266,7 @@ class Page:
             build=build,
             change=self._rebuilds.change,
             first=first,
-            pinned=pinned,
+            fold=lambda away: self._fold(away or first.key.presenting),
         )
 
     def _build_free_lab(
@@ -328,12 +305,6 @@ class Page:
             reset_view=self.reset_view,
         )
 
-    def _build_head(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        """Build the permanent widgets: readout, menus and distance plot."""
-        self._build_numbers(words)
-        self._build_navigation(first, words, post)
-        self._build_distance(first, words)
-
     def _build_navigation(self, first: PageSnapshot, words: Words, post: Post) -> None:
         """Build the menus, the lesson menu and the class panel."""
         gui = self._client.gui
@@ -348,22 +319,6 @@ class Page:
         """Build the buttons for language, display and help."""
         PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
 
-    def _build_numbers(self, words: Words) -> None:
-        self._parts.append(Readout(self._client.gui, words))
-
-    def _build_distance(self, first: PageSnapshot, words: Words) -> None:
-        """Build the plot of the distance from the path."""
-        large = first.key.presenting
-        plot = LivePlot(
-            gui=self._client.gui,
-            words=words,
-            fields=first.key.fields,
-            plot=DISTANCE,
-            height=240 if large else 190,
-            large=large,
-        )
-        self._parts.append(plot)
-
     def _lay_out(self, folded: bool) -> None:
         """Put the panel beside the scene unless the window is narrow: it is below it then.
 
@@ -375,9 +330,14 @@ class Page:
             panel.dock_right()
             panel.set_width(CONTROL_WIDTH)
         self._narrow = self._wanted_narrow
-        if folded != self._folded:
-            (panel.minimize if folded else panel.expand)()
-        self._folded = folded
+        self._fold(folded)
+
+    def _fold(self, away: bool) -> None:
+        """Fold viser's panel away, or show it; there it stays until the user does otherwise."""
+        panel = self._client.gui.main_panel
+        if away != self._folded:
+            (panel.minimize if away else panel.expand)()
+        self._folded = away
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera
@@ -406,12 +366,10 @@ class Page:
             self._scene.frame_camera(self._insets(width, height))
 
     def _insets(self, width: float, height: float) -> Insets:
-        """What covers the canvas: our titles, or the panel, or the window with a step's plot."""
-        if self._stripped:
-            top = min(TITLES, MOST_TITLES * height)
-            return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top)
-        below = 0.0 if self._step_plot is None else self._step_plot.share
-        return Insets(bottom=height * (0.6 if self._narrow else below))
+        """What covers the canvas: our titles, and the window with a step's plot."""
+        top = min(TITLES, MOST_TITLES * height)
+        below = 0.0 if self._step_plot is None else self._step_plot.share * height
+        return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top, bottom=below)
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

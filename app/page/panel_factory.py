@@ -15,14 +15,14 @@ from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
+from onpath.app.page.panels.export_folder import add_exports
 from onpath.app.page.panels.flexible_panel import Exaggeration, FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
+from onpath.app.page.panels.hold_direction import HoldDirection
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.law_panel import LawPanel
-from onpath.app.page.panels.past_panel import PastPanel, add_exports
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
 from onpath.app.page.panels.robot_panel import RobotPanel
-from onpath.app.page.panels.run_panel import HoldDirection, RunPanel
 from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
@@ -34,8 +34,8 @@ from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
-RUN = ("hold", "direction")
-REST = (
+FREE = (
+    "direction",
     "robot",
     "laws",
     "path",
@@ -47,13 +47,12 @@ REST = (
     "show",
     "plots",
     "compare",
-    "past",
+    "export",
     "keep",
     "copy",
 )
-
-FEW = 5
-"""Number of sliders that leaves room for the buttons below them."""
+IN_STRIP = ("hold", "past")
+"""Controls of a lesson's step that the strip has; see assets/web/lab.ts."""
 
 
 class Part(Protocol):
@@ -92,32 +91,19 @@ class PanelFactory:
         self._scene, self._context = scene, context
         self._files = PathReader(words.language)
 
-    def everything(self, first: PageSnapshot) -> list[Part]:
-        """Build all panels."""
-        return [part for name in (*RUN, *REST) for part in self._add(name, first)]
-
     def beside_strip(self, first: PageSnapshot) -> list[Part]:
         """Build all panels except those that the strip replaces; see assets/web/lab.ts."""
         self._add_view()
-        names = ("direction", *("export" if name == "past" else name for name in REST))
-        return [part for name in names for part in self._add(name, first)]
+        return [part for name in FREE for part in self._add(name, first)]
 
     def _add_view(self) -> None:
         text, icon = self._words("run.view"), viser.Icon.ZOOM_RESET
         on_press(self._gui.add_button(text, color="gray", icon=icon), self._reset_view)
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel, the controls of a lesson's step, and its plots without a window."""
-        if len(_sliders(scene, first)) > FEW:
-            parts = self._add("hold", first) + self.listed_by_step(scene, first)
-        else:  # the Hold button stays in view below them
-            parts = self._add_sliders(scene, first) + self._add("hold", first)
-            parts += self._add_others(scene, first)
+        """Build the controls of a lesson's step, and its plots without a window."""
+        parts = self.listed_by_step(scene, first)
         return parts if has_window(scene) else parts + self.plot_of_step(scene, first)
-
-    def run_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the run panel and the plot of a lesson's step."""
-        return self._add("hold", first) + self.plot_of_step(scene, first)
 
     def listed_by_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         """Build the controls listed by a lesson's step."""
@@ -132,7 +118,9 @@ class PanelFactory:
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
         names = [name for name in scene.controls if name not in first.parameters]
-        return [part for name in names if name != "hold" for part in self._add(name, first, True)]
+        return [
+            part for name in names if name not in IN_STRIP for part in self._add(name, first, True)
+        ]
 
     def plot_of_step(self, scene: StepSetup, first: PageSnapshot, height: int = 200) -> list[Part]:
         """Build the plots of a lesson's step, if it has any.
@@ -159,14 +147,12 @@ class PanelFactory:
         """
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
-            "hold": lambda: RunPanel(gui, words, post, self._reset_view),
             "direction": lambda: HoldDirection(gui, words, post, first),
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first, expanded),
             "gains": lambda: GainsPanel(gui, words, post, first),
             "plots": lambda: MorePlots(gui, words, first.key.fields, post),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
-            "past": lambda: PastPanel(gui, words, post, exporter),
             "export": lambda: _silent(add_exports(gui, words, exporter)),
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),

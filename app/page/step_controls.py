@@ -10,13 +10,10 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.lesson_view import NO_SETUP, LessonView
-from onpath.app.page.panel_factory import Part, has_window
+from onpath.app.page.panel_factory import IN_STRIP, Part, has_window
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
-
-LAST = 1e9
-"""Order of a folder that stays last, whatever is added later."""
 
 Build = Callable[[StepSetup, PageSnapshot], list[Part]]
 """Adds the widgets of a set-up."""
@@ -49,8 +46,7 @@ class StepControls:
 
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
-        pinned: whether the folder stays at the lower edge of a scrolled page; it is then omitted if
-            it would be empty. See assets/page/style.css.
+        fold: folds the panel away, or shows it; called whenever another step is opened.
     """
 
     def __init__(
@@ -62,11 +58,11 @@ class StepControls:
         build: Build,
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
-        pinned: bool = False,
+        fold: Callable[[bool], None],
     ) -> None:
         self._gui, self._build, self._change = gui, build, change
         self._tab, self._words, self._course = tab, words, course
-        self._pinned = pinned
+        self._fold = fold
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
         self._parts: list[Part] = []
@@ -86,20 +82,16 @@ class StepControls:
             self._folder.remove()
             self._folder = None
         self._scene = scene
-        if self._pinned and not set(scene.controls) - {"hold"}:
-            return
+        self._fold(not has_controls(scene))
         with self._tab:
-            order = LAST if self._pinned else None
-            self._folder = self._gui.add_folder(self._words("lesson.controls"), order=order)
+            self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:
             self._parts = self._build(scene, first)
-            if self._pinned:
-                self._gui.add_html(render("panel/pinned.html"))
 
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
         """Set-up of the open step."""
         view = LessonView(self._course, self._words, snapshot.lesson)
-        return NO_SETUP if self._pinned and view.ended else view.setup
+        return NO_SETUP if view.ended else view.setup
 
 
 class StepPlot:
@@ -162,3 +154,8 @@ class StepPlot:
     def _setup_of(self, snapshot: PageSnapshot) -> StepSetup:
         view = LessonView(self._course, self._words, snapshot.lesson)
         return StepSetup() if view.ended else view.setup
+
+
+def has_controls(setup: StepSetup) -> bool:
+    """Whether a step has controls besides those of the strip."""
+    return bool(set(setup.controls) - set(IN_STRIP))

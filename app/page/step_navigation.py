@@ -1,76 +1,96 @@
-"""The navigation buttons below a step's text: next, back, set up again, free lab."""
+"""The ways that lead from the open step to others: next, back, set up again, free lab."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
-import viser
-
-from onpath.app.lab import commands as c
-from onpath.app.page import lesson_html as page
 from onpath.app.page.concept_test.entry import answered_line
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.panels.widgets import Post, add_buttons, on_press
+
+Sent = dict[str, Any]
+"""A command as a page's script sends it; see app/lab/commands/command_codec.py."""
+NEXT: Sent = {"do": "GoToStep", "by": 1}
+BACK: Sent = {"do": "GoToStep", "by": -1}
+FINISH: Sent = {"do": "FinishLesson"}
+RECORD: Sent = {"is": "record"}
+"""Asks for the record of all lessons, which is no command of the lab."""
 
 
-def add_navigation(gui: viser.GuiApi, run: LessonView, post: Post) -> list[Any]:
-    """The buttons that lead from the open step to others; returns their handles."""
-    handles: list[Any] = []
-    if run.is_test:
-        handles.append(gui.add_html(page.remark(answered_line(run))))
-    if not run.may_go(1):
-        handles.append(gui.add_html(page.remark(run.words("lesson.wait"), italic=True)))
-    elif run.at_end:
-        label = run.words("test.hand_in" if run.is_test else "lesson.finish")
-        handles.append(_button(gui, post, label, c.FinishLesson(), None, viser.Icon.CHECK))
-    else:
-        handles += _add_next(gui, run, post)
-    if others := _others(run):
-        handles.append(add_buttons(gui, "", others, post))
-    return handles
+@dataclass(frozen=True, slots=True)
+class Way:
+    """A button.
+
+    Attributes:
+        name: its whole name.
+        send: the commands that it sends.
+        main: whether it is what to do now.
+        short: what is written on it; the whole name if empty.
+    """
+
+    name: str
+    send: list[Sent]
+    main: bool = False
+    short: str = ""
 
 
-def _add_next(gui: viser.GuiApi, run: LessonView, post: Post) -> list[Any]:
-    unseen = run.step is not None and run.step.script is not None and not run.has_played()
-    label, colour = run.words("lesson.next"), "gray" if run.shows_next else None
-    if run.waits or unseen:
-        colour = "gray"
-        label = run.words("lesson.skip" if run.waits else "lesson.next_unseen")
-    forward = _button(gui, post, label, c.GoToStep(1), colour, viser.Icon.ARROW_RIGHT)
-    past, command = run.past_optional(), c.FinishLesson()
-    if past is None or not run.may_go(past):
-        return [forward]
-    label = run.words("lesson.finish")
-    if past:  # past the optional steps that come next; else to the end
-        label = run.words("lesson.past_optional", step=run.index + 1 + past)
-        command = c.GoToStep(past)
-    skip = _button(gui, post, label, command, "gray", viser.Icon.PLAYER_TRACK_NEXT)
-    return [forward, skip]
+@dataclass(frozen=True, slots=True)
+class Ways:
+    """The buttons below a step's text.
+
+    Attributes:
+        remark: a sentence above them; may be empty.
+        forward: on the right.
+        back: on the left, if one can go there.
+        others: less important ones, above the others.
+    """
+
+    remark: str
+    forward: list[Way]
+    back: Way | None
+    others: list[Way]
 
 
-def _others(run: LessonView) -> dict[str, c.Command]:
-    """The smaller buttons: back, set up again, free lab."""
-    lesson = run.lesson
+def ways_of(run: LessonView) -> Ways:
+    """The buttons of the open step, or of the end."""
+    words, lesson = run.words, run.lesson
     first = lesson is None or run.beside(-1) == (lesson.name, run.index)
-    commands = {"back": c.GoToStep(-1), "again": c.BeginStepAnew(), "close": c.CloseLesson()}
-    missing = {
-        "back": first or not run.may_go(-1),
-        "again": run.is_test,
-        "close": run.pace is not None,
-    }
-    return {
-        run.words(f"lesson.{key}"): command for key, command in commands.items() if not missing[key]
-    }
+    back = Way(words("lesson.back"), [BACK], short="←")
+    if run.ended:
+        return Ways("", [], None if run.is_test else back, [])
+    remark = answered_line(run) if run.is_test else ""
+    if not run.may_go(1):
+        remark = words("lesson.wait")
+    return Ways(
+        remark=remark,
+        forward=_forward(run) if run.may_go(1) else [],
+        back=None if first or not run.may_go(-1) else back,
+        others=_past(run) if run.may_go(1) and not run.at_end else [],
+    )
 
 
-def _button(
-    gui: viser.GuiApi,
-    post: Post,
-    label: str,
-    command: c.Command,
-    colour: Any,
-    icon: viser.IconName,
-) -> viser.GuiButtonHandle:
-    button = gui.add_button(label, color=colour, icon=icon)
-    on_press(button, lambda: post(command))
-    return button
+def _forward(run: LessonView) -> list[Way]:
+    words = run.words
+    if run.waits:
+        return [Way(words("lesson.skip"), [NEXT], short=words("site.skip_short"))]
+    if run.at_end:
+        return [Way(words("test.hand_in" if run.is_test else "lesson.finish"), [FINISH], main=True)]
+    if run.shows_next:
+        play = Way(words("lesson.play"), [NEXT, {"do": "PlayStep"}], main=True)
+        return [Way(words("lesson.next"), [NEXT]), play]
+    unseen = run.step is not None and run.step.script is not None and not run.has_played()
+    if unseen:
+        name = words("lesson.next_unseen")
+        return [Way(name, [NEXT], short=words("lesson.next"))]
+    return [Way(words("lesson.next"), [NEXT], main=True)]
+
+
+def _past(run: LessonView) -> list[Way]:
+    """Past the optional steps that come next; else to the end."""
+    past = run.past_optional()
+    if past is None or not run.may_go(past):
+        return []
+    if not past:
+        return [Way(run.words("lesson.finish"), [FINISH])]
+    name = run.words("lesson.past_optional", step=run.index + 1 + past)
+    return [Way(name, [{"do": "GoToStep", "by": past}])]

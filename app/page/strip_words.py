@@ -1,4 +1,4 @@
-"""The messages of a page's strip, lenses and buttons for time; see assets/web/lab.ts."""
+"""The messages of our own part of the lab's page; see assets/web/lab.ts."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 
 from onpath.app.exports.standalone.figure_words import PARTS
 from onpath.app.page.first_minute import INVITATIONS
+from onpath.app.steps.player_words import player_words
 from onpath.lessons.words import Words
 
 _PLAIN = (
@@ -16,7 +17,7 @@ _PLAIN = (
     *("run.step", "run.reset", "key.right", "key.reset"),
     *("past.go_on", "past.undo", "past.undo_hint"),
     *("transport.go_on_hint", "transport.back", "transport.back_hint"),
-    "strip.lost",
+    *("strip.lost", "lesson.lessons"),
     *("help.close", "breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
     *(f"invite.{invitation.name}" for invitation in INVITATIONS),
     *("invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
@@ -32,7 +33,7 @@ _FILLED = {
 
 def strip_words(words: Words) -> str:
     """Key -> text of every message, as JSON."""
-    messages = {key: words(key) for key in _PLAIN}
+    messages = player_words(words) | {key: words(key) for key in _PLAIN}
     messages |= {
         key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
     }

@@ -44,8 +44,8 @@ class TeacherView(Page):
         return _ignore if snapshot.key.student else self._context.post
 
     @override
-    def _has_strip(self, snapshot: PageSnapshot) -> bool:
-        return True  # also for a student in a lesson
+    def _column(self, first: PageSnapshot, words: Words) -> None:
+        return None
 
     @override
     def _is_folded(self, snapshot: PageSnapshot) -> bool:

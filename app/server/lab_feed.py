@@ -82,8 +82,8 @@ class LabFeed(CountingDisplay):
         self._last = self._whole = snapshot
         self.page.show(snapshot)
         self.page.exporter.serve(lab)
-        if self._data is not None and self._data.listens:
-            self._data.tell(self.page.state(snapshot))
+        if self._data is not None:
+            self._data.tell(snapshot, self.page)
 
     def _source(self, lab: Lab, achieved: float) -> tuple[Lab, float, int]:
         """The displayed lab, its achieved speed, and its student's number; see `PageKey`."""

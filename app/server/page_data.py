@@ -11,10 +11,13 @@ import msgspec
 from onpath.app.lab.commands.command_codec import NoCommand, command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path_message
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.page.page import Page
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
+RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
 _NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
@@ -35,7 +38,8 @@ class PageData:
         self._path: PathView | None = None
         self._robot: object = None
         self._state: dict[str, Any] = {}
-        self._is_resized = False
+        self._is_resized = self._wants_record = False
+        self._lesson = self._measured = b""
 
     @property
     def ticket(self) -> str:
@@ -61,6 +65,7 @@ class PageData:
             self._opened = stream.opened
             self._source.forget()
             self._path, self._state = None, {}
+            self._lesson = self._measured = b""
         if self._is_resized:
             self._is_resized = False
             on_resize()
@@ -77,18 +82,28 @@ class PageData:
         if messages:
             stream.hand_over(*messages)
 
-    @property
-    def listens(self) -> bool:
-        """Whether the page is ready to be told something."""
-        return self._stream.is_open and not self._stream.is_busy
-
-    def tell(self, state: dict[str, Any]) -> None:
-        """Hand over what has changed of the state; see `state_message`."""
-        known = self._state
+    def tell(self, snapshot: PageSnapshot, page: Page) -> None:
+        """Hand over what has changed of the state and of what the lessons show."""
+        if self._wants_record:
+            self._wants_record = False
+            page.exporter.report()
+        if not self._stream.is_open or self._stream.is_busy:
+            return
+        messages = list[Message]()
+        state, known = page.state(snapshot), self._state
         news = {key: value for key, value in state.items() if known.get(key, _NOTHING) != value}
         if news:
             self._state = state
-            self._stream.hand_over(partial(msgspec.json.encode, {"is": "state", **news}))
+            messages.append(partial(msgspec.json.encode, {"is": "state", **news}))
+        if (column := page.column) is not None and column.message:
+            if column.message is not self._lesson:
+                self._lesson, self._measured = column.message, b""
+                messages.append(partial(bytes, column.message))
+            if column.measured != self._measured:
+                self._measured = column.measured
+                messages.append(partial(bytes, column.measured))
+        if messages:
+            self._stream.hand_over(*messages)
 
     def send(self) -> None:
         """Send what has been handed over for all pages."""
@@ -98,6 +113,9 @@ class PageData:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
         if text == RESIZED:
             self._is_resized = True
+            return b""
+        if text == RECORD:
+            self._wants_record = True
             return b""
         try:
             command = command_from(text)

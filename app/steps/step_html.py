@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from onpath.app.common.templates import Markup, part_of_page
 from onpath.lessons.adaptive.own_numbers import filled, marked
+from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Notes
 from onpath.lessons.safe_html import safe
 from onpath.lessons.schema import KINDS, Block, Lesson, Text
@@ -24,12 +25,24 @@ class StepPart:
         kind: see `onpath.lessons.schema.KINDS`.
         place: index among the step's blocks.
         here: whether a task can be done on the page; True for other parts.
+        order: the order of a question's options, as indices; by default the author's.
+        lettered: whether the options have letters, of which a class may speak.
+        told: whether the page has the answers, which it may show at the right time.
+        hints: how many hints of a task are shown; None if the reader unfolds them.
+        remark: what is said above a question; may be empty.
+        aside: what the student has said beside an answer, if anything.
     """
 
     kind: str
     place: int
     block: Block
     here: bool = True
+    order: tuple[int, ...] = ()
+    lettered: bool = False
+    told: bool = True
+    hints: int | None = None
+    remark: str = ""
+    aside: Markup | None = None
 
 
 def part_of(lesson: Lesson, index: int, place: int, words: Words, here: bool = True) -> StepPart:
@@ -38,7 +51,8 @@ def part_of(lesson: Lesson, index: int, place: int, words: Words, here: bool = T
     if isinstance(block, Text):
         html = marked(block.html, lesson.steps, index)
         block = replace(block, html=filled(html, lesson.steps, index, Notes(), words))
-    return StepPart(KINDS[type(block)], place, block, here)
+    order = tuple(range(len(getattr(block, "options", ()))))
+    return StepPart(KINDS[type(block)], place, block, here, order=order)
 
 
 def step_html(
@@ -67,6 +81,7 @@ def step_html(
         plays=plays,
         lacking=lacking,
         words=words,
+        letters=LETTERS,
         live=partial(live, lesson),
     )
 

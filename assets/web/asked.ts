@@ -13,7 +13,8 @@ export function ordered(list: Element, student: string, question: string): void 
 }
 
 /** Show what was chosen, whether it is right, and why, with texts from the page. */
-export function judged(page: PageData, element: Element, right: number, own: number | undefined): HTMLElement {
+export function judged(page: PageData, element: Element, right: number | undefined, own: number | undefined): HTMLElement {
+    if (right === undefined) return made("div", "judged") // not told yet
     const answers = (option: number) => [...element.querySelector(`[data-answer="${option}"]`)!.cloneNode(true).childNodes]
     const lines: HTMLElement[] = []
     if (own !== undefined) {
@@ -28,15 +29,16 @@ export function judged(page: PageData, element: Element, right: number, own: num
 export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): void {
     const { notes } = student
     const told = element.querySelector<HTMLElement>(".verdict")!
-    const after = element.querySelector<HTMLDetailsElement>(".after")!
-    after.hidden = true
+    const after = element.querySelector<HTMLDetailsElement>(".after") // a lab sends it with its verdict
+    if (after) after.hidden = true
     const input = element.querySelector<HTMLInputElement | HTMLTextAreaElement>("input, textarea")!
-    const button = made("button", "script-only", said(page, block.kind === "open" ? "answer.keep" : "answer.check"))
+    const button = made("button", "script-only", said(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
     button.type = "button"
     told.before(button)
     const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
     const show = () => {
         const own = kept()
+        if (own === undefined || !after) return
         if (block.kind === "quiz") return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
         if (block.kind === "number") {
             const right = accepted(own as number, block)

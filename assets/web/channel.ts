@@ -1,6 +1,7 @@
 // The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
 // The messages are described in app/viser_adapter/README.md.
 
+import type { LessonMessage, MeasuredMessage } from "./column"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "./engine"
 
 const PROTOCOL = "onpath-1"
@@ -12,6 +13,9 @@ const STALE = 1008 // the ticket is not valid any more
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two instants that one looks at
 const SETTLES = 400 // [ms], until what the server shows counts again
+
+/** What the server says. */
+export interface LabMessage { is: string }
 
 interface FrameMessage {
     is: "frame"
@@ -151,6 +155,9 @@ export class RemoteEngine implements Engine {
     route = new Path({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
+    /** The open step of a lesson, and what is measured in it; null until they are known. */
+    lesson: LessonMessage | null = null
+    measured: MeasuredMessage | null = null
     /** Called with the reason why the page must be loaded anew. */
     outdated: () => void = () => {}
     private samples: Sample[] = [] // the last one is the present
@@ -256,7 +263,7 @@ export class RemoteEngine implements Engine {
         else this.send({ do: "Grab", side: ["left", "right"][side], target: this.present.sides[side]!.tip.map((each, k) => each + by[k]!) })
     }
 
-    private hear(message: FrameMessage | PathMessage | LabState | Refusal): void {
+    private hear(message: FrameMessage | PathMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
         if (!this.connected) {
             this.connected = true
             this.tries = 0
@@ -269,6 +276,12 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "state") {
             this.lab = { ...this.lab, ...message } // which has only what has changed
             this.tell("state")
+        } else if (message.is === "lesson") {
+            this.lesson = message
+            this.tell("lesson")
+        } else if (message.is === "measured") {
+            this.measured = message
+            this.tell("measured")
         } else console.warn(`refused: ${message.why}`)
     }
 

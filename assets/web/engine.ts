@@ -68,8 +68,9 @@ export type Act =
     | { do: "look"; at: number | null }
     | { do: "goOn" } // from the past instant that is shown; what came after it is discarded
 
-/** What has changed: there are new samples; earlier ones are no longer valid; or anything else. */
-export type Change = "samples" | "history" | "path" | "state"
+/** What has changed: there are new samples; earlier ones are no longer valid; the step of a lesson, or what is
+ * measured in it; or anything else. */
+export type Change = "samples" | "history" | "path" | "lesson" | "measured" | "state"
 
 export interface Engine {
     readonly state: State

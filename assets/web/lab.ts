@@ -2,13 +2,14 @@
 // buttons for time, a lens for each robot, and the robots' titles.
 
 import { RemoteEngine } from "./channel"
+import { Column } from "./column"
 import { made, tell } from "./controls"
 import { shown } from "./engine"
 import { retone } from "./ink"
 import { Lens } from "./lens"
 import { Strip } from "./strip"
 import { Transport } from "./transport"
-import { Bar, Voice } from "./voice"
+import { Voice } from "./voice"
 import { said, significant, written, type Texts } from "./words"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
@@ -16,6 +17,7 @@ const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
 const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
 const NUMBERS = 100 // [ms] between changes of the large numbers
 const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
+const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
 const PHONE = matchMedia("(width <= 36em)") // in these words; portrait.js changes the others
 
 /** Our part of the page, in one language. */
@@ -34,6 +36,8 @@ class Face {
     private readonly transport: Transport
     private readonly lost: HTMLElement
     private readonly clock = made("span", "clock")
+    private readonly column: Column
+    private readonly voice: Voice
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
@@ -62,28 +66,38 @@ class Face {
         this.transport.element.append(this.undo)
         const title = made("h2", "", said(texts, "chart.title"))
         const head = made("div", "head", title, this.clock, this.lost, this.transport.element)
-        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element)
+        this.column = new Column(texts, engine, () => !UPRIGHT.matches, signal)
+        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
-        document.body.append(this.stage, this.element)
+        document.body.append(this.column.element, this.stage, this.element)
+        this.voice = new Voice(engine, texts, signal)
         document.documentElement.classList.add("op-stripped")
-        engine.on(change => change !== "samples" && this.show(), signal)
+        engine.on(change => {
+            if (change === "lesson") this.column.hear(engine.lesson!)
+            else if (change === "measured") this.column.measure(engine.measured!)
+            else if (change !== "samples") this.show()
+        }, signal)
         PHONE.addEventListener("change", () => this.arrange(), { signal })
+        UPRIGHT.addEventListener("change", () => this.column.arrange(), { signal })
         this.arrange()
         this.show()
+        if (engine.lesson) this.column.hear(engine.lesson)
+        if (engine.measured) this.column.measure(engine.measured)
         requestAnimationFrame(now => this.frame(now))
     }
 
     end(): void {
         this.ended.abort()
+        this.column.element.remove()
         this.stage.remove()
         this.element.remove()
-        document.documentElement.classList.remove("op-stripped", "op-large")
+        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits")
     }
 
     /** Follow viser's canvas, which changes its size, or is replaced. */
     place(): void {
-        const canvas = sceneOf()
+        const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
         const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
         if (width !== this.width || height !== this.height) {
             clearTimeout(this.resizing)
@@ -96,6 +110,7 @@ class Face {
             observer.observe(canvas)
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }
+        this.voice.place(left, top, width, height)
         Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 
@@ -105,6 +120,7 @@ class Face {
             if (PHONE.matches) this.readings[i]!.prepend(lens.element)
             else this.sides[i]!.append(lens.element)
         })
+        this.column.arrange()
         this.place()
     }
 
@@ -158,45 +174,10 @@ class Face {
     }
 }
 
-function sceneOf(): HTMLElement | null {
-    return document.querySelector("canvas[data-engine]")
-}
-
-/** What the lab says, and the strip with its stage, if the page wants it; in one language. */
-class Part {
-    private readonly ended = new AbortController()
-    private readonly voice: Voice
-    private readonly bar: Bar
-    private face: Face | null = null
-
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
-        this.voice = new Voice(engine, texts, this.ended.signal)
-        this.bar = new Bar(engine, texts, this.voice)
-    }
-
-    look(hasStrip: boolean): void {
-        const { engine, texts } = this
-        if (hasStrip && !this.face) this.face = new Face(engine, texts)
-        if (!hasStrip) {
-            this.face?.end()
-            this.face = null
-        }
-        const scene = sceneOf()?.getBoundingClientRect() ?? new DOMRect()
-        this.face?.place()
-        this.bar.place(scene)
-        this.voice.place(scene)
-    }
-
-    end(): void {
-        this.face?.end()
-        this.ended.abort()
-    }
-}
-
 /** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
 export function showLab(): void {
     const engine = new RemoteEngine(), root = document.documentElement
-    let part: Part | null = null
+    let face: Face | null = null
     let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
     const look = () => {
@@ -205,13 +186,13 @@ export function showLab(): void {
         root.classList.remove("op-loading")
         engine.open(source["ticket"] ?? "")
         if (source["parts"] !== words) {
-            part?.end()
-            part = null
+            face?.end()
+            face = null
             words = source["parts"]!
         }
         if (!engine.ready) return
-        part ??= new Part(engine, { words: JSON.parse(words) as Record<string, string> })
-        part.look(source["strip"] === "yes")
+        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> })
+        face.place()
         if (calmed) return
         calmed = true // users who ask for less motion begin with a lab at rest
         engine.act({ do: "run", on: false })

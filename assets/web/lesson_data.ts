@@ -109,12 +109,14 @@ export interface SketchData {
     seconds: number
     top: number
     bottom: number
+    /** Of the circle that is followed, [m]; null for another path. */
+    radius?: number | null
 }
 
 export type BlockData =
     | { kind: "text"; links: (Act[] | null)[]; when?: [string, number[]] }
-    | { kind: "choice" | "quiz"; right: number }
-    | { kind: "number"; number: number; tolerance: number }
+    | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
+    | { kind: "number"; number?: number; tolerance?: number }
     | { kind: "open" }
     | SketchData
     | TaskData
@@ -135,6 +137,8 @@ export interface PageData {
     lesson: string
     /** What each symbol of the lesson means. */
     symbols: Record<string, string>
+    /** Whether this is the concept test, which tells nothing. */
+    test?: boolean
     scorm?: "1.2" | "2004" | null
     figures: SiteFigure[]
     steps: StepData[]

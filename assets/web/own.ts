@@ -8,7 +8,7 @@ const STATISTICS: Record<string, (values: number[]) => number> = {
     max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
 }
 
-export function accepted(given: number, { number, tolerance }: Extract<BlockData, { kind: "number" }>): boolean {
+export function accepted(given: number, { number = NaN, tolerance = 0 }: Extract<BlockData, { kind: "number" }>): boolean {
     return Math.abs(given - number) <= tolerance * (1 + 1e-9)
 }
 

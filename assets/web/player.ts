@@ -1,23 +1,23 @@
 // The player of a lesson: one step at a time, in a column beside the robots.
 
 import { made, refused } from "./controls"
-import { ask, ordered } from "./asked"
+import { ordered } from "./asked"
 import type { PageData } from "./lesson_data"
 import { Legend } from "./legend"
 import { given, thinned } from "./notes"
 import { said } from "./words"
 import { showOwn } from "./own"
-import { Comparison, elementOf, predict, predictionAt, type Form, type Prediction } from "./predictions"
+import { Comparison, elementOf } from "./predictions"
 import type { Progress } from "./progress"
 import { Stage } from "./stage"
+import { StepView, type Robots } from "./step"
 import { LocalStudent } from "./student"
 import { Task } from "./tasks"
 
 const JUDGED = 500 // [ms] between two looks at the tasks
-const SMALLEST = 0.75 // of the size of a formula
 const WIDE = matchMedia("(min-width: 60rem)") // as in site.css
 
-export class Player {
+export class Player implements Robots {
     index = 0
     stage: Stage | null = null
     readonly student: LocalStudent
@@ -27,24 +27,24 @@ export class Player {
     private readonly next = document.querySelector<HTMLButtonElement>("#next")!
     private readonly back = document.querySelector<HTMLButtonElement>("#back")!
     private readonly bar = [...document.querySelectorAll<HTMLElement>("#progress li")]
-    private readonly forms = new Map<number, Form>()
+    private readonly views: StepView[]
     private readonly legend: Legend
     private tasks: Task[] = []
-    private playing = false
+    playing = false
     private turn = 0 // so that a figure that arrives late is not shown
 
     constructor(readonly page: PageData, progress: Progress) {
         this.student = new LocalStudent(page, progress)
         this.legend = new Legend(page, symbol => this.stage?.light(symbol))
-        page.steps.forEach((_, i) => this.prepare(i))
+        this.views = page.steps.map((_, i) => this.prepared(i))
         this.student.changed = () => this.show()
         this.next.addEventListener("click", () => this.go(1))
         this.back.addEventListener("click", () => this.go(-1))
         addEventListener("hashchange", () => this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
-        WIDE.addEventListener("change", () => this.place())
+        WIDE.addEventListener("change", () => this.view?.place())
         this.turnable()
-        addEventListener("resize", () => this.formulas())
+        addEventListener("resize", () => this.view?.formulas())
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
         addEventListener("afterprint", () => this.section.prepend(this.head))
         document.querySelector("main")!.addEventListener("keydown", event => {
@@ -57,7 +57,10 @@ export class Player {
     }
 
     get notes() { return this.student.notes }
+    get ready(): boolean { return this.stage !== null }
     private get section(): HTMLElement { return this.sections[this.index]! }
+    /** The open step; undefined at the end. */
+    private get view(): StepView | undefined { return this.views[this.index] }
     /** On a narrow page, lead from the text to the robots and back. */
     private turnable(): void {
         const button = document.querySelector<HTMLButtonElement>("#turn")!
@@ -80,17 +83,14 @@ export class Player {
 
     /** Go to another step; a prediction that was not made is skipped. */
     private go(by: number): void {
-        const found = this.prediction(this.index)
-        if (by > 0 && found && this.waits(found)) {
-            elementOf(found).dispatchEvent(new Event("skip"))
+        const { view } = this
+        if (by > 0 && view?.waits) {
+            elementOf(view.prediction!).dispatchEvent(new Event("skip"))
             if (this.page.steps[this.index]!.kind === "run") return
         }
         void this.open(this.index + by, true)
     }
 
-    private readonly prediction = (index: number): Prediction | null =>
-        index < this.page.steps.length ? predictionAt(this.page.steps, index) : null
-    private readonly waits = (found: Prediction): boolean => this.notes.answers[String(found.step)] === undefined
     /** Show a step; after the last one comes the end. */
     async open(wanted: number, move = true): Promise<void> {
         const { page, student } = this
@@ -108,7 +108,7 @@ export class Player {
         })
         section.prepend(this.head)
         section.append(this.pager)
-        this.place()
+        this.view?.place()
         history.replaceState(null, "", `#${this.index + 1}`)
         if (move) {
             const words = section.querySelector<HTMLElement>(".words")!
@@ -142,135 +142,51 @@ export class Player {
 
     private readonly block = (place: number, index = this.index): HTMLElement =>
         this.sections[index]!.querySelector<HTMLElement>(`[data-block="${place}"]`)!
-    /** Make a step's parts answerable. */
-    private prepare(index: number): void {
+
+    /** Make a step's parts answerable, with options in the student's order. */
+    private prepared(index: number): StepView {
         const { page, student } = this
-        const step = page.steps[index]!
         const section = this.sections[index]!
-        section.dataset["kind"] = step.kind
-        step.blocks.forEach((block, i) => {
-            const element = this.block(i, index)
-            const options = element.querySelector(".options")
+        page.steps[index]!.blocks.forEach((_, i) => {
+            const options = this.block(i, index).querySelector(".options")
             if (options) ordered(options, student.name, `${page.lesson} ${index} ${i}`)
-            if (block.kind === "text") this.links(element, block.links)
-            else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
-                ask(page, element, block, `${index}.${i}`, student)
         })
-        const found = this.prediction(index)
-        if (found?.step === index) this.forms.set(index, predict(page, found, student))
-        section.querySelector(".play button")?.addEventListener("click", () => this.play())
         this.legend.add(section)
+        const beneath = section.querySelector<HTMLElement>(".beneath")!
+        return new StepView(page, index, student, this, { section, beneath, isWide: () => WIDE.matches })
     }
 
-    private links(element: HTMLElement, links: (unknown[] | null)[]): void {
-        element.querySelectorAll<HTMLButtonElement>("button[data-link]").forEach((button, i) => {
-            const acts = links[i]
-            if (!acts) {
-                button.disabled = true
-                button.append(` (${said(this.page, "site.link_only_lab")})`)
-            }
-            button.addEventListener("click", () => this.stage?.act(acts as never))
-        })
+    act(block: number, link: number): void {
+        const data = this.page.steps[this.index]!.blocks[block]!
+        if (data.kind === "text") this.stage?.act(data.links[link]!)
     }
 
-    /** Shrink formulas that are wider than the column while they can be read; others are scrolled, also by keys. */
-    private formulas(): void {
-        for (const formula of this.section.querySelectorAll<MathMLElement>("math[display=block]")) {
-            formula.style.fontSize = ""
-            const share = formula.clientWidth / formula.scrollWidth
-            if (share < 1) formula.style.fontSize = `${Math.max(0.98 * share, SMALLEST)}em`
-            formula.tabIndex = formula.scrollWidth > formula.clientWidth ? 0 : -1
-        }
-    }
-
-    /** Put the board into the strip below the robots or, on a narrow page, below its question. */
-    private place(): void {
-        const board = this.forms.get(this.index)?.board
-        if (!board) return
-        if (WIDE.matches) this.section.querySelector(".beneath")!.append(board)
-        else elementOf(this.prediction(this.index)!).querySelector(".committing")!.before(board)
-        dispatchEvent(new Event("resize"))
-    }
-
-    private play(): void {
-        const { index, page, stage } = this
+    play(): void {
+        const { index, page, stage, view } = this
         const step = page.steps[index]!
-        if (!stage || !step.script) return
-        const found = this.prediction(index)
+        if (!stage || !step.script || !view) return
+        const found = view.prediction
         const quantity = found?.data.kind === "sketch" ? found.data.quantity : "distance"
-        const told = this.section.querySelector<HTMLElement>(".play")!
-        const line = made("span", "", said(page, "lesson.playing"))
-        told.querySelectorAll("span").forEach(each => each.remove())
-        if (!this.section.querySelector(".op-watch")) told.append(line)
         this.playing = true
-        const comparison = this.comparison(found)
+        view.run()
         const draw = () => {
             if (!this.playing || this.stage !== stage) return
-            if (found?.data.kind === "sketch") comparison?.draw(stage.simulation.curve(quantity))
+            view.draw(stage.simulation.curve(quantity))
             requestAnimationFrame(draw)
         }
         stage.play(step.script, whole => {
             this.playing = false
-            line.remove()
-            if (!whole) return
-            this.student.sees(index, found?.step ?? index, thinned(stage.simulation.curve(quantity)))
+            if (whole) this.student.sees(index, found?.step ?? index, thinned(stage.simulation.curve(quantity)))
             this.run()
         })
         draw()
     }
 
-    /** The chart of a run in the strip, or the verdict in the column. */
-    private comparison(found: Prediction | null): Comparison | null {
-        const { section } = this
-        section.querySelectorAll(".compared").forEach(each => each.remove())
-        if (!found || this.waits(found)) return null
-        const comparison = new Comparison(this.page, found, this.notes)
-        const box = made("div", "compared", ...comparison.elements)
-        if (found.data.kind === "sketch") section.querySelector(".beneath")!.append(box)
-        else if (!this.happened(this.index)) return null
-        else {
-            box.classList.add("op-box")
-            const play = section.querySelector(".play")
-            if (play) play.after(box)
-            else section.querySelector(".beside")!.append(box)
-        }
-        return comparison
-    }
-
-    /** Whether a run has been seen; a run that only the lab can play is seen in its picture. */
-    private readonly happened = (index: number): boolean =>
-        Boolean(this.notes.played[String(index)]) || !this.page.steps[index]!.script
-    /** Show of a run what may be seen: nothing before the prediction, the words after it. */
     private run(): void {
-        const { page, index, section } = this
+        const { page, index, view, notes } = this
         const step = page.steps[index]
-        if (!step || step.kind !== "run") return
-        const found = this.prediction(index)
-        const waits = found !== null && this.waits(found)
-        if (step.truth && !waits) this.notes.truths[String(found?.step ?? index)] = step.truth
-        const told = section.querySelector<HTMLElement>(".play")
-        const button = told?.querySelector<HTMLButtonElement>("button.main")
-        if (button) {
-            button.disabled = waits || !this.stage
-            button.textContent = said(page, this.notes.played[String(index)] ? "lesson.replay" : "lesson.play")
-        }
-        section.querySelector(".before")?.remove()
-        if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", said(page, "lesson.predict_before")))
-        const read = section.dataset["read"] === "yes"
-        const open = !waits && (this.happened(index) || read)
-        section.classList.toggle("veiled", !open)
-        if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !this.stage)
-        section.querySelector(".read")?.remove()
-        if (!open && !waits) {
-            const reading = made("button", "read", said(page, "lesson.read"))
-            reading.type = "button"
-            reading.addEventListener("click", () => {
-                section.dataset["read"] = "yes"
-                this.run()
-            })
-            told?.append(" ", reading)
-        }
-        if (this.happened(index) && !waits) this.comparison(found)?.draw(this.notes.truths[String(found!.step)])
+        if (step?.truth && view && !view.waits) notes.truths[String(view.prediction?.step ?? index)] = step.truth
+        view?.run()
     }
 
     private tell(key: string): void {
@@ -288,19 +204,18 @@ export class Player {
             each.classList.toggle("done", i < notes.seen)
             each.classList.toggle("now", i === index)
         })
-        const found = this.prediction(index)
-        const waits = found !== null && this.waits(found)
+        const { view } = this
+        const waits = view?.waits ?? false
         back.disabled = index === 0
         next.disabled = index === length
         next.textContent = said(page, waits ? "site.skip_short" : index === length - 1 ? "lesson.finish" : "lesson.next")
         next.ariaLabel = waits ? said(page, "lesson.skip") : null
-        const seen = index === length || page.steps[index]!.kind !== "run" || this.happened(index)
+        const seen = !view || page.steps[index]!.kind !== "run" || view.happened
         next.classList.toggle("main", !waits && seen)
         pager.querySelectorAll(".commit").forEach(each => each.remove())
-        const form = this.forms.get(index)
-        if (form && !given(notes.answers[String(index)])) pager.append(form.commit)
+        if (view?.form && !view.committed) pager.append(view.form.commit)
         if (!this.playing) this.run()
-        this.formulas()
+        view?.formulas()
     }
 
     /** Show what was predicted, and what happened. */
@@ -312,7 +227,7 @@ export class Player {
         const counts = { done: String(notes.seen), all: String(page.steps.length), tasks }
         document.querySelector("#counts")!.textContent = said(page, "site.done", counts)
         page.steps.forEach((_, i) => {
-            const found = this.prediction(i)
+            const found = this.views[i]!.prediction
             if (found?.step !== i) return
             const question = elementOf(found).querySelector(".question")!.textContent!
             const answer = notes.answers[String(i)]

@@ -3,8 +3,8 @@
 import { made } from "./controls"
 import { judged } from "./asked"
 import type { BlockData, PageData, Script, SketchData, StepData } from "./lesson_data"
-import { said } from "./words"
-import { given, type Answer, type Notes } from "./notes"
+import { said, type Texts } from "./words"
+import { given, type Answer, type Curves, type Notes } from "./notes"
 import { Chart, type Axes, type Span } from "./chart"
 import { Drawing } from "./drawing"
 import { local } from "./numbers"
@@ -121,17 +121,10 @@ export class Comparison {
     }
 
     /** If the truth is not kept, the page says how to see it again. */
-    draw(truth: Notes["truths"][string] | undefined): void {
+    draw(truth: Curves | undefined): void {
         this.again.hidden = truth !== undefined
         const { chart, prediction } = this
-        if (!chart || prediction.data.kind !== "sketch") return
-        const { robots } = prediction.data
-        chart.ghost = curveOf(this.answer)
-        chart.lines = truth ? [
-            { name: robots[0]!, tone: "side0", dashed: false, times: truth.times, values: truth.tracker },
-            { name: robots[1]!, tone: "side1", dashed: true, times: truth.times, values: truth.follower },
-        ] : []
-        chart.draw()
+        if (chart && prediction.data.kind === "sketch") drawn(chart, prediction.data, this.answer, truth)
     }
 
     private get answer(): Answer | undefined {
@@ -139,18 +132,40 @@ export class Comparison {
     }
 }
 
-/** A chart with the axes of a prediction, and when the run's script holds and pulls. */
+/** A chart of a prediction, and of what happened, that stands by itself. */
+export function compared(page: Texts, data: SketchData, script: Script | null, answer: Answer | undefined, truth: Curves | undefined): HTMLElement {
+    const chart = chartWith(page, data, script, () => chart.draw())
+    drawn(chart, data, answer, truth)
+    return chart.element
+}
+
+/** Draw a prediction, and what happened. */
+function drawn(chart: Chart, { robots }: SketchData, answer: Answer | undefined, truth: Curves | undefined): void {
+    chart.ghost = curveOf(answer)
+    chart.lines = truth ? [
+        { name: robots[0]!, tone: "side0", dashed: false, times: truth.times, values: truth.tracker },
+        { name: robots[1]!, tone: "side1", dashed: true, times: truth.times, values: truth.follower },
+    ] : []
+    chart.draw()
+}
+
+/** The chart of a prediction, with what its run does. */
 function chartOf(page: PageData, { step }: Prediction, data: SketchData, changed: () => void): Chart {
     const run = page.steps[page.steps[step]!.kind === "run" ? step : step + 1]
-    const { label, unit, bottom, top, quantity, seconds } = data
-    const axes: Axes = { label, unit, bottom, top }
     const outline = page.figures[run?.figure ?? -1]?.paths[0]?.outline ?? []
-    const radius = radiusOf(Array.from({ length: outline.length / 2 }, (_, i) => outline.slice(2 * i, 2 * i + 2)))
+    const points = Array.from({ length: outline.length / 2 }, (_, i) => outline.slice(2 * i, 2 * i + 2))
+    return chartWith(page, { ...data, radius: data.radius ?? radiusOf(points) }, run?.script ?? null, changed)
+}
+
+/** A chart with the axes of a prediction, and when a script holds and pulls. */
+function chartWith(page: Texts, data: SketchData, script: Script | null, changed: () => void): Chart {
+    const { label, unit, bottom, top, quantity, seconds, radius } = data
+    const axes: Axes = { label, unit, bottom, top }
     if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: said(page, "chart.centre") }
     const chart = new Chart(page, axes, changed)
     chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
     chart.until = seconds
-    chart.spans = acting(run?.script ?? null)
+    chart.spans = acting(script)
     return chart
 }
 

@@ -15,7 +15,6 @@ const LOUD = 0.08, SOON = 0.06 // [s]
 const TONES = 100 // [ms] between changes of the tones
 const CALM = matchMedia("(prefers-reduced-motion: reduce)")
 const UPRIGHT = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)")
-const NARROW = 0.8 // see app/scene/stage.py
 
 type Command = Record<string, unknown>
 const ACTS: Record<string, Command> = {
@@ -75,15 +74,10 @@ export class Voice {
         this.show()
     }
 
-    /** Whether a newcomer is being invited to do something. */
-    get invites(): boolean { return !this.invitation.hidden }
-
-    /** Cover the part of the scene that is in sight. */
-    place(scene: DOMRect): void {
-        const covers = ['.mantine-Paper-root[style*="bottom: 0"]', ".mantine-Paper-root:has([data-step-plot])"]
-        const tops = covers.map(each => document.querySelector(each)?.getBoundingClientRect().top ?? scene.bottom)
-        const height = Math.min(scene.bottom, ...tops) - scene.top
-        const box = { left: `${scene.left}px`, top: `${scene.top}px`, width: `${scene.width}px`, height: `${height}px` }
+    /** Cover the scene, but not the window with a step's plot. */
+    place(left: number, top: number, width: number, height: number): void {
+        const plot = document.querySelector(".mantine-Paper-root:has([data-step-plot])")?.getBoundingClientRect().top ?? Infinity
+        const box = { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${Math.min(height, plot - top)}px` }
         Object.assign(this.element.style, box)
     }
 
@@ -198,28 +192,6 @@ export class Voice {
             act()
         })
         return button
-    }
-}
-
-/** Hold and run over a scene that has little room beside the panel, on a page without a strip. */
-export class Bar {
-    private readonly hold = made("button", "op-act")
-    private readonly run = made("button", "op-act")
-    private readonly element = made("div", "op-over-scene", this.hold, this.run)
-
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly voice: Voice) {
-        this.element.id = "op-bar"
-        this.hold.type = this.run.type = "button"
-        this.hold.addEventListener("click", () => engine.send({ do: "Hold" }))
-        this.run.addEventListener("click", () => engine.send({ do: "SetRunning" }))
-        voice.element.append(this.element)
-    }
-
-    place(scene: DOMRect): void {
-        const { state } = this.engine
-        this.element.hidden = this.voice.invites || !(UPRIGHT.matches || scene.width < NARROW * scene.height)
-        tell(this.hold, said(this.texts, state.held ? "run.let_go" : "run.hold"))
-        tell(this.run, said(this.texts, state.running ? "run.pause" : "run.run"))
     }
 }
 

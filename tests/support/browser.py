@@ -21,7 +21,6 @@ from onpath.app.lab.session import Session
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
 from onpath.app.page.first_minute import INVITATIONS, KEPT_AS
-from onpath.app.page.lesson_panel import LessonPanel
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
@@ -304,14 +303,21 @@ class Tab:
             return False
         if isinstance(feed.page, TeacherView):
             return True
-        panels = [part for part in feed.page._parts if isinstance(part, LessonPanel)]
-        shown = all(panel._version == self.lab.lessons.version for panel in panels)
-        return shown and feed.page._built == (page_key(self.lab),)
+        column, version = feed.page.column, self.lab.lessons.version
+        told = column is not None and column.version == version and bool(column.message)
+        return told and feed.page._built == (page_key(self.lab),)
 
     def wait_until_built(self) -> None:
         """Return when the browser has the whole page; a button of the page before does nothing."""
         wait_for(self.is_built)
         self.answer()
+        if self.lab.lessons.lesson is not None and not self._is_teachers():
+            version = self.lab.lessons.version
+            self.page.locator(f'#op-column[data-version="{version}"]').wait_for()
+
+    def _is_teachers(self) -> bool:
+        feed = self.scheduled.view
+        return isinstance(feed, LabFeed) and isinstance(feed.page, TeacherView)
 
     def press(self, name: str) -> None:
         """Press a button once the page is built."""

@@ -11,6 +11,7 @@ from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
 from onpath.app.exports.standalone.figure_words import PARTS
 from onpath.app.exports.standalone.page_style import page_style
+from onpath.app.steps.player_words import player_words
 from onpath.app.steps.step_html import live
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.schema import Lesson
@@ -24,14 +25,10 @@ POLICY = (
 WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
 requests to other servers."""
 MESSAGES = (
-    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.right"),
-    *("lesson.not_quite", "lesson.committed", "lesson.skipped", "site.draw_first"),
-    *("lesson.drawn", "lesson.passed", "lesson.predict_before", "lesson.finish"),
-    *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
-    *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
-    *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
-    *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    *("site.to_robots", "site.to_text", "site.skip_short", "site.review", "site.symbols", *PARTS),
+    *("lesson.finish", "lesson.next", "lesson.skip", "report.chosen", "report.not_happened"),
+    *("site.forgotten", "site.forget_sure", "site.read_done", "site.no_progress", "site.not_kept"),
+    *("site.no_platform", "site.no_room", "site.to_robots", "site.to_text", "site.skip_short"),
+    *("site.review", *PARTS),
 )
 
 
@@ -141,13 +138,9 @@ def _page(
 
 def _messages(words: Words) -> dict[str, str]:
     """The messages of a page's script; it fills in the {names} in them."""
-    messages = {key: words(key) for key in MESSAGES}
-    messages["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
+    messages = player_words(words) | {key: words(key) for key in MESSAGES}
     messages["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
-    messages["chart.point"] = words("chart.point", time="{time}")
     messages["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
     messages["site.refused"] = words("site.refused", reason="{reason}")
     messages["site.cut"] = words("site.cut", most="{most}")
-    names = {name: f"{{{name}}}" for name in ("quantity", "unit", "seconds")}
-    messages["site.sketch"] = words("site.sketch", **names)
     return messages | {"point": words("report.point")}

@@ -8,19 +8,10 @@ from typing import Any
 from onpath.app.common.templates import Markup
 from onpath.app.exports.site.step_figures import StepFigure, figure_of, lacking_words, step_figure
 from onpath.app.exports.site.task_data import task_data
+from onpath.app.steps.block_data import block_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
 from onpath.lessons.adaptive.branches import answers_meant
-from onpath.lessons.record import QUANTITIES
-from onpath.lessons.schema import (
-    Choice,
-    Lesson,
-    NumberQuestion,
-    Quiz,
-    Sketch,
-    Step,
-    Text,
-)
-from onpath.lessons.sides import robot_names
+from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.task_schema import Reference, Setting, Task
 from onpath.lessons.words import Words
 from onpath.models.control.settable import values_of
@@ -110,21 +101,11 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
 def _block(
     part: StepPart, lesson: Lesson, index: int, figure: StepFigure, words: Words
 ) -> dict[str, Any]:
-    block, laws = part.block, lesson.laws_shown(index)
-    data: dict[str, Any] = {"kind": part.kind}
+    block, data = part.block, block_data(part, lesson, index, words)
     if isinstance(block, Text):
         data["links"] = [figure.link(link.actions) for link in block.links]
         if block.when:
             data["when"] = answers_meant(block.when, lesson.steps, index, part.place)
-    elif isinstance(block, Sketch):
-        names = robot_names(laws, words)
-        data |= {name: getattr(block, name) for name in ("quantity", "seconds", "top", "bottom")}
-        data |= {"unit": QUANTITIES[block.quantity], "robots": list(names.values())}
-        data["label"] = words(f"quantity.{block.quantity}")
-    elif isinstance(block, Choice | Quiz):
-        data["right"] = [option.right for option in block.options].index(True)
-    elif isinstance(block, NumberQuestion):
-        data |= {"number": block.number, "tolerance": block.tolerance}
     elif isinstance(block, Task) and part.here:
         data |= task_data(block, figure.choice.parameters, lesson.scene_at(index).laws.named, words)
     return data

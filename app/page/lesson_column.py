@@ -1,0 +1,60 @@
+"""What the page's data channel tells of the lessons: the open step, and what is measured in it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import msgspec
+
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.lesson_message import lesson_message, measured
+from onpath.app.page.lesson_view import LessonView
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words
+
+EVERY = 3  # snapshots between two messages while a demonstration draws its curves
+
+
+class LessonColumn:
+    """Makes the messages when the lessons have changed; see app/viser_adapter/README.md.
+
+    Args:
+        student: session code of the lab; decides the order of options, see `option_order`.
+        submit: runs a function in another thread.
+
+    Attributes:
+        message: the open step, as JSON; empty until it has been made.
+        measured: verdicts and curves, as JSON.
+    """
+
+    def __init__(
+        self,
+        course: Course,
+        words: Words,
+        student: str,
+        submit: Callable[[Callable[[], None]], None],
+        first: PageSnapshot,
+    ) -> None:
+        self._course, self._words, self._student = course, words, student
+        self._submit, self._shown = submit, -1
+        self.message = self.measured = b""
+        self._turn = 0
+        self.follow(first)
+
+    @property
+    def version(self) -> int:
+        """Version of the lessons that the last message tells of; see `LessonSnapshot`."""
+        return self._shown
+
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Make the messages that have changed."""
+        run = LessonView(self._course, self._words, snapshot.lesson, self._student)
+        if run.version != self._shown:
+            self._shown = run.version
+            self._submit(lambda: self._tell(run))
+        self._turn += 1
+        if run.lesson is not None and not (run.playing and self._turn % EVERY):
+            self.measured = msgspec.json.encode(measured(run))
+
+    def _tell(self, run: LessonView) -> None:
+        self.message = msgspec.json.encode(lesson_message(run), enc_hook=str)

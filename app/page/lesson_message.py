@@ -1,0 +1,218 @@
+"""The open step of a lesson, or its end, as the page's data channel tells it: HTML and data.
+
+See app/viser_adapter/README.md, and assets/web/column.ts, which shows it beside the robots.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import msgspec
+
+from onpath.app.common.templates import part_of_page
+from onpath.app.page.lesson_end import end_html, ended_charts
+from onpath.app.page.lesson_html import route_line
+from onpath.app.page.lesson_view import LessonView
+from onpath.app.page.step_controls import has_controls
+from onpath.app.page.step_navigation import ways_of
+from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
+from onpath.app.steps.step_html import StepPart, part_of, step_html
+from onpath.lessons.option_order import LETTERS
+from onpath.lessons.progress import Answer
+from onpath.lessons.schema import (
+    Choice,
+    Lesson,
+    NumberQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+    Step,
+    Text,
+)
+from onpath.lessons.task_schema import Task
+
+END = "end"
+"""Name of the section that stands for the end of a lesson."""
+
+
+def lesson_message(run: LessonView) -> dict[str, Any]:
+    """The message; without a lesson, it says so."""
+    lesson = run.lesson
+    if lesson is None:
+        return {"is": "lesson", "lesson": "", "version": run.version}
+    message = {
+        "is": "lesson",
+        "lesson": lesson.name,
+        "version": run.version,
+        "index": run.index,
+        "ended": run.ended,
+        "test": run.is_test,
+        "playing": run.playing,
+        "symbols": {name: run.words(f"symbol.{name}") for name in lesson.front.symbols},
+        "head": _head(lesson, run),
+        "pager": part_of_page("lesson/pager.html", ways=ways_of(run), words=run.words),
+    }
+    return message | (_ended(run) if run.ended else _open(lesson, run))
+
+
+def measured(run: LessonView) -> dict[str, Any]:
+    """The verdicts on the open step's tasks, and the curves so far of a demonstration."""
+    verdicts = {
+        task: [{"passed": each.passed, "words": each.words} for each in found]
+        for task, found in run.verdicts.items()
+    }
+    truth = curves_data(run.truth) if run.playing and run.truth is not None else None
+    return {"is": "measured", "verdicts": verdicts, "truth": truth}
+
+
+def _head(lesson: Lesson, run: LessonView) -> str:
+    number = run.course.numbers().get(lesson.name, "")
+    title = f"{number}. {lesson.front.title}" if number else lesson.front.title
+    return part_of_page(
+        "lesson/head.html",
+        title=title,
+        route=route_line(run),
+        controls=not run.ended and has_controls(run.setup),
+        run=run,
+        lesson=lesson,
+        words=run.words,
+    )
+
+
+def _ended(run: LessonView) -> dict[str, Any]:
+    return {"sections": {END: end_html(run)}, "charts": ended_charts(run), "steps": []}
+
+
+def _open(lesson: Lesson, run: LessonView) -> dict[str, Any]:
+    """The open step and, before it, the one whose prediction it shows."""
+    found, index = run.prediction(), run.index
+    shown = {index: _parts(lesson, run)}
+    if found is not None and int(found[0]) != index:
+        shown = {int(found[0]): [_asked(lesson, int(found[0]), run)]} | shown
+    return {
+        "sections": {
+            str(at): step_html(
+                lesson, at, parts, run.words, plays=lesson.steps[at].script is not None
+            )
+            for at, parts in shown.items()
+        },
+        "steps": [
+            _step(step, lesson, i, shown.get(i, []), run) for i, step in enumerate(lesson.steps)
+        ],
+        "notes": _notes(run),
+    }
+
+
+def _parts(lesson: Lesson, run: LessonView) -> list[StepPart]:
+    """The parts of the open step that are meant for the student's answers."""
+    return [
+        part
+        for place in range(len(lesson.steps[run.index].blocks))
+        if (part := _part(lesson, place, run)) is not None
+    ]
+
+
+def _part(lesson: Lesson, place: int, run: LessonView) -> StepPart | None:
+    block = lesson.steps[run.index].blocks[place]
+    if isinstance(block, Prediction):
+        return _asked(lesson, run.index, run)
+    part, notes = part_of(lesson, run.index, place, run.words), run.notes
+    key = f"{run.index}.{place}"
+    if isinstance(block, Text):
+        html = run.text(place, block)
+        shown = None if html is None else msgspec.structs.replace(block, html=html)
+        return None if shown is None else replace(part, block=shown)
+    if isinstance(block, Task):
+        return replace(part, hints=notes.hints.get(block.id, 0), told=block.id in notes.tasks)
+    if isinstance(block, Quiz):
+        unknown = run.is_unknown(key)
+        return replace(
+            part,
+            order=run.order(block, key),
+            lettered=True,
+            told=key in notes.quiz and not unknown and not run.is_test,
+            remark=run.words("lesson.unknown") if unknown else "",
+        )
+    answered = notes.numbers if isinstance(block, NumberQuestion) else notes.written
+    return replace(part, told=key in answered)
+
+
+def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
+    """A prediction; what is right is told by the step that shows it."""
+    blocks = lesson.steps[index].blocks
+    place = next(i for i, block in enumerate(blocks) if isinstance(block, Prediction))
+    block, answer = blocks[place], run.answer()
+    assert isinstance(block, Prediction)
+    happened = run.step_is("run") and run.truth is not None and not run.playing
+    aside = part_of_page("lesson/beside.html", block=block, answer=answer, words=run.words)
+    return replace(
+        part_of(lesson, index, place, run.words),
+        order=run.order(block) if isinstance(block, Choice) else (),
+        lettered=True,
+        told=happened and answer is not None,
+        remark=_remark(block, run),
+        aside=aside if aside.strip() else None,
+    )
+
+
+def _remark(block: Prediction, run: LessonView) -> str:
+    """That a prediction is asked again, or that its answer is not known any more."""
+    first = run.first_answer()
+    if run.answer() is None and first is not None:
+        return _discuss(block, first, run)
+    return run.words("lesson.unknown") if run.is_unknown() else ""
+
+
+def _discuss(block: Prediction, first: Answer, run: LessonView) -> str:
+    if isinstance(block, Sketch) or first.option not in range(len(block.options)):
+        return run.words("lesson.discuss")
+    letter = LETTERS[run.order(block).index(first.option)]
+    return run.words("lesson.discuss_letter", letter=letter)
+
+
+def _step(
+    step: Step, lesson: Lesson, index: int, parts: list[StepPart], run: LessonView
+) -> dict[str, Any]:
+    """A step; a closed one has no blocks."""
+    known = {part.place: _block(part, lesson, index, run) for part in parts}
+    count = len(step.blocks) if parts else 0
+    return {
+        "kind": step.kind,
+        "optional": step.optional,
+        "script": None if step.script is None else script_data(step.script),
+        "blocks": [known.get(place, {"kind": "hidden"}) for place in range(count)],
+        "figure": -1,
+    }
+
+
+def _block(part: StepPart, lesson: Lesson, index: int, run: LessonView) -> dict[str, Any]:
+    data, block = block_data(part, lesson, index, run.words), part.block
+    if isinstance(block, Text):
+        data["links"] = [[msgspec.to_builtins(act) for act in link.actions] for link in block.links]
+    elif isinstance(block, Task):
+        data |= {"id": block.id, "best": block.best}
+    return data
+
+
+def _notes(run: LessonView) -> dict[str, Any]:
+    """The notes that the open step needs."""
+    notes, found, answer, key = run.notes, run.prediction(), run.answer(), f"{run.index}."
+    asked = "" if found is None else found[0]
+    known = answer is not None and not run.is_unknown()
+    here = {
+        name: {k: v for k, v in getattr(notes, name).items() if k.startswith(key)}
+        for name in ("quiz", "numbers", "written")
+    }
+    here["quiz"] = {k: v for k, v in here["quiz"].items() if k not in notes.unknown}
+    truth = None if run.playing else run.truth
+    return {
+        "step": run.index,
+        "seen": notes.seen,
+        "answers": {} if answer is None else {asked: answer_data(answer) if known else {}},
+        "truths": {} if truth is None else {asked: curves_data(truth)},
+        "played": dict.fromkeys(notes.played, True),
+        "tasks": notes.tasks,
+        "first": {},
+        **here,
+    }

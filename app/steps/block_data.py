@@ -1,0 +1,69 @@
+"""A part of a step as data for a page's script; see assets/web/lesson_data.ts."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from onpath.app.steps.step_html import StepPart
+from onpath.lessons.action_schema import Script
+from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch
+from onpath.lessons.sides import robot_names
+from onpath.lessons.words import Words
+
+
+def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict[str, Any]:
+    """What every page needs; what is right only if the part has its answers.
+
+    Args:
+        index: of the step.
+    """
+    block, data = part.block, dict[str, Any](kind=part.kind)
+    if isinstance(block, Sketch):
+        data |= sketch_data(block, lesson.laws_shown(index), words)
+    elif isinstance(block, Choice | Quiz) and part.told:
+        data["right"] = [option.right for option in block.options].index(True)
+    elif isinstance(block, NumberQuestion) and part.told:
+        data |= {"number": block.number, "tolerance": block.tolerance}
+    return data
+
+
+def sketch_data(block: Sketch, laws: dict[str, str], words: Words) -> dict[str, Any]:
+    """The axes of a sketch, and the names of the robots.
+
+    Args:
+        laws: control laws under which the prediction is tested.
+    """
+    names = ("quantity", "seconds", "top", "bottom")
+    return {
+        "kind": "sketch",
+        **{name: getattr(block, name) for name in names},
+        "unit": QUANTITIES[block.quantity],
+        "robots": list(robot_names(laws, words).values()),
+        "label": words(f"quantity.{block.quantity}"),
+    }
+
+
+def script_data(script: Script) -> dict[str, Any]:
+    """When a script holds and pulls, for the chart of its run."""
+    acts = [(each.at, msgspec.to_builtins(each)) for each in script.do]
+    names = ("hold", "pull", "release", "reset", "path")
+    return {
+        "until": script.until,
+        "do": [(at, {n: act[n] for n in names if act.get(n) is not None}) for at, act in acts],
+    }
+
+
+def answer_data(answer: Answer) -> dict[str, Any]:
+    """What was chosen or drawn; nothing for a prediction that was skipped."""
+    if answer.option is not None:
+        return {"option": answer.option}
+    return {"times": answer.times, "values": answer.values} if answer.times else {}
+
+
+def curves_data(truth: Truth) -> dict[str, Any]:
+    """The curves of both robots."""
+    return {"times": truth.times, "tracker": truth.tracker, "follower": truth.follower}

@@ -1,0 +1,26 @@
+"""The messages of the player of a step, wherever it is played; see assets/web/step.ts."""
+
+from __future__ import annotations
+
+from onpath.lessons.words import Words
+
+_PLAIN = (
+    *("lesson.playing", "lesson.replay", "lesson.play", "lesson.read", "lesson.predict_before"),
+    *("lesson.right", "lesson.not_quite", "lesson.no_number", "answer.check", "answer.keep"),
+    *("lesson.committed", "lesson.drawn", "lesson.skipped", "lesson.passed", "report.right"),
+    *("site.draw_first", "site.skipped", "site.again", "site.link_only_lab", "site.symbols"),
+)
+_FILLED = {
+    "lesson.passed_best": ("best", "unit"),
+    "chart.point": ("time",),
+    "site.sketch": ("quantity", "unit", "seconds"),
+}
+"""Messages whose values the page fills in."""
+
+
+def player_words(words: Words) -> dict[str, str]:
+    """Key -> text of every message."""
+    messages = {key: words(key) for key in _PLAIN}
+    return messages | {
+        key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
+    }

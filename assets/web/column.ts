@@ -1,0 +1,307 @@
+// The column of a lesson in the lab: the open step as its server tells it, beside the robots and above the strip.
+
+import type { LabMessage, RemoteEngine } from "./channel"
+import type { Verdict } from "./checks"
+import { made } from "./controls"
+import { Legend } from "./legend"
+import type { BlockData, PageData, Script, SketchData, StepData, TaskData } from "./lesson_data"
+import type { Answer, Curves, Notes } from "./notes"
+import { compared } from "./predictions"
+import { StepView, type Robots } from "./step"
+import { radiusOf } from "./strip"
+import type { Result, Student } from "./student"
+import { Task } from "./tasks"
+import { said, type Texts } from "./words"
+
+const END = "end" // the section that stands for the end of a lesson
+const NOTHING: Notes = {
+    step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {},
+}
+
+/** The open step of a lesson, or its end; without a lesson, `lesson` is empty. */
+export interface LessonMessage extends LabMessage {
+    is: "lesson"
+    lesson: string
+    version: number
+    index: number
+    ended: boolean
+    test: boolean
+    playing: boolean
+    symbols: Record<string, string>
+    /** HTML of what stands above and below the text, and of the steps by index. */
+    head: string
+    pager: string
+    sections: Record<string, string>
+    steps: StepData[]
+    notes?: Notes
+    charts?: { data: SketchData; script: Script | null; answer: Answer; truth: Curves | null }[]
+}
+
+/** What is measured in the open step. */
+export interface MeasuredMessage extends LabMessage {
+    is: "measured"
+    verdicts: Record<string, Verdict[]>
+    truth: Curves | null
+}
+
+/** Notes in the lab, where Python judges. */
+class RemoteStudent implements Student {
+    notes = NOTHING
+    readonly name = "" // the server puts options into their order
+    changed: () => void = () => {}
+    verdicts: Record<string, Verdict[]> = {}
+
+    constructor(private readonly engine: RemoteEngine) {}
+
+    goes(): void {}
+    sees(): void {}
+    predicts(_: number, { option, times, values, sure, reason, why }: Answer): void {
+        const given = { option, times, values, sure, reason, why }
+        this.engine.send({ do: "Predict", ...Object.fromEntries(Object.entries(given).filter(([, each]) => each !== undefined)) })
+    }
+    chooses(question: string, option: number): void { this.engine.send({ do: "AnswerQuiz", block: placeOf(question), option }) }
+    gives(question: string, given: number): void { this.engine.send({ do: "AnswerNumber", block: placeOf(question), given }) }
+    writes(question: string, typed: string): void { this.engine.send({ do: "AnswerInWords", block: placeOf(question), typed }) }
+    result({ id }: TaskData): Result | null {
+        const verdicts = this.verdicts[id]
+        return verdicts ? { verdicts, run: 0 } : null
+    }
+}
+
+/** A question's number among the parts of its step. */
+function placeOf(question: string): number {
+    return Number(question.split(".")[1])
+}
+
+export class Column implements Robots {
+    readonly element = made("main", "lesson")
+    /** Below the robots: where one draws, and sees what happened. */
+    readonly beneath = made("div", "beneath")
+    playing = false
+    private readonly head = made("div", "head")
+    private readonly pager = made("nav", "pager")
+    private readonly live = made("p", "op-unseen")
+    private readonly student: RemoteStudent
+    private readonly page: PageData
+    private readonly legend: Legend
+    private sections: Record<string, HTMLElement> = {}
+    private sources: Record<string, string[]> = {} // HTML of the parts of the sections, as the server sent it
+    private place = "" // lesson and step
+    private view: StepView | null = null
+    private tasks: Task[] = []
+
+    constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean, ended: AbortSignal) {
+        this.student = new RemoteStudent(engine)
+        this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
+        this.element.id = "op-column"
+        this.element.hidden = true
+        this.pager.ariaLabel = said(texts, "lesson.lessons")
+        this.live.setAttribute("role", "status")
+        this.element.append(this.live)
+        this.legend = new Legend(this.page, () => {})
+        this.element.addEventListener("click", event => this.press(event))
+        this.element.addEventListener("keydown", event => {
+            // keys of the focused control are not the lab's
+            if ((event.target as HTMLElement).closest("textarea, select, input, summary, a, button")) event.stopPropagation()
+        })
+        addEventListener("keydown", event => this.key(event), { signal: ended })
+        addEventListener("resize", () => this.view?.formulas(), { signal: ended })
+        this.student.changed = () => this.show()
+    }
+
+    get open(): boolean { return !this.element.hidden }
+    get ready(): boolean { return this.engine.connected }
+
+    play(): void {
+        this.engine.send({ do: "PlayStep" })
+    }
+
+    act(block: number, link: number): void {
+        const data = this.page.steps[this.view!.index]!.blocks[block]!
+        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] })
+    }
+
+    /** Show the open step, or what has changed in it. */
+    hear(message: LessonMessage): void {
+        const { page, student, element } = this
+        element.hidden = !message.lesson
+        document.documentElement.classList.toggle("op-lesson", this.open)
+        element.dataset["version"] = String(message.version)
+        document.documentElement.classList.remove("op-waits")
+        if (!this.open) return this.leave("")
+        const place = `${message.lesson}.${message.ended ? END : message.index}`
+        const isNew = place !== this.place
+        if (isNew) this.leave(place)
+        for (const step of message.steps) for (const block of step.blocks) this.bend(block)
+        Object.assign(page, { lesson: message.lesson, symbols: message.symbols, steps: message.steps, test: message.test })
+        student.notes = message.notes ?? NOTHING
+        this.playing = message.playing
+        put(this.head, message.head)
+        put(this.pager, message.pager)
+        this.fill(message)
+        if (isNew) this.begin()
+        this.show()
+    }
+
+    /** Show verdicts, and draw what is happening. */
+    measure({ verdicts, truth }: MeasuredMessage): void {
+        this.student.verdicts = verdicts
+        for (const task of this.tasks) task.follow()
+        if (truth && this.playing) this.view?.draw(truth)
+    }
+
+    /** Where the board is drawn depends on the window. */
+    arrange(): void {
+        this.view?.place()
+        this.view?.formulas()
+    }
+
+    private get section(): HTMLElement { return this.sections[this.place.slice(this.place.lastIndexOf(".") + 1)]! }
+
+    private leave(place: string): void {
+        this.place = place
+        this.element.classList.remove("turned")
+        this.view = null
+        this.tasks = []
+        for (const section of Object.values(this.sections)) section.remove()
+        this.sections = {}
+        this.sources = {}
+        this.beneath.replaceChildren()
+    }
+
+    /** A sketch is drawn on the path that the robots follow. */
+    private bend(block: BlockData): void {
+        if (block.kind === "sketch") block.radius = radiusOf(this.engine.path.lines[0] ?? [])
+    }
+
+    /** Put the sections into the page; in those that are there, parts that have changed are replaced. */
+    private fill({ sections, charts, index, ended }: LessonMessage): void {
+        const { view } = this
+        for (const [name, html] of Object.entries(sections)) {
+            const parts = [...parsed(html).children] as HTMLElement[]
+            const before = this.sources[name]
+            this.sources[name] = parts.map(part => part.outerHTML)
+            const isOpen = name === (ended ? END : String(index))
+            if (before) this.renew(name, before, parts, isOpen ? view : null)
+            else {
+                const number = name === END ? 0 : Number(name) + 1
+                const words = made("div", "words", ...parts)
+                Object.assign(words, { tabIndex: 0, role: "group" })
+                words.setAttribute("aria-labelledby", `title-${number}`)
+                const section = (this.sections[name] = made("section", `step${isOpen ? " open" : ""}`, words))
+                section.id = `step-${number}`
+                section.hidden = !isOpen
+                this.live.before(section)
+            }
+        }
+        if (!ended && !view) {
+            const { section, beneath, isWide } = this
+            this.view = new StepView(this.page, index, this.student, this, { section, beneath, isWide })
+        }
+        this.section.querySelectorAll("[data-chart]").forEach((each, i) => {
+            const { data, script, answer, truth } = charts![i]!
+            if (!each.childElementCount) each.append(compared(this.page, data, script, answer, truth ?? undefined))
+        })
+    }
+
+    /** Replace the parts of a section that have changed; the focus stays where it is. */
+    private renew(name: string, before: string[], parts: HTMLElement[], view: StepView | null): void {
+        const words = this.sections[name]!.querySelector(".words")!
+        const known = new Map<string, HTMLElement[]>() // the elements made of each part
+        ;[...words.children].filter(each => !isOurs(each)).forEach((each, i) => {
+            known.set(before[i]!, [...(known.get(before[i]!) ?? []), each as HTMLElement])
+        })
+        const focused = document.activeElement
+        const kept = parts.map(part => known.get(part.outerHTML)?.shift() ?? part)
+        const gone = [...known.values()].flat()
+        const at = gone.find(each => each.contains(focused))
+        const place = at ? controlsOf(at).indexOf(focused as HTMLElement) : -1
+        kept.forEach((each, i) => {
+            const next = words.children[i]
+            if (next !== each) words.insertBefore(each, next ?? null)
+        })
+        for (const each of gone) each.remove()
+        for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
+        const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])
+        if (successor) (controlsOf(successor)[place] ?? successor.querySelector<HTMLElement>("summary, button"))?.focus({ preventScroll: true })
+        if (view) this.follow()
+    }
+
+    /** A step has been opened. */
+    private begin(): void {
+        const { section, view } = this
+        const words = section.querySelector<HTMLElement>(".words")!
+        section.prepend(this.head)
+        section.append(this.pager)
+        if (view) this.legend.add(section)
+        this.follow()
+        view?.place()
+        words.scrollTo(0, 0)
+        if (this.element.contains(document.activeElement)) words.focus({ preventScroll: true }) // whoever pressed Next reads on
+    }
+
+    /** Follow the tasks of the open step. */
+    private follow(): void {
+        const { page, view, student } = this
+        this.tasks = page.steps[view?.index ?? -1]?.blocks.flatMap((block, i) =>
+            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell("lesson.passed"))] : [],
+        ) ?? []
+        for (const task of this.tasks) task.follow()
+    }
+
+    private show(): void {
+        const { view, pager } = this
+        pager.querySelectorAll(".commit").forEach(each => each.remove())
+        if (view?.form && !view.committed) pager.querySelector(".ways")!.append(view.form.commit)
+        document.documentElement.classList.toggle("op-waits", view?.waits ?? false)
+        view?.run()
+        view?.formulas()
+    }
+
+    private tell(key: string): void {
+        this.live.textContent = said(this.page, key)
+    }
+
+    private press(event: MouseEvent): void {
+        const turn = (event.target as HTMLElement).closest<HTMLElement>(".turn")
+        if (turn) return turn.setAttribute("aria-pressed", String(this.element.classList.toggle("turned")))
+        const sent = (event.target as HTMLElement).closest<HTMLElement>("[data-send]")?.dataset["send"]
+        if (!sent) return
+        const commands = JSON.parse(sent) as Record<string, unknown> | Record<string, unknown>[]
+        for (const command of [commands].flat()) this.engine.send(command)
+    }
+
+    /** The keys that turn pages do so in a lesson, wherever the focus is. */
+    private key(event: KeyboardEvent): void {
+        const by = { PageDown: 1, PageUp: -1 }[event.key]
+        if (!by || !this.open || document.querySelector("[role=dialog]")) return
+        event.preventDefault()
+        this.engine.send({ do: "GoToStep", by })
+    }
+}
+
+/** The elements of our own server's HTML. */
+function parsed(html: string): DocumentFragment {
+    const template = document.createElement("template")
+    template.innerHTML = html
+    return template.content
+}
+
+/** Put HTML into an element unless it is there; a focused button is replaced by its successor. */
+function put(element: HTMLElement, html: string): void {
+    if (element.dataset["html"] === html) return
+    element.dataset["html"] = html
+    const at = controlsOf(element).indexOf(document.activeElement as HTMLElement)
+    element.replaceChildren(parsed(html))
+    const buttons = controlsOf(element)
+    if (at >= 0) buttons[Math.min(at, buttons.length - 1)]?.focus({ preventScroll: true })
+}
+
+/** Whether the script has made an element, not the server. */
+function isOurs(element: Element): boolean {
+    return element.matches(".compared, .symbols, .before")
+}
+
+function controlsOf(element: Element): HTMLElement[] {
+    return [...element.querySelectorAll<HTMLElement>("button, input, select, textarea, summary")]
+}

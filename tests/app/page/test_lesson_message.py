@@ -1,0 +1,250 @@
+"""What a page is told of the lessons: every step, what it may know, and what its buttons send."""
+
+from __future__ import annotations
+
+import json
+import re
+from html import unescape
+from typing import Any
+
+import msgspec
+import pytest
+from msgspec.structs import replace
+
+from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.commands.command_codec import command_from
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.lesson_message import lesson_message, measured
+from onpath.app.page.lesson_view import LessonView
+from onpath.app.page.step_navigation import RECORD
+from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
+from onpath.lessons.progress import Answer, Truth
+from onpath.lessons.schema import KINDS, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Step
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.built_in import built_in_course
+from tests.support.lab import do, run, store
+
+COURSE = built_in_course()[0]
+STEPS = [
+    (name, index)
+    for name in (*COURSE.lessons, BEFORE)
+    for index in range(len(COURSE.lesson(name, "en").steps))
+]
+TRUTH = Truth("distance", (0.0, 0.5, 2.0), (0.0, 47.0, 1.0), (0.0, 2.0, 0.5))
+
+
+@pytest.fixture(scope="module")
+def lab() -> Lab:
+    return Lab(store(), FIVE_BAR, COURSE)
+
+
+def view(lab: Lab, student: str = "") -> LessonView:
+    """The lessons of a lab, as its page sees them."""
+    snapshot = take_page_snapshot(lab, 1.0)
+    return LessonView(COURSE, Words(lab.lessons.progress.language), snapshot.lesson, student)
+
+
+def told(lab: Lab, student: str = "") -> dict[str, Any]:
+    """The message, as the page reads it."""
+    return json.loads(msgspec.json.encode(lesson_message(view(lab, student)), enc_hook=str))
+
+
+def at(lab: Lab, name: str, index: int, **notes: Any) -> None:
+    """Open a step, with these notes on its lesson and no others."""
+    lab.lessons.progress = replace(lab.lessons.progress, notes={}, route="", ended=False)
+    do(lab, TakeStep(name, index))
+    lessons = lab.lessons
+    changed = replace(lessons.notes, **notes)
+    lessons.progress = replace(lessons.progress, notes={name: changed})
+
+
+def html(message: dict[str, Any]) -> str:
+    """Everything that is shown, and the hidden step with the question."""
+    return "".join([message["head"], *message["sections"].values(), message["pager"]])
+
+
+def sent(page: str) -> list[dict[str, Any]]:
+    """All commands of the buttons in a page."""
+    found = list[dict[str, Any]]()
+    for text in re.findall(r"data-send='([^']*)'", page):
+        commands = json.loads(unescape(text))
+        found += commands if isinstance(commands, list) else [commands]
+    return found
+
+
+def step_of(lab: Lab) -> Step:
+    step = lab.lessons.step
+    assert step is not None
+    return step
+
+
+@pytest.mark.parametrize("language", COURSE.languages())
+@pytest.mark.parametrize(("name", "index"), STEPS)
+def test_every_step_is_told_with_all_its_parts(
+    lab: Lab, name: str, index: int, language: str
+) -> None:
+    do(lab, c.SetLanguage(language))
+    at(lab, name, index)
+    message, step = told(lab), step_of(lab)
+    shown = message["sections"][str(index)]
+    assert step.title in unescape(shown) and message["index"] == index
+    blocks = message["steps"][index]["blocks"]
+    for place, (block, data) in enumerate(zip(step.blocks, blocks, strict=True)):
+        if data["kind"] == "hidden":
+            assert f'data-block="{place}"' not in shown and getattr(block, "when", "")
+            continue
+        assert data["kind"] == KINDS[type(block)]
+        assert shown.count(f'data-block="{place}"') == 1
+    for command in sent(html(message)):
+        command_from(json.dumps(command))
+    for data in blocks:
+        for link in data.get("links", ()):
+            command_from(json.dumps({"do": "Act", "actions": link}))
+
+
+@pytest.mark.parametrize(("name", "index"), STEPS)
+def test_no_answer_is_told_before_it_is_due(lab: Lab, name: str, index: int) -> None:
+    """Nor what is right: pages could be read by whoever wants to know."""
+    do(lab, c.SetLanguage("en"))
+    at(lab, name, index)
+    message = told(lab)
+    blocks = [block for step in message["steps"] for block in step["blocks"]]
+    assert not any({"right", "number", "tolerance"} & set(block) for block in blocks)
+    assert "data-answer" not in html(message) and 'class="after"' not in html(message)
+
+
+def places(kind: type) -> list[tuple[str, int, int]]:
+    """All questions of a kind: lesson, step, and place in the step."""
+    return [
+        (name, index, place)
+        for name in COURSE.lessons
+        for index, step in enumerate(COURSE.lesson(name, "en").steps)
+        for place, block in enumerate(step.blocks)
+        if isinstance(block, kind)
+    ]
+
+
+@pytest.mark.parametrize(("name", "index", "place"), places(Quiz))
+def test_a_quiz_is_judged_once_it_is_answered(lab: Lab, name: str, index: int, place: int) -> None:
+    do(lab, c.SetLanguage("en"))
+    at(lab, name, index, quiz={f"{index}.{place}": 1})
+    message, block = told(lab), step_of(lab).blocks[place]
+    assert isinstance(block, Quiz)
+    data = message["steps"][index]["blocks"][place]
+    assert block.options[data["right"]].right
+    assert message["notes"]["quiz"] == {f"{index}.{place}": 1}
+    assert message["sections"][str(index)].count("data-answer") >= len(block.options)
+
+
+@pytest.mark.parametrize("kind", [NumberQuestion, OpenQuestion])
+def test_a_number_and_a_text_are_kept_and_the_model_answer_is_told(lab: Lab, kind: type) -> None:
+    for name, index, place in places(kind):
+        key = f"{index}.{place}"
+        given = {"numbers": {key: 3.5}} if kind is NumberQuestion else {"written": {key: "<b>so"}}
+        at(lab, name, index, **given)
+        message = told(lab)
+        assert {n: message["notes"][n] for n in given} == given
+        assert "after" in message["sections"][str(index)]
+        at(lab, name, index)
+        assert 'class="after"' not in told(lab)["sections"][str(index)]
+
+
+@pytest.mark.parametrize(("name", "index", "place"), [*places(Choice), *places(Sketch)])
+def test_what_is_right_is_told_by_the_run_that_shows_it(
+    lab: Lab, name: str, index: int, place: int
+) -> None:
+    do(lab, c.SetLanguage("en"))
+    steps = COURSE.lesson(name, "en").steps
+    block, shows = steps[index].blocks[place], index if steps[index].kind == "run" else index + 1
+    drawn = Answer(times=(0.0, 1.0), values=(1.0, 2.0))
+    answer = Answer(option=1, sure="certain") if isinstance(block, Choice) else drawn
+    for seen in (False, True):
+        notes: dict[str, Any] = {"answers": {str(index): answer}}
+        if seen:
+            notes |= {"truths": {str(index): TRUTH}, "played": (str(shows),)}
+        at(lab, name, shows, **notes)
+        message = told(lab)
+        data = message["steps"][index]["blocks"][place]
+        section = message["sections"][str(index)]
+        assert ("right" in data) == (seen and isinstance(block, Choice))
+        assert ("data-answer" in section) == (seen and isinstance(block, Choice))
+        kept = message["notes"]
+        assert kept["answers"][str(index)]["option" if answer.option else "times"]
+        assert (str(index) in kept["truths"]) == seen and bool(kept["played"]) == seen
+        assert ("You were: certain" in unescape(section)) == isinstance(block, Choice)
+
+
+def test_options_stand_in_the_students_order_and_for_a_projector_in_the_authors(lab: Lab) -> None:
+    name, index, place = places(Quiz)[0]
+    at(lab, name, index)
+
+    def order(student: str) -> list[str]:
+        return re.findall(r'data-option="(\d)"', told(lab, student)["sections"][str(index)])
+
+    orders = {tuple(order(f"student {i}")) for i in range(20)}
+    assert len(orders) > 3
+    do(lab, c.SetPresenting(True))
+    block = step_of(lab).blocks[place]
+    assert isinstance(block, Quiz)
+    assert order("student 1")[: len(block.options)] == [str(i) for i in range(len(block.options))]
+    do(lab, c.SetPresenting(False))
+
+
+def test_the_concept_test_tells_nothing_and_is_handed_in(lab: Lab) -> None:
+    do(lab, c.SetLanguage("en"))
+    last = len(COURSE.lesson(BEFORE, "en").steps) - 1
+    at(lab, BEFORE, last, quiz={f"{last}.0": 2})
+    message = told(lab)
+    assert message["test"] and message["notes"]["quiz"] == {f"{last}.0": 2}
+    assert "data-answer" not in html(message) and "right" not in message["steps"][last]["blocks"][0]
+    assert "1 of 12 answered" in message["pager"] and "Hand in" in message["pager"]
+    assert "CloseLesson" in html(message) and "BeginStepAnew" not in html(message)
+    do(lab, c.FinishLesson())
+    ended = told(lab)
+    assert ended["ended"] and "Handed in" in html(ended) and ended["charts"] == []
+    steps = COURSE.lesson(BEFORE, "en").steps
+    quizzes = [block for step in steps for block in step.blocks if isinstance(block, Quiz)]
+    options = [option for quiz in quizzes for option in quiz.options]
+    assert options and not any(str(option.answer) in html(ended) for option in options)
+    at(lab, AFTER, 0, handed_in=True)
+    do(lab, c.FinishLesson())
+    assert "Correct answer" in html(told(lab))
+
+
+def test_verdicts_and_curves_are_measured(lab: Lab) -> None:
+    do(lab, c.SetLanguage("en"))
+    at(lab, "01-path-or-timetable", 6)
+    run(lab, 1.0)
+    found = json.loads(msgspec.json.encode(measured(view(lab))))
+    assert found["truth"] is None and found["verdicts"]
+    for verdicts in found["verdicts"].values():
+        assert all(set(each) == {"passed", "words"} for each in verdicts)
+
+
+@pytest.mark.parametrize("name", COURSE.lessons)
+def test_the_end_has_a_place_for_each_chart(lab: Lab, name: str) -> None:
+    do(lab, c.SetLanguage("en"))
+    lesson = COURSE.lesson(name, "en")
+    drawn = Answer(times=(0.0, 1.0), values=(1.0, 2.0))
+    answers = {
+        str(i): drawn if isinstance(block, Sketch) else Answer(option=0)
+        for i, step in enumerate(lesson.steps)
+        for block in step.predictions()
+    }
+    at(lab, name, len(lesson.steps) - 1, answers=answers)
+    do(lab, c.FinishLesson())
+    message = told(lab)
+    page = html(message)
+    assert page.count("data-chart") == len(message["charts"])
+    assert len(message["charts"]) == sum(
+        isinstance(b, Sketch) for s in lesson.steps for b in s.blocks
+    )
+    for command in sent(page):
+        if command != RECORD:
+            command_from(json.dumps(command))
+    assert [str(point) in page for point in lesson.front.takeaway] == [True] * len(
+        lesson.front.takeaway
+    )
