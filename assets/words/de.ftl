@@ -105,20 +105,15 @@ lesson-no_number = das ist keine Zahl
 lesson-again = Neu aufbauen
 lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
-lesson-lab = Das Labor
 lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
-lesson-draw_first = Zeichne mit der Maus oder dem Finger auf die Tafel, von links nach rechts, oder mit Zahlen.
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
 lesson-drawn = Zeichne noch einmal, oder lege dich fest.
-lesson-numbers = Lieber mit Zahlen zeichnen
-lesson-at = bei { $time } s [{ $unit }]
 lesson-yours = du
 lesson-right = Richtig.
 lesson-not_quite = Nicht ganz.
-lesson-the_answer = Die Antwort: { $answer }
 lesson-discuss = Besprich die Frage mit jemandem neben dir und beantworte sie dann noch einmal.
 lesson-discuss_letter = Besprich die Frage mit jemandem neben dir und beantworte sie dann noch einmal. Deine erste Antwort war { $letter }.
 lesson-second = Nach der Diskussion:
@@ -556,7 +551,6 @@ run-step = Schritt
 run-reset = Zurücksetzen
 run-view = Ansicht zurück
 run-rate = Zeit läuft mit
-run-rate_hint = Simulierte Sekunden je Sekunde
 
 controls-copy = Für beide
 controls-copy_hint = Hand und Bremse wirken auf beide Roboter gleich
@@ -731,11 +725,7 @@ axis-force = Kraft [N]
 
 ## Die letzte Minute, und Dateien
 
-past-title = Zurückblicken
-past-ago = Sekunden zuvor
-past-ago_hint = Hält an und zeigt das Labor, wie es war
 past-go_on = Von hier aus weiter
-past-go_on_hint = Verwirft, was danach kam; das lässt sich rückgängig machen. Laufen lassen kehrt stattdessen in die Gegenwart zurück. Taste: G
 past-undo = Verworfenes zurückholen
 past-undo_hint = Nimmt „Von hier aus weiter“ zurück und legt beiseite, was seither geschah. Taste: U
 

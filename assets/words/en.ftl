@@ -107,20 +107,15 @@ lesson-no_number = this is not a number
 lesson-again = Set up again
 lesson-play = Let it happen
 lesson-read = Read on without it
-lesson-lab = The lab
 lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
-lesson-draw_first = Draw on the board with the mouse or a finger, from left to right, or with numbers.
 lesson-committed = You have committed to your prediction. Now see what happens.
 lesson-drawn = Draw again, or commit.
-lesson-numbers = Draw with numbers instead
-lesson-at = at { $time } s [{ $unit }]
 lesson-yours = you
 lesson-right = Right.
 lesson-not_quite = Not quite.
-lesson-the_answer = The answer: { $answer }
 lesson-discuss = Discuss the question with your neighbour, then answer it again.
 lesson-discuss_letter = Discuss the question with your neighbour, then answer it again. Your first answer was { $letter }.
 lesson-second = After the discussion:
@@ -504,7 +499,6 @@ run-step = Step
 run-reset = Reset
 run-view = Reset view
 run-rate = Time runs at
-run-rate_hint = Simulated seconds per second
 
 controls-copy = Copy to both
 controls-copy_hint = Pulling and holding act on both robots in the same way
@@ -679,11 +673,7 @@ axis-force = force [N]
 
 ## The last minute, and files
 
-past-title = Look back
-past-ago = Seconds ago
-past-ago_hint = Pauses and shows the lab as it was
 past-go_on = Go on from here
-past-go_on_hint = Discards what came after; can be undone. Run returns to the present instead. Key: G
 past-undo = Restore what was discarded
 past-undo_hint = Reverses “Go on from here”, and sets aside what was done since. Key: U
 

@@ -21,7 +21,9 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.stored import to_data
-from onpath.app.page import lesson_html as page
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.lesson_message import lesson_message
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.kept.known_choices import of_today
@@ -78,13 +80,11 @@ def chosen(course: Course) -> dict[str, Any]:
     return states[0]["lessons"]
 
 
-def shown(lab: Lab) -> str:
-    """The open step's question as the student sees it, with what it says of an earlier answer."""
-    run, found = lab.lessons, lab.lessons.prediction()
-    assert found is not None
-    answer = run.answer()
-    option = answer.option if answer else None
-    return page.question(found[1], (0, 1), option, True, run.words, run.is_unknown())  # type: ignore[arg-type]
+def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
+    """The HTML of the open step, and the answers that the page is told."""
+    run, lesson = lab.lessons, take_page_snapshot(lab, 1.0).lesson
+    message = lesson_message(LessonView(run.course, run.words, lesson))
+    return "".join(message["sections"].values()), message["notes"]["answers"]
 
 
 # Stored by an older version.
@@ -96,9 +96,9 @@ def test_a_choice_of_an_older_version_is_not_shown_and_it_says_so(tmp_path: Path
     assert notes.unknown == (ASKED, QUIZ) and QUIZ not in notes.quiz
     answer = run.answer()
     assert answer is not None and answer.option is None and not run.waits  # the result was seen
-    said = shown(lab)
-    assert ENGLISH("lesson.unknown") in said and ENGLISH("lesson.right") not in said
-    assert "font-weight:700" not in said  # no option is marked as the student's
+    said, answers = shown(lab)
+    assert ENGLISH("lesson.unknown") in said
+    assert answers == {ASKED: {}}  # no option is marked as the student's
     assert notes.answers["1"].times == (0.0, 1.0)  # the curve is as it was
     assert notes.tasks == {"hold": 0.0} and notes.seen == 8
 
@@ -134,7 +134,7 @@ def test_options_in_another_order_are_found_again(tmp_path: Path) -> None:
     lab = returned(course_of(tmp_path / "after", other), kept)
     answer = lab.lessons.answer()
     assert answer is not None and answer.option == 0 and lab.lessons.notes.quiz == {QUIZ: 0}
-    assert lab.lessons.notes.unknown == () and ENGLISH("lesson.right") in shown(lab)
+    assert lab.lessons.notes.unknown == () and shown(lab)[1] == {ASKED: {"option": 0}}
 
 
 @pytest.mark.parametrize("text", ["that one", "something else"])
@@ -143,7 +143,7 @@ def test_an_option_of_another_text_is_another_one(tmp_path: Path, text: str) -> 
     lab = returned(course_of(tmp_path / "after", changed('"that"', f'"{text}"')), kept)
     assert lab.lessons.notes.unknown == (ASKED,)
     assert lab.lessons.notes.quiz == {QUIZ: 1}  # the quiz is the same
-    assert ENGLISH("lesson.unknown") in shown(lab)
+    assert ENGLISH("lesson.unknown") in shown(lab)[0]
 
 
 def test_an_option_with_a_key_may_be_reworded(tmp_path: Path) -> None:
@@ -163,7 +163,7 @@ def test_a_translation_has_the_keys_of_the_first_language(tmp_path: Path) -> Non
     lab = returned(course_of(tmp_path / "after", de=reworded), kept)
     answer = lab.lessons.answer()
     assert answer is not None and answer.option == 1 and not lab.lessons.notes.unknown
-    assert Words("de")("lesson.unknown") not in shown(lab)
+    assert Words("de")("lesson.unknown") not in shown(lab)[0]
 
 
 def test_a_step_that_asks_for_a_curve_now_shows_no_choice(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,12 +12,10 @@ from markupsafe import Markup
 from onpath.app.cli.main import run_command
 from onpath.app.lab.dry_runs.course_check import lab_at, play, play_course, solved
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.lesson_state import LessonState
-from onpath.app.page.lesson_html import task as task_html
+from onpath.app.steps.step_html import part_of, step_html
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.labels import setting_label
-from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.schema import Choice, Lesson, Quiz, Step
 from onpath.lessons.task_schema import Once, Order, Setting, Task
 from onpath.lessons.words import Words, languages
@@ -105,11 +104,13 @@ def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
 
 
 def test_every_task_says_why_it_worked_and_only_then() -> None:
-    for lesson, _, task in TASKS:
+    words = Words("en")
+    for lesson, step, task in TASKS:
+        index, place = lesson.steps.index(step), step.blocks.index(task)
         for done in (False, True):
-            notes = Notes(tasks={task.id: 0.0} if done else {})
-            run = LessonState(COURSE, Progress(lesson.name, notes={lesson.name: notes}))
-            assert task.passed and (task.passed in task_html(task, [], run)) == done
+            part = replace(part_of(lesson, index, place, words), told=done)
+            page = step_html(lesson, index, [part], words)
+            assert task.passed and ('class="after"' in page) == done
 
 
 def test_references_are_where_the_lessons_are() -> None:

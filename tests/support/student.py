@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
+import re
 import socket
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from html import unescape
 from types import TracebackType
 from typing import Any, Self
 from urllib.parse import urlsplit
@@ -15,6 +18,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from onpath.app.viser_adapter.addresses import place_of, storage_key
+from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.simulated_browser import MOVING
 
@@ -27,6 +31,7 @@ class Student:
     Args:
         address: URL of the websocket.
         through: port on this machine to connect to, instead of that in the address.
+        lessons: whether it opens the data channel, to see lessons.
         headers: headers of the handshake.
 
     Attributes:
@@ -34,14 +39,20 @@ class Student:
         widgets: properties of the widgets on the page, by id.
         moving: number of updates of the poses.
         received: amount of data, [B].
+        lesson: the last message of the data channel about the lessons; see `lesson_message`.
     """
 
-    def __init__(self, address: str, through: int | None = None, **headers: str) -> None:
+    def __init__(
+        self, address: str, through: int | None = None, lessons: bool = False, **headers: str
+    ) -> None:
         self.address, self.headers = address, headers
         self._through, self.moving, self.received = through, 0, 0
         self.kept: dict[str, str] = {}
         self.widgets: dict[str, dict[str, Any]] = {}
         self._socket: ClientConnection | None = None
+        self._lessons, self._ticket = lessons, ""
+        self._data: ClientConnection | None = None
+        self.lesson: dict[str, Any] = {}
 
     def __enter__(self) -> Self:
         return self
@@ -51,8 +62,9 @@ class Student:
 
     def close(self) -> None:
         """Close the tab."""
-        if self._socket is not None:
-            self._socket.close()
+        for each in (self._socket, self._data):
+            if each is not None:
+                each.close()
 
     @property
     def code(self) -> str:
@@ -63,6 +75,7 @@ class Student:
     def open(self) -> None:
         """Open the page, or open it again."""
         self.widgets.clear()
+        self.lesson, self._ticket = {}, ""
         way = socket.create_connection(("127.0.0.1", self._through)) if self._through else None
         self._socket = connect(
             self.address,
@@ -95,8 +108,10 @@ class Student:
             try:
                 raw = self._socket.recv(timeout=0.2)
             except TimeoutError:
+                self._hear()
                 continue
             self._take_frame(raw)
+            self._hear()
 
     def read_what_was_sent(self) -> None:
         """Read what the server had sent when it heard of this."""
@@ -126,6 +141,10 @@ class Student:
 
     def set(self, label: str, value: Any) -> None:
         """Set the value of a widget, as by moving a slider or pressing a button."""
+        if self._lessons:
+            self.read(lambda: self.has_widget(label))
+            if commands := self._commands(label):
+                return self.tell(*commands)
         widget = self.find(label)
         self.send("GuiUpdateMessage", uuid=widget["uuid"], updates={"value": value})
 
@@ -139,9 +158,16 @@ class Student:
         assert self._socket is not None
         self._socket.send(packed(kind, **fields))
 
+    def tell(self, *commands: dict[str, Any]) -> None:
+        """Send commands through the data channel."""
+        self.read(lambda: self._data is not None)
+        assert self._data is not None
+        for command in commands:
+            self._data.send(json.dumps(command))
+
     def has_widget(self, label: str) -> bool:
         """Whether the page has a widget whose label or option begins with `label`."""
-        return any(text.startswith(label) for text in self._labels())
+        return bool(self._commands(label)) or any(text.startswith(label) for text in self._labels())
 
     def count(self, label: str) -> int:
         """Number of widgets with this label."""
@@ -150,7 +176,61 @@ class Student:
     def sees(self, text: str) -> bool:
         """Whether the page shows a text."""
         parts = ("content", "_markdown")
-        return any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
+        return text in self.column or any(
+            text in str(w.get(part)) for w in self.widgets.values() for part in parts
+        )
+
+    @property
+    def column(self) -> str:
+        """The HTML of the open step of a lesson, or of its end; empty without one."""
+        if not self.lesson.get("lesson"):
+            return ""
+        at = "end" if self.lesson["ended"] else str(self.lesson["index"])
+        return (
+            "".join(self.lesson[part] for part in ("head", "pager")) + self.lesson["sections"][at]
+        )
+
+    def _commands(self, label: str) -> list[dict[str, Any]]:
+        """What the shortest button of the column sends whose name begins with a label."""
+        found = dict[str, str]()
+        for attributes, text in re.findall(r"<button([^>]*)>([^<]*)</button>", self.column):
+            sent = re.search("data-send='([^']*)'", attributes)
+            name = re.search('aria-label="([^"]*)"', attributes)
+            if sent is not None and (named := unescape(name[1] if name else text)).startswith(
+                label
+            ):
+                found[named] = unescape(sent[1])
+        if not found:
+            return []
+        commands = json.loads(found[min(found, key=len)])
+        return commands if isinstance(commands, list) else [commands]
+
+    def _hear(self) -> None:
+        """Open the data channel once its ticket is known, and take what it tells."""
+        if not self._lessons:
+            return
+        found = re.search(
+            'data-ticket="([^"]+)"', "".join(str(w.get("content")) for w in self.widgets.values())
+        )
+        if found is None:
+            return
+        if found[1] != self._ticket:
+            self._ticket = found[1]
+            self._data = connect(
+                self.address,
+                subprotocols=[Subprotocol(DATA)],
+                additional_headers=self.headers,
+                compression=None,
+                max_size=None,
+                close_timeout=1.0,
+            )
+            self._data.send(self._ticket)
+        assert self._data is not None
+        with suppress(TimeoutError, ConnectionClosed):
+            while True:
+                message = json.loads(self._data.recv(timeout=0))
+                if message["is"] == "lesson":
+                    self.lesson = message
 
     def _labels(self) -> dict[str, dict[str, Any]]:
         shown = [w for w in self.widgets.values() if w["value"] is not None]

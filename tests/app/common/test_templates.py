@@ -25,12 +25,14 @@ from onpath.app.classroom.results import distribution
 from onpath.app.common.templates import environment, phrase, render
 from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
+from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
 from onpath.app.page import lesson_html, narration
+from onpath.app.page.lesson_message import lesson_message
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.flexible_panel import alpha_bar
 from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.assets import asset_path
-from onpath.lessons.checks import Verdict
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.schema import (
@@ -40,10 +42,8 @@ from onpath.lessons.schema import (
     OpenQuestion,
     Option,
     Quiz,
-    Sketch,
-    Text,
+    Step,
 )
-from onpath.lessons.task_schema import Task
 from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.built_in import built_in_course
@@ -51,7 +51,7 @@ from tests.support.checkout import ROOT
 
 TAG = re.compile(r"</?(?!br\b)[a-zA-Z][a-zA-Z0-9]*(\s[a-z-]+=|\s*/?>)")  # markdown may have <br/>
 BYTES_ALONE = "app/viser_adapter/page_scripts.py"  # puts our files into viser's page, no values
-VOID = {"br", "img", "meta", "line", "polyline"}
+VOID = {"br", "img", "input", "meta", "line", "polyline"}
 HOSTILE = ["<img src=x onerror=alert(1)>", '"><script>alert(2)</script>', "'{0}{{ 7 }}{% x %}&lt;"]
 DAY = datetime(2025, 3, 2)
 COURSE = built_in_course()[0]
@@ -104,9 +104,14 @@ def titled(text: str) -> tuple[Lesson, LessonRun]:
     return lesson, LessonRun(Course({NAME: {"en": lesson}}), Progress(lesson=NAME))
 
 
+def view_of(run: LessonRun) -> LessonView:
+    """The lessons as a student's page sees them."""
+    shown = LessonSnapshot(0, run.progress, playing=False, verdicts={}, truth=None)
+    return LessonView(run.course, run.words, shown)
+
+
 def heading(text: str) -> str:
-    lesson, run = titled(text)
-    return lesson_html.heading(lesson, lesson.steps[0], run)
+    return lesson_message(view_of(titled(text)[1]))["head"]
 
 
 def entry(text: str) -> str:
@@ -124,22 +129,10 @@ def nickname(text: str) -> str:
     return class_html.table([Member(1, text)], COURSE, 0.0, ENGLISH)
 
 
-def quiz(text: str) -> str:
-    asked = Quiz(text, (Option(text, text), Option(text, text, right=True)))
-    return lesson_html.question(asked, tuple(range(len(asked.options))), 0, True, ENGLISH)
-
-
 def choices(text: str) -> str:
     block = Choice(text, (Option(text, text), Option(text, text, right=True)))
     found = distribution(block, NAME, 0, [])
     return class_html.prediction_view(block, found, None, True, ENGLISH)
-
-
-def task(text: str) -> str:
-    block = Task("a", text, (), hints=(text,))
-    notes = {NAME: Notes(hints={"a": 1})}
-    run = LessonRun(COURSE, Progress(lesson=NAME, notes=notes))
-    return lesson_html.task(block, [Verdict(True, text), Verdict(False, text)], run)
 
 
 def message(text: str) -> str:
@@ -189,15 +182,11 @@ PLACES: dict[str, Callable[[str], str]] = {
     "place": place,
     "nickname": nickname,
     "member": lambda text: render("panel/member.html", name=text, words=ENGLISH, small=True),
-    "quiz": quiz,
     "choices": choices,
-    "task": task,
     "message": message,
     "note": lambda text: render("panel/note.html", text=text, small=False),
     "refusal of a law": lambda text: render("panel/refusal.html", reason=text),
     "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
-    "text": lesson_html.text,
-    "remark": lambda text: lesson_html.remark(text, italic=True),
     "code": lambda text: render("panel/code.html", label=text, code=text, words=ENGLISH),
     "robot": lambda text: render("panel/robot.html", label=text, text=text, picture=text),
     "class code": lambda text: class_html.class_code(text, False, text, 1, ENGLISH),
@@ -256,33 +245,34 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
     """The open step on the student's page and on the teacher's, each block in all its states."""
     lesson, step = run.lesson, run.step
     assert lesson is not None and step is not None
-    yield lesson_html.heading(lesson, step, run)
-    for block in step.blocks:
-        if isinstance(block, Text):
-            yield lesson_html.text(block.html)
-        elif isinstance(block, Task):
-            yield lesson_html.task(block, [Verdict(True, "a"), Verdict(False, "b")], run)
-        elif isinstance(block, Sketch):
-            yield lesson_html.asked(block)
-        elif isinstance(block, NumberQuestion):
-            for number in (None, block.number, -block.number - 1):
-                yield lesson_html.number_question(block, number, words)
+    for notes in answered(step, run):
+        run.progress = replace(run.progress, notes={lesson.name: notes})
+        message = lesson_message(view_of(run))
+        yield from map(str, (message["head"], *message["sections"].values(), message["pager"]))
+    for block in step.predictions():
+        sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
+        ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
+        found = distribution(block, lesson.name, run.index, ways)
+        for revealed in (True, False):
+            yield class_html.prediction_view(block, found, None, revealed, words)
+
+
+def answered(step: Step, run: LessonRun) -> Iterator[Notes]:
+    """Notes in which the step's questions are not answered, and in which they are."""
+    notes, answers = run.notes, dict[str, dict[str, Any]](quiz={}, numbers={}, written={})
+    yield notes
+    for place, block in enumerate(step.blocks):
+        key = f"{run.index}.{place}"
+        if isinstance(block, NumberQuestion):
+            answers["numbers"][key] = block.number
         elif isinstance(block, OpenQuestion):
-            for text in ("", "<b>"):
-                yield lesson_html.open_question(block, text, words)
-        else:
-            for chosen in (None, *range(len(block.options))):
-                yield lesson_html.question(
-                    block, tuple(range(len(block.options))), chosen, True, words
-                )
-        if isinstance(block, Choice | Sketch):
+            answers["written"][key] = "<b>"
+        elif isinstance(block, Quiz):
+            answers["quiz"][key] = 0
+        elif isinstance(block, Choice):
             why = Answer(option=0, sure="certain", reason=0 if block.reasons else None, why="<b>")
-            yield lesson_html.confidence(block, why, words)
-            sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))
-            ways = [Progress(notes={lesson.name: Notes(answers={str(run.index): sketch})})]
-            found = distribution(block, lesson.name, run.index, ways)
-            for revealed in (True, False):
-                yield class_html.prediction_view(block, found, None, revealed, words)
+            answers["answers"] = {str(run.index): why}
+    yield replace(notes, **answers)
 
 
 @pytest.mark.parametrize("language", languages())

@@ -17,12 +17,11 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.sketches import sketched
-from onpath.app.page import lesson_html as html
 from onpath.lessons.action_schema import Action
 from onpath.lessons.checks import judge
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import MOST_POINTS, Answer, Progress, read_progress
-from onpath.lessons.schema import Choice, Option, Quiz, Sketch
+from onpath.lessons.schema import Sketch
 from onpath.lessons.task_schema import Event, Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -110,22 +109,6 @@ def test_skipping_the_prediction_of_a_pushed_step_does_not_skip_what_happens(
     assert run_.playing
     do(lab, c.GoToStep(1))
     assert run_.index == 3
-
-
-@pytest.mark.parametrize("language", ["en", "de"])
-def test_a_student_who_did_not_answer_is_told_the_answer_and_not_that_it_was_right(
-    language: str,
-) -> None:
-    words = Words(language)
-    options = (Option("this", "no"), Option("that", "of course", right=True))
-    for block in (Choice("Which?", options), Quiz("Which?", options)):
-        skipped = html.question(block, (0, 1), None, True, words)
-        assert words("lesson.the_answer", answer="of course") in skipped
-        for key in ("right", "not_quite"):
-            assert words(f"lesson.{key}") not in skipped
-        assert words("lesson.right") in html.question(block, (0, 1), 1, True, words)
-        assert words("lesson.not_quite") in html.question(block, (0, 1), 0, True, words)
-        assert "of course" not in html.question(block, (0, 1), 0, False, words)
 
 
 def test_prediction_and_truth_are_kept_side_by_side(lab: Lab) -> None:

@@ -10,8 +10,8 @@ import pytest
 
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.lesson_html import aims
 from onpath.app.server.lab_server import LabServer
+from onpath.app.steps.step_html import step_html
 from onpath.assets.messages import languages
 from onpath.lessons.course import read_course
 from onpath.lessons.schema import Front
@@ -31,11 +31,11 @@ def test_every_lesson_says_it_and_keeps_the_teachers_part(language: str) -> None
     words, course = Words(language), built_in_course()[0]
     for name in course.lessons:
         lesson = course.lesson(name, language)
-        said = aims(lesson, words)
-        assert words("lesson.needs") in said and lesson.front.needs in said
-        assert words("lesson.goals") in said and lesson.front.goals in said
+        said = step_html(lesson, 0, [], words)
+        assert words("lesson.needs") in said and words("lesson.goals") in said
         assert lesson.front.misconception not in said
-        assert not aims(msgspec.structs.replace(lesson, front=Front("T", "S")), words)
+        bare = msgspec.structs.replace(lesson, front=Front("T", "S"))
+        assert words("lesson.needs") not in step_html(bare, 0, [], words)
 
 
 def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
@@ -43,7 +43,7 @@ def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
     write_lesson(tmp_path, LESSON.replace(SUMMARY, f"{SUMMARY}\n{lines}"))
     server = LabServer("127.0.0.1", 0, LoopCache(), read_course([tmp_path])[0])
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
             student.open()
             student.read(lambda: student.code)
             lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab

@@ -14,9 +14,12 @@ from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
-from onpath.app.page.concept_test import end
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.lesson_end import end_html
+from onpath.app.page.lesson_view import LessonView
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
+from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, run, store
@@ -92,12 +95,10 @@ def test_what_is_right_is_told_after_the_second_test_only() -> None:
 def test_the_end_of_a_test_tells_no_score_before_the_second(language: str) -> None:
     lab, shown = lab_with_lessons(), list[str]()
     do(lab, c.SetLanguage(language))
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(end, "add_buttons", lambda *_: None)
-        gui: Any = type("Gui", (), {"add_html": lambda _, html: shown.append(html)})()
-        for name in (BEFORE, AFTER):
-            sit(lab, name)
-            end.add_test_end(gui, lab.lessons, lab.post, lambda: None)  # type: ignore[arg-type]
+    for name in (BEFORE, AFTER):
+        sit(lab, name)
+        lesson = take_page_snapshot(lab, 1.0).lesson
+        shown.append(end_html(LessonView(COURSE, Words(language), lesson)))
     right = [
         str(next(o.answer for o in b.options if o.right))
         for b in questions(COURSE.lesson(BEFORE, language)).values()

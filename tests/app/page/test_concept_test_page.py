@@ -31,7 +31,7 @@ def server() -> Iterator[LabServer]:
 
 @pytest.fixture
 def student(server: LabServer) -> Iterator[Student]:
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
         student.open()
         student.read(lambda: student.code)
         yield student
@@ -59,11 +59,11 @@ def test_a_student_answers_is_told_nothing_and_hands_in(
     order = option_order(4, f"{BEFORE} 11.0", student.code)
     wrong = next(place for place, at in enumerate(order) if not block.options[at].right)
     student.read(lambda: student.sees(str(block.question)))
-    student.set("ABCD"[wrong], "ABCD"[wrong])
+    student.tell({"do": "AnswerQuiz", "block": 0, "option": order[wrong]})
     wait_for(lambda: lab.lessons.notes.quiz.get("11.0") == order[wrong])
     student.read(lambda: student.sees(ENGLISH("test.answered", part=1, all=12)))
-    assert not any(student.sees(str(option.answer)) for option in block.options)
-    assert not student.sees(ENGLISH("lesson.not_quite")) and not student.sees("✗")
+    assert not any(str(option.answer) in student.column for option in block.options)
+    assert ENGLISH("lesson.not_quite") not in student.column and "✗" not in student.column
     student.set(ENGLISH("test.hand_in"), True)
     student.read(lambda: student.sees(ENGLISH("test.later")))
     assert lab.lessons.notes.handed_in

@@ -47,7 +47,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     course, problems = read_course([folder])
     assert problems == []
     server = LabServer("127.0.0.1", 0, LoopCache(), course)
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
         student.open()
         student.read(lambda: student.code)
         found = wait_for(lambda: server.sessions.find(student.code), PATIENCE)
@@ -56,10 +56,11 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 
 
 def curves(student: Student) -> list[list[str]]:
-    """Legends of the charts with predictions on the page, without their time."""
-    charts = [w["series"] for w in student.widgets.values() if "distance" in str(w.get("title"))]
-    names = [[str(each["label"]) for each in chart[1:]] for chart in charts]
-    return [each for each in names if "you" in each or "Tracker" in each]
+    """What the charts with predictions show."""
+    return [
+        [*(["truth"] if chart["truth"] else []), *(["you"] if chart["answer"] else [])]
+        for chart in student.lesson["charts"]
+    ]
 
 
 def at_the_end(site: Site, answers: dict[str, Answer], truths: dict[str, Truth]) -> None:
@@ -78,7 +79,7 @@ def test_own_curves_and_what_is_right_are_beside_what_happened(site: Site) -> No
     at_the_end(site, answers, {"1": TRUTH, "3": TRUTH})
     site.sees("0 of 1 choice right · 1 of 1 curve drawn · 0 of 1 task passed")
     site.sees("41 mm at 1 s", "Tracker 47 mm at 0.5 s", "Correct answer:</b> that", "Hold back.")
-    assert curves(site.student) == [["Tracker", "Follower", "you"]]
+    assert curves(site.student) == [["truth", "you"]]
 
 
 def test_what_has_not_been_seen_is_not_told(site: Site) -> None:
@@ -90,7 +91,7 @@ def test_what_has_not_been_seen_is_not_told(site: Site) -> None:
 
 def test_it_leads_back_and_to_the_next_lesson(site: Site) -> None:
     at_the_end(site, {}, {})
-    site.student.set("Back", "Back")
+    site.student.set("Back", True)
     site.sees("Step 8 of 8")
     site.student.set("Finish", True)
     site.student.set("Open lesson 2: A lesson", True)

@@ -12,7 +12,6 @@ from hypothesis.extra.numpy import arrays
 from onpath.app.classroom.class_html import prediction_view
 from onpath.app.classroom.results import Distribution
 from onpath.app.classroom.sketches_html import MOST_POINTS
-from onpath.app.page.lesson_chart import together
 from onpath.lessons.measures.thinning import intervals, peaks
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import Sketch
@@ -40,25 +39,6 @@ def test_every_stretch_keeps_its_least_and_its_greatest(
         for curve in curves:
             assert curve[inside].min() == curve[part].min()
             assert curve[inside].max() == curve[part].max()
-
-
-times = st.lists(st.floats(0, 8), min_size=2, max_size=60, unique=True).map(sorted)
-lines = times.flatmap(
-    lambda at: st.tuples(
-        st.just(tuple(at)), st.lists(numbers, min_size=len(at), max_size=len(at)).map(tuple)
-    )
-)
-
-
-@given(st.lists(lines, min_size=1, max_size=3))
-def test_a_chart_of_several_curves_has_every_point_of_each(
-    curves: list[tuple[tuple[float, ...], tuple[float, ...]]],
-) -> None:
-    at, *drawn = together(8.0, *curves)
-    assert np.all(np.diff(at) > 0) and at[0] == 0.0 and at[-1] == 8.0
-    for (own, values), line in zip(curves, drawn, strict=True):
-        assert np.array_equal(line[np.searchsorted(at, own)], values)
-        assert np.isnan(line[(at < own[0]) | (at > own[-1])]).all()
 
 
 def test_one_narrow_peak_is_on_the_class_s_plot() -> None:
