@@ -45,7 +45,6 @@ class PathNodes:
         self._connect = connect
         self._curve: viser.LineSegmentsHandle | None = None
         self._points: viser.BatchedMeshHandle | None = None
-        self._hidden = False
         self._marks: viser.BatchedMeshHandle | None = None
         self._given: viser.LineSegmentsHandle | None = None
 
@@ -89,14 +88,7 @@ class PathNodes:
             self._points = add_copies(
                 self._scene, "/path/points", ball, positions, colours, shadow=False
             )
-            self._points.visible = not self._hidden
             self._connect(self._points)
-
-    def hide_points(self, hidden: bool) -> None:
-        """Hide the control points, or show them again."""
-        self._hidden = hidden
-        if self._points is not None:
-            self._points.visible = not hidden
 
     def _draw_given(self, points: np.ndarray) -> None:
         """Draw the line that the path was fitted to, if it is far from it."""

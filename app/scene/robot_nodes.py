@@ -322,16 +322,6 @@ class RobotNodes:
             self._arrows.draw(np.stack([tails, tails + self._force_scale * forces], axis=1))
         self._acting = acts
 
-    def hide(self, hidden: bool) -> None:
-        """Hide all moving nodes except the forces, or show them again."""
-        for node in (
-            *self._solids,
-            self._parts,
-            self.grips,
-            self._traces,
-        ):
-            node.visible = not hidden
-
     def update_traces(self, robots: list[RobotView]) -> None:
         """Redraw the traces if they have changed."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]

@@ -165,19 +165,6 @@ class Scene:
         """Show the start of the next run, which can be dragged, or hide it."""
         self._start.show(visible)
 
-    def show_robots(self, visible: bool) -> None:
-        """Show or hide the titles, the robots and the points of the path.
-
-        A board in front of the robots does not hide all of them: titles are drawn on top of
-        everything else, and single pixels of round parts show through at their edges.
-        """
-        if self._titles is not None:
-            self._titles.hide(not visible)
-        self._machine.hide(not visible)
-        for base in self._bases:
-            base.visible = visible
-        self._path_nodes.hide_points(not visible)
-
     def frame_camera(self, insets: Insets | None = None) -> None:
         """Point the client's camera so that both robots fill the canvas left free by panels."""
         camera = self._client.camera

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import chain, product
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 FIELD_OF_VIEW = np.radians(15.0)
 NARROW = 0.8
-"""Aspect ratio below which the panel covers a window's lower part; see assets/page/portrait.js."""
+"""Aspect ratio below which the panel covers a window's lower part."""
 DOWN = np.array([0.0, 1.0, 0.0, 0.0])
 """Orientation of a picture that lies on the ground, seen from above."""
 IDENTITY = np.array([1.0, 0.0, 0.0, 0.0])
@@ -270,7 +270,7 @@ class ChangingText:
     ) -> None:
         self.label = add_text(scene, name, "", position, size, below)
         self.label.visible = False
-        self._shown, self._hidden = "", False
+        self._shown = ""
 
     def show(self, text: str) -> None:
         """Show a text; sends nothing if it is shown already."""
@@ -281,13 +281,8 @@ class ChangingText:
             update_node(self.label, text=text)
         self._update()
 
-    def hide(self, hidden: bool) -> None:
-        """Hide any text, or show it again."""
-        self._hidden = hidden
-        self._update()
-
     def _update(self) -> None:
-        visible = bool(self._shown) and not self._hidden
+        visible = bool(self._shown)
         if self.label.visible != visible:
             self.label.visible = visible
 
@@ -326,11 +321,6 @@ class Titles:
             law, below = self._texts[side]
             law.show(title)
             below.show(captions[side] or self._words(f"aim.{law_named(laws[side]).aim}"))
-
-    def hide(self, hidden: bool) -> None:
-        """Hide the titles, which are drawn on top of everything else, or show them again."""
-        for text in chain(*self._texts.values()):
-            text.hide(hidden)
 
 
 def add_copies(

@@ -252,16 +252,6 @@ def test_the_singular_zone_can_be_shown_and_hidden(lab):
         assert (lab.api.get_handle_by_name(f"/zone/{RIGHT}") is not None) == visible
 
 
-def test_nothing_of_the_robots_can_show_through_a_board(lab):
-    """Edges of round parts did, in single pixels."""
-    fixed = [f"/stage/{part}" for part, *_ in RIGID.parts()]
-    for visible in (False, True):
-        lab.scene.show_robots(visible)
-        lab.scene.update(snapshot(path=path(version=1 + visible, n_points=5 + visible)).motion)
-        for name in ("/links", "/parts", "/grips", "/traces", "/path/points", *fixed):
-            assert lab.api.get_handle_by_name(name).visible == visible
-
-
 @pytest.mark.parametrize("waist", [-0.6, 0.0, 0.9])
 def test_bars_point_along_their_links_whatever_the_waist(waist):
     turn = Rotation.from_euler("z", waist)
