@@ -248,6 +248,7 @@ def test_a_server_built_while_another_is_being_built_listens(
             elsewhere=bool,
             channel=hardening.DataChannel(),
             course_url="",
+            scripts=b"",
         ):
             lock.asked.clear()
             threading.Thread(target=build, daemon=True).start()

@@ -13,13 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.common import palette
-from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.strokes.sketch_line import MOST, SketchLine
 from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.slow_updates import INTERVALS
-from onpath.lessons.schema import Sketch
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support import waiting
 from tests.support.drags import play
@@ -118,30 +116,6 @@ def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(pa
     assert np.linalg.norm(stroke - middle, axis=1) == pytest.approx(np.full(len(stroke), 0.1))
     assert stroke[0] == pytest.approx(around(0))
     assert not page.shown("/freehand/line") and not page.told_by_mouse
-
-
-def test_an_endless_sketch_too(page: Page) -> None:
-    course = page.lab.lessons.course
-    name, step = next(
-        (name, number)
-        for name in course.lessons
-        for number, step in enumerate(course.lesson(name, "en").steps)
-        if any(isinstance(block, Sketch) for block in step.blocks)
-    )
-    page.lab.post(c.OpenLesson(name))
-    for _ in range(step):
-        page.lab.post(c.GoToStep(step))
-    wait_for(lambda: page.shown("/board/sheet"))
-    parts = page.view.page._parts
-    (drawing,) = wait_for(lambda: [p._sketching for p in parts if hasattr(p, "_sketching")])
-    board = drawing._board
-    page.scribble("/board/sheet", lambda k: board._world(0.3 * sideways(k)[None])[0])
-    page.assert_bounded()
-    page.end()
-    drawn = len(page.told)
-    for _ in range(FRAMES):
-        page.show()
-    assert len(page.told) <= drawn + 1 and not page.told_by_mouse  # what is drawn stays
 
 
 def sideways(k: int) -> np.ndarray:
