@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import math
 import os
+import re
 import sys
 import time
 from collections.abc import AsyncGenerator
@@ -25,6 +26,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidMessage, InvalidStatus
 from websockets.typing import Subprotocol
 
+from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import (
     CAMERA,
     SUBPROTOCOL,
@@ -41,7 +43,8 @@ CYCLE = 4.0  # [s]: pull, rest, move a slider, rest
 MOVING = "/links"
 STEADY = 10  # poses after which a browser counts as settled
 ANSWERED = {"LocalStorageGetItemRequestMessage", "SetCameraUpDirectionMessage"}
-ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage"}
+ANSWERED |= {"GuiSliderMessage", "BatchedMeshesMessage", "GuiHtmlMessage"}
+TICKET = re.compile(r'data-ticket="([^"]+)"')
 
 
 class NotServed(Exception):
@@ -77,7 +80,8 @@ class Browser:
         number: shifts its actions in time against those of the others.
         source: address from which it connects; any if None.
         shown: times at which it received new poses, [s].
-        received: [B].
+        received: [B], also through the data channel.
+        told: messages of the data channel.
     """
 
     port: int
@@ -85,6 +89,8 @@ class Browser:
     source: str | None = None
     shown: list[float] = field(default_factory=list)
     received: int = 0
+    told: int = 0
+    _data: asyncio.Task[None] | None = None
     _slider: str = ""
     _owner: str = ""
 
@@ -94,11 +100,7 @@ class Browser:
         Raises:
             OSError, WebSocketException: the connection failed.
         """
-        address = f"ws://127.0.0.1:{self.port}"
-        options: dict[str, Any] = {"max_size": None, "compression": None}
-        options |= {"open_timeout": None, "ping_interval": None}  # as a browser, it just waits
-        options |= {"local_addr": (self.source, 0)} if self.source else {}
-        async with connect(address, subprotocols=[Subprotocol(SUBPROTOCOL)], **options) as socket:
+        async with self._connected(SUBPROTOCOL) as socket:
             await socket.send(packed("ViewerCameraMessage", **CAMERA))
             until = time.monotonic() + seconds
             tasks = [
@@ -109,9 +111,25 @@ class Browser:
                 for task in done:
                     task.result()
             finally:
+                tasks += [] if self._data is None else [self._data]
                 for task in tasks:
                     task.cancel()
                 await asyncio.gather(*tasks, return_exceptions=True)
+
+    def _connected(self, subprotocol: str) -> connect:
+        options: dict[str, Any] = {"max_size": None, "compression": None}
+        options |= {"open_timeout": None, "ping_interval": None}  # as a browser, it just waits
+        options |= {"local_addr": (self.source, 0)} if self.source else {}
+        address = f"ws://127.0.0.1:{self.port}"
+        return connect(address, subprotocols=[Subprotocol(subprotocol)], **options)
+
+    async def _read_data(self, ticket: str) -> None:
+        """Read what the page's own script is told."""
+        async with self._connected(DATA) as socket:
+            await socket.send(ticket)
+            async for text in socket:
+                self.received += len(text)
+                self.told += 1
 
     async def _read(self, socket: ClientConnection) -> None:
         async for raw in socket:
@@ -136,6 +154,10 @@ class Browser:
             self._slider = message["uuid"]
         elif kind == "BatchedMeshesMessage" and message["name"] == "/grips":
             self._owner = message["owner"]
+        elif kind == "GuiHtmlMessage" and (found := TICKET.search(message["props"]["content"])):
+            if self._data is not None:
+                self._data.cancel()
+            self._data = asyncio.create_task(self._read_data(found[1]))
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
         while not self._slider and time.monotonic() < until:

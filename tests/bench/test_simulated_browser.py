@@ -26,7 +26,9 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
-from tests.bench.simulated_browser import NotServed, Observations, crowd, first_poses
+from tests.bench.simulated_browser import Browser, NotServed, Observations, crowd, first_poses
+
+FRAMES = 20  # of the data channel
 
 
 @pytest.mark.parametrize("name", ROBOTS)
@@ -123,3 +125,21 @@ def test_the_bench_does_not_wait_for_a_server_that_refuses() -> None:
     forbidden = REFUSED.replace(b"503", b"403")
     with answering(forbidden) as (port, _), pytest.raises(websockets.exceptions.InvalidStatus):
         asyncio.run(asyncio.wait_for(first_poses(port), 5.0))
+
+
+@pytest.mark.thorough
+def test_a_simulated_browser_opens_the_data_channel_of_its_page() -> None:
+    async def told(port: int) -> int:
+        browser = Browser(port, 0)
+        browsing = asyncio.create_task(browser.browse(60.0))
+        while browser.told < FRAMES and not browsing.done():
+            await asyncio.sleep(0.05)
+        browsing.cancel()
+        await asyncio.gather(browsing, return_exceptions=True)
+        return browser.told
+
+    server = LabServer("127.0.0.1", 0, LoopCache())
+    try:
+        assert asyncio.run(told(server.server.get_port())) >= FRAMES
+    finally:
+        server.stop()
