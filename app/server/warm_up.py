@@ -26,7 +26,6 @@ from onpath.models.systems.robots import RobotEntry
 
 log = logging.getLogger(__name__)
 LATER = (
-    "onpath.app.scene.strokes.sketch_board",
     "scipy.interpolate",
     "scipy.linalg",
     "scipy.signal",

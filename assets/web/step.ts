@@ -36,6 +36,7 @@ export class StepView {
     /** The form of a prediction that is asked here. */
     form: Form | null = null
     private compared: Comparison | null = null
+    private shown = "" // what it compares
 
     constructor(
         private readonly page: PageData,
@@ -145,11 +146,14 @@ export class StepView {
     private compare(): void {
         const { page, prediction, notes, robots } = this
         const { section, beneath } = this.places
+        const sketched = prediction?.data.kind === "sketch"
+        const due = prediction !== null && !this.waits && (sketched || (this.happened && !robots.playing))
+        const shown = due ? JSON.stringify([notes.answers[String(prediction.step)], page.steps[prediction.step]!.blocks]) : ""
+        if (shown === this.shown) return // an open table stays open
+        this.shown = shown
         for (const place of [section, beneath]) place.querySelectorAll(".compared").forEach(each => each.remove())
         this.compared = null
-        if (!prediction || this.waits) return
-        const sketched = prediction.data.kind === "sketch"
-        if (!sketched && (!this.happened || robots.playing)) return
+        if (!due) return
         this.compared = new Comparison(page, prediction, notes)
         const box = made("div", "compared", ...this.compared.elements)
         if (sketched) return beneath.append(box)

@@ -51,6 +51,7 @@ def curves(tab: Tab) -> list[str]:
     chart.wait_for()
     if chart.locator("details.table[open]").count() == 0:
         chart.locator("summary").click()
+    chart.locator("th").last.wait_for()
     return [name.split(" [")[0] for name in chart.locator("th").all_inner_texts()[1:-1]]
 
 
