@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 
 import viser
 
-from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.viser_adapter.local_storage import ask_item
-from onpath.lessons.words import Words
 
 KEPT_AS = "first_minute"
 """Where a browser keeps how many of the invitations it has shown."""
@@ -25,20 +23,21 @@ class Invitation:
     Attributes:
         name: in the message catalogue.
         is_followed: whether it has been followed, according to a snapshot.
-        key: the lab's key that its button presses; empty if it is followed in the scene itself.
+        act: the command of its button, as JSON; None if it is followed in the scene itself, or by
+            opening the first lesson.
     """
 
     name: str
     is_followed: Callable[[PageSnapshot], bool]
-    key: str = ""
+    act: Mapping[str, str] | None = None
 
 
 INVITATIONS = (
-    Invitation("hold", lambda shown: shown.held, "h"),
-    Invitation("let_go", lambda shown: not shown.held, "h"),
+    Invitation("hold", lambda shown: shown.held, {"do": "Hold"}),
+    Invitation("let_go", lambda shown: not shown.held, {"do": "Hold"}),
     Invitation("pull", lambda shown: shown.grabbed is not None),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
-    Invitation("lesson", lambda shown: shown.key.in_lesson, "o"),
+    Invitation("lesson", lambda shown: shown.key.in_lesson),
 )
 
 
@@ -48,11 +47,18 @@ def end_first_minute(client: viser.ClientHandle) -> None:
 
 
 class FirstMinute:
-    """Shows the invitations that a user has not followed yet; see assets/page/invitation.js."""
+    """Shows the invitations that a user has not followed yet; see assets/web/voice.ts.
 
-    def __init__(self, client: viser.ClientHandle, words: Words) -> None:
-        self._client, self._words = client, words
-        self._handle = client.gui.add_html("")
+    Args:
+        lesson: name of the first lesson, to which the last invitation leads; may be empty.
+
+    Attributes:
+        shown: the present invitation, or None.
+    """
+
+    def __init__(self, client: viser.ClientHandle, lesson: str) -> None:
+        self._client, self._lesson = client, lesson
+        self.shown: Invitation | None = None
         self._next = len(INVITATIONS)  # until the browser reports which it has shown
         self._since: float | None = None
         ask_item(client, KEPT_AS, self._begin)
@@ -66,22 +72,16 @@ class FirstMinute:
         if INVITATIONS[self._next].is_followed(snapshot):
             self._next, self._since = self._next + 1, snapshot.time
             self._client.local_storage.set_item(KEPT_AS, str(self._next))
-            self._handle.content = ""
-        elif not self._handle.content and snapshot.time >= self._since + PAUSE:
-            self._handle.content = self._content()
+            self.shown = None
+        elif self.shown is None and snapshot.time >= self._since + PAUSE:
+            self.shown = self._invitation()
 
     def _begin(self, kept: str) -> None:
         """Continue after the invitations that this browser has shown. Its value is not trusted."""
         known = [str(count) for count in range(len(INVITATIONS) + 1)]
         self._next = known.index(kept) if kept in known else 0
 
-    def _content(self) -> str:
-        words, invitation = self._words, INVITATIONS[self._next]
-        return render(
-            "panel/invitation.html",
-            text=words(f"invite.{invitation.name}"),
-            button=words(f"invite.{invitation.name}_button") if invitation.key else "",
-            key=invitation.key,
-            end=len(INVITATIONS),
-            words=words,
-        )
+    def _invitation(self) -> Invitation:
+        found = INVITATIONS[self._next]
+        leads = found.name == "lesson" and self._lesson
+        return replace(found, act={"do": "OpenLesson", "name": self._lesson}) if leads else found

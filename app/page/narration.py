@@ -1,20 +1,17 @@
-"""The lab's messages, spoken text, summary and sound, as attributes for assets/page."""
+"""What a page says: spoken text, summary, remedies, sound and invitations."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from functools import lru_cache, partial
+from collections.abc import Callable, Mapping
 
-import viser
-from markupsafe import escape
+from msgspec import Struct
 
-from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
+from onpath.app.page.first_minute import INVITATIONS, Invitation
 from onpath.app.page.panels.widgets import label_of
 from onpath.app.scene.captions import Captions, spoken
-from onpath.app.viser_adapter.frame_channel import update_gui
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.settable import specs
@@ -23,66 +20,87 @@ from onpath.models.systems.catalogue import ROBOTS
 MOST = 2
 """Most settings that a button names."""
 RENEWED = 1.0
-"""Time between updates of spoken numbers [s]; assets/page/narration.js reads fewer aloud."""
+"""Time between updates of spoken numbers [s]; assets/web/voice.ts reads fewer aloud."""
+
+
+class Said(Struct, frozen=True):
+    """What a page says beyond the lab's message.
+
+    Attributes:
+        voice: for a screen reader; empty if the user does not want it.
+        summary: a description of the screen.
+        summaries: how often it has been asked for.
+        stopped: whether the message says why a robot has stopped.
+        replays: whether its last moments are to be shown, unless the user wants less motion.
+        earlier: label of the button that restores the last good settings; empty if there are none.
+        sounds: whether the distances are to be heard.
+        invitation: name of what a newcomer is invited to do; empty: nothing.
+        act: the command that follows it, as JSON; None: it is followed in the scene itself.
+        invitations: how many there are.
+    """
+
+    voice: str = ""
+    summary: str = ""
+    summaries: int = 0
+    stopped: bool = False
+    replays: bool = False
+    earlier: str = ""
+    sounds: bool = False
+    invitation: str = ""
+    act: Mapping[str, str] | None = None
+    invitations: int = len(INVITATIONS)
 
 
 class Narration:
-    """An invisible element whose attributes the page's scripts show, speak and play.
-
-    It stands outside all tabs, because viser does not update the contents of a hidden tab.
+    """Collects what a page says; assets/web/voice.ts shows, speaks and plays it.
 
     Args:
         preferences: the browser's `Preferences`.
         captions: of the scene, which is updated with each snapshot first.
+        invitation: what a newcomer is invited to do now, if anything.
+
+    Attributes:
+        said: for the latest snapshot.
     """
 
     def __init__(
         self,
-        gui: viser.GuiApi,
         words: Words,
         preferences: Mapping[str, bool],
         captions: Captions,
+        invitation: Callable[[], Invitation | None] = lambda: None,
     ) -> None:
         self._words, self._preferences = words, preferences
-        self._captions = captions
-        self._handle = gui.add_html("")
-        self._shown: tuple[object, ...] = ()
+        self._captions, self._invitation = captions, invitation
         self._asked, self._summaries, self._summary = False, 0, ""
         self._spoken, self._spoken_at = "", 0.0
-        self._frame = lru_cache(maxsize=16)(partial(_frame, words))
+        self.said = Said()
 
     def ask_summary(self) -> None:
         """Announce a description of the screen at the next update. Thread-safe."""
         self._asked = True
 
-    def follow(self, snapshot: Snapshot) -> None:
-        """Update the attributes; sends nothing if they are unchanged."""
+    def follow(self, snapshot: PageSnapshot) -> None:
+        """Say what there is to say of a snapshot."""
         level = snapshot.message_level if snapshot.message else ""
-        running = snapshot.running and level != "stop"
         captions = self._captions.shown
-        if self._asked and isinstance(snapshot, PageSnapshot):
+        if self._asked:
             self._asked, self._summaries = False, self._summaries + 1
             self._summary = summary(snapshot, captions, self._words)
         stopped = bool(snapshot.stopped) and level == "error"
-        plays = isinstance(snapshot, PageSnapshot) and snapshot.lesson.playing
-        frame = self._frame(level, running, snapshot.held, stopped, plays)
         shows_remedy = (stopped or level == "replay") and not _in_lesson(snapshot)
-        remedy = _earlier_settings(snapshot, self._words) if shows_remedy else ""
-        voice = self._voice(snapshot, captions) if self._preferences["speaks"] else ""
-        tones = _tones(snapshot) if self._preferences["sounds"] else ""
-        shown = frame, snapshot.message, voice, tones, remedy
-        if (*shown, self._summaries) == self._shown:
-            return
-        self._shown = *shown, self._summaries
-        content = frame.format(
-            message=escape(snapshot.message),
-            spoken=escape(voice),
-            summary=escape(self._summary),
-            earlier=escape(remedy),
-            number=self._summaries,
-            tones=tones,
+        invitation = self._invitation()
+        self.said = Said(
+            voice=self._voice(snapshot, captions) if self._preferences["speaks"] else "",
+            summary=self._summary,
+            summaries=self._summaries,
+            stopped=stopped,
+            replays=stopped and not snapshot.lesson.playing,
+            earlier=_earlier_settings(snapshot, self._words) if shows_remedy else "",
+            sounds=self._preferences["sounds"],
+            invitation="" if invitation is None else invitation.name,
+            act=None if invitation is None else invitation.act,
         )
-        update_gui(self._handle, "content", content)
 
     def _voice(self, snapshot: Snapshot, captions: dict[str, str]) -> str:
         """The text to be spoken. If only its numbers change, it is renewed once in `RENEWED`."""
@@ -98,32 +116,6 @@ def _without_numbers(text: str) -> str:
     return re.sub(r"\d+", "", text)
 
 
-def _frame(words: Words, level: str, running: bool, held: bool, stopped: bool, plays: bool) -> str:
-    """Template of the element, with {name} for the values that change often.
-
-    Args:
-        level: severity of the message; empty without one.
-        running: whether the clock runs.
-        held: whether Hold is on.
-        stopped: whether the message says why a robot has stopped.
-        plays: whether a lesson is running an experiment, which a replay would interrupt.
-    """
-    return render(
-        "panel/narration.html",
-        level=level,
-        running=running,
-        held=held,
-        stopped=stopped,
-        plays=plays,
-        words=words,
-    )
-
-
-def _tones(snapshot: Snapshot) -> str:
-    """The distances of all robots from the path, [mm]."""
-    return " ".join(f"{1e3 * view.distance:.1f}" for view in snapshot.robots.values())
-
-
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     """What a sighted user sees: the state of the lab, and what each robot is doing."""
     state = "held" if snapshot.held else "running"
@@ -131,9 +123,9 @@ def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {robots}"
 
 
-def _in_lesson(snapshot: Snapshot) -> bool:
+def _in_lesson(snapshot: PageSnapshot) -> bool:
     """Whether a lesson is open; good settings may be the answer to one of its tasks."""
-    return isinstance(snapshot, PageSnapshot) and bool(snapshot.lesson.progress.lesson)
+    return bool(snapshot.lesson.progress.lesson)
 
 
 def _earlier_settings(snapshot: Snapshot, words: Words) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import viser
 
@@ -12,7 +14,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
-from onpath.app.page.first_minute import FirstMinute, end_first_minute
+from onpath.app.page.first_minute import FirstMinute, Invitation, end_first_minute
 from onpath.app.page.lesson_column import LessonColumn
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.narration import Narration
@@ -25,6 +27,7 @@ from onpath.app.page.panels.keys import add_keys
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
+from onpath.app.page.state_message import state_message
 from onpath.app.page.step_controls import Build, StepControls, StepPlot
 from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.page.strip_words import strip_words
@@ -111,22 +114,17 @@ class Page:
             for part in self._parts:
                 part.follow(snapshot)
 
-    @property
-    def seen_height(self) -> float:
-        """Height of the part of the scene that the canvas shows, where the camera looks, [m]."""
-        camera = self._client.camera
+    def state(self, snapshot: PageSnapshot) -> dict[str, Any]:
+        """What the data channel tells of the snapshot that is shown; see `state_message`."""
+        camera, origins = self._client.camera, self._scene.stage.origins
         distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
-        return float(2 * distance * np.tan(camera.fov / 2))
-
-    @property
-    def apart(self) -> float:
-        """Distance between the robots in the picture, [m]."""
-        return float(np.linalg.norm(np.ptp(self._scene.stage.origins, axis=0)))
-
-    @property
-    def captions(self) -> dict[str, str]:
-        """What each robot is doing, by side; see `Captions.shown`."""
-        return self._scene.captions.shown
+        return state_message(
+            snapshot,
+            captions=self._scene.captions.shown,
+            said=self._narration.said,
+            height=float(2 * distance * np.tan(camera.fov / 2)),
+            apart=float(np.linalg.norm(np.ptp(origins, axis=0))),
+        )
 
     def settle(self) -> None:
         """Refit the camera now and for a while, because the canvas has changed its size."""
@@ -189,14 +187,18 @@ class Page:
         )
         self._parts: list[Part] = []
         self._step_plot: StepPlot | None = None
-        ticket, parts = self._context.ticket, strip_words(words)
         self._client.gui.add_html(
-            render("panel/page.html", words=words, ticket=ticket, parts=parts)
+            render(
+                "panel/page.html",
+                words=words,
+                ticket=self._context.ticket,
+                parts=strip_words(words),
+            )
         )
+        self._first_minute: FirstMinute | None = None
         self._narration = Narration(
-            self._client.gui, words, self._preferences, self._scene.captions
+            words, self._preferences, self._scene.captions, self._invitation
         )
-        self._parts.append(self._narration)
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
@@ -208,7 +210,11 @@ class Page:
             "lesson": lambda: self._open_first_lesson(post),
         }
         add_keys(self._client.gui, words, post, page_actions)
+        self._parts.append(self._narration)  # the invitations come before it
         self._building = self.is_outdated = False
+
+    def _invitation(self) -> Invitation | None:
+        return None if self._first_minute is None else self._first_minute.shown
 
     def _column(self, first: PageSnapshot, words: Words) -> LessonColumn | None:
         """What the data channel tells of the lessons."""
@@ -269,7 +275,9 @@ class Page:
         """Build all panels; numbers, chart and the buttons for time are in the strip."""
         self._build_navigation(first, words, post)
         self._parts += controls.beside_strip(first)
-        self._parts.append(FirstMinute(self._client, words))
+        lesson = next(iter(self._context.course.lessons), "")
+        self._first_minute = FirstMinute(self._client, lesson)
+        self._parts.append(self._first_minute)
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
         """Build the window with the plot of a lesson's step."""

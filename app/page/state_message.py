@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.narration import Said
 from onpath.app.viser_adapter.data_channel import VERSION
 from onpath.lessons.sides import ROLES, law_text, robot_names, side_titles
 from onpath.lessons.words import Words
@@ -13,12 +14,13 @@ from onpath.models.control.laws.registry import law_named
 
 
 def state_message(
-    snapshot: PageSnapshot, captions: Mapping[str, str], height: float, apart: float
+    snapshot: PageSnapshot, captions: Mapping[str, str], said: Said, height: float, apart: float
 ) -> dict[str, Any]:
     """The message of a lab's state, in the page's language; see app/viser_adapter/README.md.
 
     Args:
         captions: of the robots, by side; see `app.scene.captions.Captions`.
+        said: what the page says.
         height: that the canvas shows, see `Page.seen_height`, [m].
         apart: distance between the robots in the picture, [m].
     """
@@ -44,6 +46,7 @@ def state_message(
         "undo": run.can_undo_going_on,
         "message": snapshot.message,
         "level": snapshot.message_level if snapshot.message else "",
+        "said": said,
         "presenting": snapshot.key.presenting,
         "height": round(height, 3),
         "apart": round(apart, 3),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.steps.player_words import player_words
 from onpath.lessons.words import Words
 
@@ -17,6 +18,9 @@ _PLAIN = (
     *("past.go_on", "past.undo", "past.undo_hint"),
     *("transport.go_on_hint", "transport.back", "transport.back_hint"),
     *("strip.lost", "lesson.lessons"),
+    *("help.close", "breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
+    *(f"invite.{invitation.name}" for invitation in INVITATIONS),
+    *("invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
 )
 _FILLED = {
     "chart.at": ("time", "values"),

@@ -14,11 +14,11 @@ from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import PathView
 from onpath.app.page.page import Page
-from onpath.app.page.state_message import state_message
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
 RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
+_NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
 
@@ -83,17 +83,18 @@ class PageData:
             stream.hand_over(*messages)
 
     def tell(self, snapshot: PageSnapshot, page: Page) -> None:
-        """Hand over the state and what the lessons show, if they have changed."""
+        """Hand over what has changed of the state and of what the lessons show."""
         if self._wants_record:
             self._wants_record = False
             page.exporter.report()
         if not self._stream.is_open or self._stream.is_busy:
             return
         messages = list[Message]()
-        state = state_message(snapshot, page.captions, page.seen_height, page.apart)
-        if state != self._state:
+        state, known = page.state(snapshot), self._state
+        news = {key: value for key, value in state.items() if known.get(key, _NOTHING) != value}
+        if news:
             self._state = state
-            messages.append(partial(msgspec.json.encode, state))
+            messages.append(partial(msgspec.json.encode, {"is": "state", **news}))
         if (column := page.column) is not None and column.message:
             if column.message is not self._lesson:
                 self._lesson, self._measured = column.message, b""

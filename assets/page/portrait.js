@@ -8,9 +8,6 @@
   const ask = window.matchMedia;
   window.matchMedia = (query) => ask.call(window, query === TELEPHONE ? `${query}, ${PORTRAIT}` : query);
 
-  // In this layout, and on a page enlarged so much that little room is left beside the panel, the scene
-  // has its own two buttons, since the panel shows a lesson's text or controls. See NARROW there.
-  const NARROW = 0.8;
   const upright = ask.call(window, `${TELEPHONE}, ${PORTRAIT}`);
 
   // The lab asks for the entry whenever the scene's shape changes; see UPRIGHT_KEY in app/page/page.py.
@@ -20,32 +17,6 @@
     } catch {}  // of a browser without storage, the lab knows the shape of the scene
   }
 
-  function isNarrow() {
-    const scene = document.querySelector("canvas[data-engine]");
-    return upright.matches || scene !== null && scene.clientWidth < NARROW * scene.clientHeight;
-  }
-
-  const hold = boxesOverScene.button("op-act", "h"), run = boxesOverScene.button("op-act", " ");
-  const bar = boxesOverScene.make("div", "op-bar", hold, run);
-
-  function look() {
-    const words = document.querySelector("[data-said]")?.dataset;
-    const invited = document.querySelector("#op-invitation:not([hidden])") !== null;
-    const hidden = !isNarrow() || invited || !words?.hold;
-    if (!hidden) {
-      if (hold.textContent !== words.hold) hold.textContent = words.hold;
-      if (run.textContent !== words.run) run.textContent = words.run;
-      if (!document.body.contains(bar)) document.body.append(bar);
-    }
-    if (bar.hidden === hidden) return;
-    bar.hidden = hidden;
-    boxesOverScene.place();
-  }
-
-  new MutationObserver(look).observe(document, { childList: true, subtree: true });
-  upright.addEventListener("change", () => {
-    keep();
-    look();
-  });
+  upright.addEventListener("change", keep);
   keep();
 })();

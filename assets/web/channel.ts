@@ -34,6 +34,25 @@ interface PathMessage {
     up: Vector
 }
 
+/** What is spoken, and what newcomers are invited to do. */
+export interface Said {
+    /** For a screen reader; empty if it is not wanted. */
+    voice: string
+    /** A description of the screen, and how often it has been asked for. */
+    summary: string
+    summaries: number
+    /** Whether the message says why a robot has stopped, and whether its last moments are to be shown. */
+    stopped: boolean
+    replays: boolean
+    /** A label of the settings that were good, if there are any. */
+    earlier: string
+    sounds: boolean
+    /** The name of an invitation, the command that follows it, if a button can, and how many there are. */
+    invitation: string
+    act: Record<string, unknown> | null
+    invitations: number
+}
+
 /** Texts of the lab, and what is set. Lists have the left robot first. */
 export interface LabState {
     is: "state"
@@ -50,6 +69,10 @@ export interface LabState {
     undo: boolean
     own: boolean
     presenting: boolean
+    /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
+    message: string
+    level: string
+    said: Said
     height: number
     apart: number
 }
@@ -251,7 +274,7 @@ export class RemoteEngine implements Engine {
             this.route = new Path(message)
             this.tell("path")
         } else if (message.is === "state") {
-            this.lab = message
+            this.lab = { ...this.lab, ...message } // which has only what has changed
             this.tell("state")
         } else if (message.is === "lesson") {
             this.lesson = message

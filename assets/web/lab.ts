@@ -9,6 +9,7 @@ import { retone } from "./ink"
 import { Lens } from "./lens"
 import { Strip } from "./strip"
 import { Transport } from "./transport"
+import { Voice } from "./voice"
 import { said, significant, written, type Texts } from "./words"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
@@ -36,6 +37,7 @@ class Face {
     private readonly lost: HTMLElement
     private readonly clock = made("span", "clock")
     private readonly column: Column
+    private readonly voice: Voice
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
@@ -69,6 +71,7 @@ class Face {
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
         document.body.append(this.column.element, this.stage, this.element)
+        this.voice = new Voice(engine, texts, signal)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.column.hear(engine.lesson!)
@@ -107,6 +110,7 @@ class Face {
             observer.observe(canvas)
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }
+        this.voice.place(left, top, width, height)
         Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 
@@ -170,26 +174,30 @@ class Face {
     }
 }
 
-/** Show our part of the page as soon as viser's has come, and as long as it wants it. */
+/** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
 export function showLab(): void {
-    const engine = new RemoteEngine()
+    const engine = new RemoteEngine(), root = document.documentElement
     let face: Face | null = null
-    let words = ""
+    let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    root.classList.add("op-loading")
     const look = () => {
         const source = document.querySelector<HTMLElement>("[data-page]")?.dataset
         if (!source) return // the page is being built
-        const wanted = source.parts ?? ""
-        if (wanted !== words) {
+        root.classList.remove("op-loading")
+        engine.open(source["ticket"] ?? "")
+        if (source["parts"] !== words) {
             face?.end()
             face = null
-            words = wanted
+            words = source["parts"]!
         }
-        if (words) engine.open(source.ticket ?? "")
-        else engine.close()
-        if (words && !face && engine.ready) face = new Face(engine, { words: JSON.parse(words) as Record<string, string> })
-        face?.place()
+        if (!engine.ready) return
+        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> })
+        face.place()
+        if (calmed) return
+        calmed = true // users who ask for less motion begin with a lab at rest
+        engine.act({ do: "run", on: false })
     }
     setInterval(look, LOOK)
-    new MutationObserver(retone).observe(document.documentElement, { attributeFilter: ["data-mantine-color-scheme"] })
+    new MutationObserver(retone).observe(root, { attributeFilter: ["data-mantine-color-scheme"] })
     Object.assign(window, { onpathLab: engine }) // for tests
 }

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.thorough
 LESSON = "01-path-or-timetable"
 FOLDERS = (
     *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
-    *("Look back", "Keep and share", "Export", "More plots"),
+    *("Keep and share", "Export", "More plots"),
 )
 SIZES = {"desk": (1280, 800), "telephone": (390, 844)}
 

@@ -113,7 +113,7 @@ def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabS
 
 
 def test_axe_finds_nothing_serious_in_the_lab(tab: Tab) -> None:
-    for folder in ("Advanced", "Realism", "Path editor", "Look back", "Keep and share"):
+    for folder in ("Advanced", "Realism", "Path editor", "Keep and share"):
         tab.open(folder)
     assert violations(tab) == []
     tab.press("Language, display")
@@ -128,7 +128,8 @@ def test_sliders_their_boxes_and_the_scene_have_names(tab: Tab) -> None:
     expect(page.get_by_role("slider", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("textbox", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("img", name="Two robots")).to_have_count(1)
-    expect(page.get_by_role("img", name="distance to the path [mm]")).to_have_count(1)
+    expect(page.get_by_role("img", name="Distance from the path")).to_have_count(1)
+    expect(page.get_by_role("img", name="Path following")).to_have_count(1)
     assert page.evaluate("[document.title, document.documentElement.lang]") == ["OnPath", "en"]
 
 

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.thorough
 LESSON = "01-path-or-timetable"
 FOLDERS = (
     *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
-    *("Look back", "Keep and share", "Export", "More plots"),
+    *("Keep and share", "Export", "More plots"),
 )
 expect.set_options(timeout=WAIT * 1e3)
 
@@ -40,7 +40,7 @@ CUT = """() => {
             .map((node) => node.textContent.trim()).join("")
         const value = box.matches("input:not([type=hidden])") ? box.value : ""
         if (!words && !value || !box.checkVisibility({ visibilityProperty: true })) continue
-        if (box.closest("#op-voice, math, svg, [hidden], [aria-hidden=true]")) continue
+        if (box.closest("#op-voice, .op-unseen, math, svg, [hidden], [aria-hidden=true]")) continue
         const { left, right, width } = box.getBoundingClientRect()
         if (width === 0) continue
         const outside = left < -1 || right > innerWidth + 1

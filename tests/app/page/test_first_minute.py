@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
@@ -9,12 +10,12 @@ from typing import Any
 import pytest
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands.command_codec import command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import first_minute
 from onpath.app.page.first_minute import INVITATIONS, FirstMinute
 from onpath.app.server.built_in_course import built_in_course
-from onpath.lessons.words import ENGLISH
 from tests.support.lab import do, new_lab, run, store
 
 
@@ -22,24 +23,23 @@ class Guest:
     """A browser that keeps something, and what it is shown."""
 
     def __init__(self, kept: str, patch: pytest.MonkeyPatch) -> None:
-        self.kept, self.html = kept, SimpleNamespace(content="")
+        self.kept = kept
         storage = SimpleNamespace(set_item=lambda key, value: setattr(self, "kept", value))
-        gui = SimpleNamespace(add_html=lambda content: self.html)
 
         def ask(client: Any, key: str, answer: Callable[[str], None]) -> None:
             answer(self.kept)
 
         patch.setattr(first_minute, "ask_item", ask)
-        client: Any = SimpleNamespace(gui=gui, local_storage=storage)
-        self.part = FirstMinute(client, ENGLISH)
+        client: Any = SimpleNamespace(local_storage=storage)
+        self.part = FirstMinute(client, "01")
 
     def after(self, lab: Lab, seconds: float) -> str:
         """Which invitation is shown when the lab has run for some seconds; empty: none."""
         for _ in range(round(10 * seconds) + 1):
             self.part.follow(take_page_snapshot(lab, 1.0))
             run(lab, 0.1)
-        shown = [i.name for i in INVITATIONS if ENGLISH(f"invite.{i.name}") in self.html.content]
-        return "".join(shown)
+        shown = self.part.shown
+        return "" if shown is None else shown.name
 
 
 @pytest.fixture
@@ -86,3 +86,19 @@ def test_a_reset_does_not_stop_the_invitations(guest: Callable[[str], Guest]) ->
     assert again.after(lab, 1.0) == ""
     do(lab, c.Reset())
     assert again.after(lab, 4.0) == "pull"
+
+
+def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes(
+    guest: Callable[[str], Guest],
+) -> None:
+    course = built_in_course()
+    for number, invitation in enumerate(INVITATIONS):
+        new = guest(str(number))
+        new.part._lesson = next(iter(course.lessons))
+        lab = new_lab(0.0)
+        do(lab, c.Hold(invitation.name == "let_go"))
+        assert new.after(lab, 4.0) == invitation.name
+        act = new.part.shown.act if new.part.shown else None
+        if act is not None:
+            command_from(json.dumps(act))
+        assert (act is None) == (invitation.name in ("pull", "bend"))

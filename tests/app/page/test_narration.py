@@ -1,42 +1,29 @@
-"""What the page's scripts read aloud is renewed when it is another sentence, and once a second."""
+"""What the page's script reads aloud is renewed when it is another sentence, and once a second."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
 from itertools import pairwise
-from types import SimpleNamespace
-from typing import Any
-
-import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
-from onpath.app.page import narration
+from onpath.app.page.narration import RENEWED, Narration
 from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, new_lab, run, store
 
-SPOKEN = re.compile(r'data-spoken="([^"]*)"')
 
+class Heard:
+    """The sentences that a page has had to speak, and since when, [s]."""
 
-class Said:
-    """The sentences that were sent to a page, and when, [s]."""
-
-    def __init__(self, lab: Lab, monkeypatch: pytest.MonkeyPatch) -> None:
-        self.sent = list[tuple[float, str]]()
+    def __init__(self, lab: Lab) -> None:
+        self.sentences = list[tuple[float, str]]()
         self._lab, self._captions = lab, Captions(ENGLISH)
-        gui: Any = SimpleNamespace(add_html=lambda _: None)
-        self._narration = narration.Narration(gui, ENGLISH, DEFAULTS, self._captions)
-        monkeypatch.setattr(narration, "update_gui", self._keep)
-
-    def _keep(self, _: object, name: str, content: str) -> None:
-        found = SPOKEN.search(content)
-        assert name == "content" and found is not None
-        self.sent.append((self._lab.session.time, found[1]))
+        self._narration = Narration(ENGLISH, DEFAULTS, self._captions)
 
     def follow(self, seconds: float = 0.0) -> None:
         """Show the lab ten times a second."""
@@ -45,35 +32,33 @@ class Said:
             snapshot = take_page_snapshot(self._lab, 1.0)
             self._captions.follow(snapshot)
             self._narration.follow(snapshot)
+            voice = self._narration.said.voice
+            if not self.sentences or voice != self.sentences[-1][1]:
+                self.sentences.append((self._lab.session.time, voice))
 
 
-def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once() -> None:
     lab = new_lab(1.0)
-    said = Said(lab, monkeypatch)
+    said = Heard(lab)
     do(lab, c.Hold(True))
     said.follow(0.3)
-    assert said.sent[-1][1].startswith("Held back.")
+    assert said.sentences[-1][1].startswith("Held back.")
     for _ in range(2):
         do(lab, c.Hold(False))
         said.follow(0.1)
-        assert said.sent[-1][1].startswith("Running.")
+        assert said.sentences[-1][1].startswith("Running.")
         do(lab, c.Hold(True))
         said.follow(4.0)
-    sentences = [(time, re.sub(r"\d+", "", text)) for time, text in said.sent]
+    sentences = [(time, re.sub(r"\d+", "", text)) for time, text in said.sentences]
     alike = [later - time for (time, text), (later, other) in pairwise(sentences) if text == other]
-    assert len(alike) >= 2 and min(alike) > narration.RENEWED - 1e-9
+    assert len(alike) >= 2 and min(alike) > RENEWED - 1e-9
     do(lab, c.SetRunning(False))
     said.follow()
-    assert said.sent[-1][1].startswith("Paused.")
+    assert said.sentences[-1][1].startswith("Paused.")
 
 
-def test_in_a_lesson_a_stop_does_not_offer_settings(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_a_lesson_a_stop_does_not_offer_settings() -> None:
     """Settings that went well may be the answer to the lesson's task."""
-    sent = list[str]()
-    monkeypatch.setattr(narration, "update_gui", lambda _, name, content: sent.append(content))
-    gui: Any = SimpleNamespace(add_html=lambda _: None)
     lab, label = Lab(store(), course=built_in_course()[0]), "Reset with K1 across = 300"
     for opened in ("", "07-flexible-link"):
         if opened:
@@ -86,6 +71,7 @@ def test_in_a_lesson_a_stop_does_not_offer_settings(monkeypatch: pytest.MonkeyPa
             stopped=("right",),
             remedy={"K1": 300.0},
         )
-        made = narration.Narration(gui, ENGLISH, DEFAULTS, Captions(ENGLISH))
+        made = Narration(ENGLISH, DEFAULTS, Captions(ENGLISH))
         made.follow(stopped)
-        assert (label in sent[-1]) == (not opened), sent[-1]
+        assert made.said.stopped
+        assert made.said.earlier == ("" if opened else label)

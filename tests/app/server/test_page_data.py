@@ -76,7 +76,8 @@ class Script:
         """The next message of a kind."""
         while True:
             message = msgspec.json.decode(self.socket.recv(WAIT))
-            self.told[message["is"]] = message
+            told = self.told.get("state", {}) if message["is"] == "state" else {}
+            self.told[message["is"]] = message = {**told, **message}
             if message["is"] == kind:
                 return message
 
