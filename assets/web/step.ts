@@ -108,11 +108,12 @@ export class StepView {
         const step = page.steps[index]!
         if (step.kind !== "run") return
         const told = section.querySelector<HTMLElement>(".play")
-        const button = told?.querySelector<HTMLButtonElement>("button.main")
+        const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")
         const { waits, happened } = this
         if (button) {
             button.disabled = waits || !robots.ready
             button.hidden = robots.playing
+            button.classList.toggle("main", !notes.played[String(index)])
             button.textContent = said(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
