@@ -100,10 +100,6 @@ export class Column implements Robots {
         this.element.append(this.live)
         this.legend = new Legend(this.page, () => {})
         this.element.addEventListener("click", event => this.press(event))
-        this.element.addEventListener("keydown", event => {
-            // keys of the focused control are not the lab's
-            if ((event.target as HTMLElement).closest("textarea, select, input, summary, a, button")) event.stopPropagation()
-        })
         addEventListener("keydown", event => this.key(event), { signal: ended })
         addEventListener("resize", () => this.view?.formulas(), { signal: ended })
         this.student.changed = () => this.show()
@@ -131,6 +127,7 @@ export class Column implements Robots {
         if (!this.open) return this.leave("")
         const place = `${message.lesson}.${message.ended ? END : message.index}`
         const isNew = place !== this.place
+        const reads = element.contains(document.activeElement)
         if (isNew) this.leave(place)
         for (const step of message.steps) for (const block of step.blocks) this.bend(block)
         Object.assign(page, { lesson: message.lesson, symbols: message.symbols, steps: message.steps, test: message.test })
@@ -139,7 +136,7 @@ export class Column implements Robots {
         put(this.head, message.head)
         put(this.pager, message.pager)
         this.fill(message)
-        if (isNew) this.begin()
+        if (isNew) this.begin(reads)
         this.show()
     }
 
@@ -227,8 +224,8 @@ export class Column implements Robots {
         if (view) this.follow()
     }
 
-    /** A step has been opened. */
-    private begin(): void {
+    /** A step has been opened, perhaps by someone whose focus was in the column. */
+    private begin(reads: boolean): void {
         const { section, view } = this
         const words = section.querySelector<HTMLElement>(".words")!
         section.prepend(this.head)
@@ -237,7 +234,7 @@ export class Column implements Robots {
         this.follow()
         view?.place()
         words.scrollTo(0, 0)
-        if (this.element.contains(document.activeElement)) words.focus({ preventScroll: true }) // whoever pressed Next reads on
+        if (reads) words.focus({ preventScroll: true }) // whoever pressed Next reads on
     }
 
     /** Follow the tasks of the open step. */

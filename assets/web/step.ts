@@ -36,6 +36,7 @@ export class StepView {
     /** The form of a prediction that is asked here. */
     form: Form | null = null
     private compared: Comparison | null = null
+    private shown = "" // what it compares
 
     constructor(
         private readonly page: PageData,
@@ -107,11 +108,12 @@ export class StepView {
         const step = page.steps[index]!
         if (step.kind !== "run") return
         const told = section.querySelector<HTMLElement>(".play")
-        const button = told?.querySelector<HTMLButtonElement>("button.main")
+        const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")
         const { waits, happened } = this
         if (button) {
             button.disabled = waits || !robots.ready
             button.hidden = robots.playing
+            button.classList.toggle("main", !notes.played[String(index)])
             button.textContent = said(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
         }
         section.querySelector(".before")?.remove()
@@ -145,11 +147,14 @@ export class StepView {
     private compare(): void {
         const { page, prediction, notes, robots } = this
         const { section, beneath } = this.places
+        const sketched = prediction?.data.kind === "sketch"
+        const due = prediction !== null && !this.waits && (sketched || (this.happened && !robots.playing))
+        const shown = due ? JSON.stringify([notes.answers[String(prediction.step)], page.steps[prediction.step]!.blocks]) : ""
+        if (shown === this.shown) return // an open table stays open
+        this.shown = shown
         for (const place of [section, beneath]) place.querySelectorAll(".compared").forEach(each => each.remove())
         this.compared = null
-        if (!prediction || this.waits) return
-        const sketched = prediction.data.kind === "sketch"
-        if (!sketched && (!this.happened || robots.playing)) return
+        if (!due) return
         this.compared = new Comparison(page, prediction, notes)
         const box = made("div", "compared", ...this.compared.elements)
         if (sketched) return beneath.append(box)

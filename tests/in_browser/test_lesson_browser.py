@@ -51,6 +51,7 @@ def curves(tab: Tab) -> list[str]:
     chart.wait_for()
     if chart.locator("details.table[open]").count() == 0:
         chart.locator("summary").click()
+    chart.locator("th").last.wait_for()
     return [name.split(" [")[0] for name in chart.locator("th").all_inner_texts()[1:-1]]
 
 
@@ -68,8 +69,9 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     for seen in (commit, tab.page.locator(".board"), tab.page.get_by_text("over these 8 seconds")):
         expect(seen).to_be_in_viewport(ratio=1)
     expect(commit).to_be_disabled()
+    tab.wait_until_built()
     tab.page.keyboard.press("Space")
-    wait_for(lambda: "commit" in tab.said())
+    wait_for(lambda: "commit" in tab.lab.message)
     assert not tab.session.running and tab.session.time == 0.0
     way = board(tab, (0.1, 0.8), (0.35, 0.8), (0.45, 0.3), (0.6, 0.3), (0.7, 0.8))
     with tab.dragging(*way, in_scene=False):
@@ -91,7 +93,7 @@ def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
     tab.page.get_by_text("Four arches, not one bump").wait_for()
     truth = tab.lab.lessons.notes.truths["1"]
     assert max(truth.tracker) > 40 > 3 > max(truth.follower)
-    assert curves(tab) == ["Tracker", "Follower", "you"]
+    assert curves(tab) == ["Tracker", "Follower", "Your prediction"]
 
 
 def test_a_reload_in_the_middle_comes_back_to_the_step(tab: Tab) -> None:

@@ -8,25 +8,24 @@ import pytest
 
 pytest.importorskip("playwright")
 
-from playwright.sync_api import Browser
+from playwright.sync_api import Browser, expect
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.server.lab_server import LabServer
-from tests.support.browser import Tab, wait_for
+from tests.support.browser import WAIT, Tab, wait_for
 
 pytestmark = pytest.mark.thorough
+expect.set_options(timeout=WAIT * 1e3)
 
 LESSON, LONG = "01-path-or-timetable", "03-the-five-bar"
 LINE = 24  # [px]; the browser itself may scroll so far, to keep what is read in its place
 SCROLL = """(to) => {
-    let box = document.querySelector("[data-step]")
-    while (box !== null && !(box.scrollHeight > box.clientHeight + 50 &&
-            ["auto", "scroll"].includes(getComputedStyle(box).overflowY))) box = box.parentElement
-    if (box !== null && to !== null) box.scrollTop = to
-    return box === null ? 0 : box.scrollTop
+    const words = document.querySelector("#op-column .step.open .words")
+    if (to !== null) words.scrollTop = to
+    return words.scrollTop
 }"""
-"""Scrolls the container of the step's page, and returns how far it is scrolled, [px]."""
+"""Scrolls the text of the open step, and returns how far it is scrolled, [px]."""
 SEEN = """(heading) => {
     const { x, y, height } = heading.getBoundingClientRect()
     return heading.contains(document.elementFromPoint(x + 5, y + height / 2))
@@ -84,7 +83,7 @@ def test_what_happens_can_be_seen_without_a_prediction(tab: Tab) -> None:
     tab.page.get_by_text("First go back and make the prediction").wait_for()
     assert tab.button("Let it happen").is_disabled()
     tab.press("Skip the prediction")
-    tab.page.get_by_text("You skipped the prediction.").wait_for()
+    wait_for(lambda: not tab.lab.lessons.waits)
     assert tab.lab.lessons.index == 2
     tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
@@ -107,23 +106,39 @@ def test_a_fold_is_opened_by_mouse_and_by_keys_and_the_lab_does_not_hear_them(ta
     assert tab.session.running == running
 
 
-def test_on_a_telephone_a_step_and_the_buttons_it_speaks_of_are_seen_together(
+@pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])
+def test_question_board_and_commit_are_seen_together_and_next_always(
+    browser: Browser, server: LabServer, size: tuple[int, int]
+) -> None:
+    context = browser.new_context(viewport={"width": size[0], "height": size[1]}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    tab.ask(TakeStep(LESSON, 1))
+    wait_for(lambda: is_seen(tab, 1))
+    question = tab.page.locator(".asked.sketch .question")
+    for each in (question, tab.page.locator(".board"), tab.button("Commit to this prediction")):
+        expect(each).to_be_in_viewport(ratio=0.99)
+    assert tab.button("Skip the prediction").evaluate(SEEN)
+    for index in range(2, 10):
+        tab.ask(c.Predict(), TakeStep(LESSON, index))
+        tab.wait_until_built()
+        forward = tab.page.locator("#op-column .ways button").last
+        assert forward.evaluate(SEEN), index
+    assert tab.errors == []
+    context.close()
+
+
+def test_on_a_telephone_the_column_makes_room_for_the_controls_of_a_step(
     browser: Browser, server: LabServer
 ) -> None:
     context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
     tab = Tab(server, context, draws=False)
-    tab.ask(TakeStep(LESSON, 9))
-    wait_for(lambda: is_seen(tab, 9))
-    hold = tab.page.locator("#op-bar").get_by_role("button", name="Hold back")
-    box = hold.bounding_box()
-    assert box is not None and box["height"] >= 44 and box["y"] + box["height"] < 0.42 * 844
-    tab.ask(c.SetRunning(True))
-    hold.tap()
-    tab.page.locator("#op-bar").get_by_role("button", name="Let go").wait_for()
-    assert tab.session.forces.held and is_seen(tab, 9)
-    tab.ask(TakeStep(LESSON, 1))  # a prediction to sketch
-    wait_for(lambda: is_seen(tab, 1))
-    tab.page.locator("#op-bar").wait_for(state="hidden")
+    tab.ask(TakeStep(LESSON, 6))
+    wait_for(lambda: is_seen(tab, 6))
+    tab.button("Controls").tap()
+    wait_for(lambda: not is_seen(tab, 6))
+    expect(tab.slider("K1")).to_be_in_viewport()
+    tab.button("Controls").tap()
+    wait_for(lambda: is_seen(tab, 6))
     context.close()
 
 
@@ -135,6 +150,5 @@ def test_on_a_desk_a_lesson_leaves_the_scene_most_of_the_width(
     tab.ask(c.OpenLesson(LESSON))
     wait_for(lambda: is_seen(tab, 0))
     wait_for(lambda: 0.6 * 1280 < tab._canvas()["width"] < 0.75 * 1280)
-    hold = tab.button("Hold both back").bounding_box()
-    assert hold is not None and hold["y"] + hold["height"] < 800
+    expect(tab.button("Hold both back")).to_be_in_viewport(ratio=1)
     context.close()

@@ -29,17 +29,16 @@ PLACE_OF = """(options, html) => {
     return options.findIndex(each => bare(each.textContent).slice(1) === bare(wanted.textContent))
 }"""
 """The place among the options on the page of the one with a text; -1 if there is none."""
-BOARD = ((0.22, 0.47), (0.4, 0.46), (0.5, 0.38), (0.6, 0.36), (0.78, 0.47))
-"""A curve on the board for sketches, in shares of the scene's width and height."""
+BOARD = ((0.1, 0.8), (0.35, 0.75), (0.45, 0.35), (0.6, 0.3), (0.75, 0.8))
+"""A curve on the board for sketches, in shares of its width and height."""
 
 
 def sketch(hands: Hands) -> None:
     """Draw a curve on the board."""
     page = hands.tab.page
-    box = Hands.box(page.locator("canvas").first)
-    with hands.dragging(
-        *((box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in BOARD)
-    ):
+    box = Hands.box(page.locator(".board"))
+    way = [(box["x"] + x * box["width"], box["y"] + y * box["height"]) for x, y in BOARD]
+    with hands.tab.dragging(*way, in_scene=False):
         pass
     page.get_by_text("Draw again, or commit").wait_for()
 
@@ -74,7 +73,7 @@ class Pupil:
 
     def hurry(self) -> None:
         """Let time run as fast as a student can."""
-        self.tab.choose("Time runs at", "4×")
+        self.tab.page.locator("#op-strip .transport select").select_option(index=5)
         wait_for(lambda: self.tab.session.rate == 4.0)
 
     def open(self, label: str, name: str) -> None:
@@ -137,13 +136,11 @@ class Pupil:
         if isinstance(block, Choice):
             self.choose(block)
         else:
-            page.get_by_text("Draw with the mouse").wait_for()
             self.tab.settle()
             sketch(Hands(self.tab, touch=False))
-        self.tab.choose("How sure are you? (optional)", "fairly sure")
+        page.get_by_label("How sure are you? (optional)").select_option(label="fairly sure")
         if block.reasons:
-            page.get_by_label("Why? (optional)").first.click()
-            page.get_by_role("option").nth(1).click()
+            page.get_by_label("Why? (optional)").select_option(index=1)
         elif block.why:
             page.get_by_label("Why? (optional)").fill("Because.")
         page.get_by_role("button", name="Commit to this prediction").click()
@@ -173,7 +170,7 @@ class Pupil:
         right = next(i for i, option in enumerate(block.options) if option.right)
         index = right if self._right else self._asked % len(block.options)
         self._asked += 1
-        options = self.tab.page.locator("button.op-answer")
+        options = self.tab.page.locator("#op-column .step.open .options label")
         text = block.options[index].text
         place = wait_for(lambda: options.evaluate_all(PLACE_OF, text) + 1) - 1
         options.nth(place).click()
@@ -182,6 +179,8 @@ class Pupil:
     def _answer(self, place: int, block: Quiz) -> None:
         notes, key = self.tab.lab.lessons, f"{self.tab.lab.lessons.index}.{place}"
         index = self.choose(block)
+        box = self.tab.page.locator(f'#op-column .step.open [data-block="{place}"]')
+        box.get_by_role("button").first.click()
         wait_for(lambda: notes.notes.quiz.get(key) == index)
         self.tab.wait_until_built()
 
@@ -194,9 +193,7 @@ class Pupil:
         """Answer a question with a number."""
         unit = f" [{block.unit}]" if block.unit else ""
         typed = f"{given:g}"
-        self.tab.number(f"Your number{unit}").click()
-        self.tab.page.keyboard.press("Control+A")
-        self.tab.page.keyboard.type(typed)
+        self.tab.page.get_by_label(f"Your number{unit}").fill(typed)
         self.press("Check")
         run = self.tab.lab.lessons
         wait_for(lambda: float(typed) in run.notes.numbers.values())
@@ -205,7 +202,7 @@ class Pupil:
     def _write(self, block: OpenQuestion) -> None:
         self.field("Your answer, in your own words").fill("In my own words.")
         self.press("Keep my answer")
-        self.tab.page.get_by_text("A model answer").wait_for()
+        wait_for(lambda: self.tab.lab.lessons.notes.written)
         self.tab.wait_until_built()
 
     def field(self, label: str) -> Locator:
