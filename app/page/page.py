@@ -45,6 +45,7 @@ from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
+STANDS = 5  # of them, until the panel can be folded
 CONTROL_WIDTH = 330  # [px]
 TITLES = 44.0  # [px], of the scene, that the titles of the robots take
 MOST_TITLES = 0.1  # of its height
@@ -63,6 +64,7 @@ class Page:
         is_outdated: whether the page must be rebuilt, for which it needs a complete snapshot.
         exporter: creates the files requested on this page.
         column: what the data channel tells of the lessons; None on a teacher's page.
+        has_script: whether the page's script listens to its data channel.
     """
 
     def __init__(
@@ -80,7 +82,8 @@ class Page:
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
-        self._folded = False
+        self._folded = True  # perhaps by the page before, in the same browser
+        self._wants_folded = self.has_script = False
         self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
@@ -111,6 +114,7 @@ class Page:
             self._overlays.update(motion)
             self._overlays.follow(snapshot)
             self._frame_camera()
+            self._follow_fold()
             for part in self._parts:
                 part.follow(snapshot)
 
@@ -330,14 +334,25 @@ class Page:
             panel.dock_right()
             panel.set_width(CONTROL_WIDTH)
         self._narrow = self._wanted_narrow
+        if self._folded:
+            panel.expand()
+        self._folded = False
         self._fold(folded)
 
     def _fold(self, away: bool) -> None:
-        """Fold viser's panel away, or show it; there it stays until the user does otherwise."""
-        panel = self._client.gui.main_panel
-        if away != self._folded:
-            (panel.minimize if away else panel.expand)()
-        self._folded = away
+        """Have viser's panel folded away, or shown; then it stays until the user does otherwise."""
+        self._wants_folded = away
+
+    def _follow_fold(self) -> None:
+        """Fold the panel, or show it, once the page's script has read in it what it needs.
+
+        A folded panel is not in the document; see panel/page.html.
+        """
+        stands = self.has_script and self._settling < SETTLING - STANDS
+        if self._wants_folded != self._folded and stands:
+            self._folded = self._wants_folded
+            panel = self._client.gui.main_panel
+            (panel.minimize if self._folded else panel.expand)()
 
     def _is_narrow(self) -> bool:
         camera = self._client.camera

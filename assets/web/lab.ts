@@ -180,9 +180,10 @@ export function showLab(): void {
     let face: Face | null = null
     let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
+    let source: DOMStringMap | undefined
     const look = () => {
-        const source = document.querySelector<HTMLElement>("[data-page]")?.dataset
-        if (!source) return // the page is being built
+        source = document.querySelector<HTMLElement>("[data-page]")?.dataset ?? source
+        if (!source) return // the page is being built; later, its panel may be folded
         root.classList.remove("op-loading")
         engine.open(source["ticket"] ?? "")
         if (source["parts"] !== words) {
