@@ -42,9 +42,9 @@ def parameter_help(name: str, spec: Spec, words: Words) -> str:
     return words.get(f"parameter.{name}.help", spec.help)
 
 
-def option_label(name: str, option: str, words: Words) -> str:
+def option_label(name: str, option: object, words: Words) -> str:
     """Displayed name of one of a parameter's options."""
-    return words.get(f"parameter.{name}.option.{option}", option.replace("_", " "))
+    return words.get(f"parameter.{name}.option.{option}", str(option).replace("_", " "))
 
 
 def path_label(name: str, words: Words) -> str:
