@@ -63,7 +63,7 @@ def test_only_the_controls_of_the_step_are_shown(tab: Tab) -> None:
 def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     tab.press("Next")
     wait_for_heading(tab, "Draw what the tracker does")
-    tab.page.get_by_text("Draw with the mouse").wait_for()
+    tab.page.get_by_text("Draw on the board with the mouse").wait_for()
     assert tab.button("Commit to this prediction").is_disabled()
     tab.page.keyboard.press("Space")
     wait_for(lambda: "commit" in tab.said())

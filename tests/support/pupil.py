@@ -137,7 +137,7 @@ class Pupil:
         if isinstance(block, Choice):
             self.choose(block)
         else:
-            page.get_by_text("Draw with the mouse").wait_for()
+            page.get_by_text("Draw on the board with the mouse").wait_for()
             self.tab.settle()
             sketch(Hands(self.tab, touch=False))
         self.tab.choose("How sure are you? (optional)", "fairly sure")
