@@ -1264,6 +1264,8 @@ fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinand
 
 stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
 stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich oder größer als { $most } ist
+stop-own_law = { $law } ergibt eine Zahl, die nicht endlich oder größer als { $most } ist ({ $file }, Zeile { $line })
+stop-called_law = { $law } wurde angehalten: { $reason } ({ $file }, Zeile { $line })
 stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist divergiert
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
@@ -1345,6 +1347,10 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
 error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
+error-law_of_file = { $law }: erwartet wird DATEI.py:NAME, etwa my_law.py:SlidingMode
+error-law_no_file = es gibt keine Datei { $file }
+error-law_same_name = OnPath hat ein Gesetz namens { $law }: wählen Sie einen anderen Namen
+error-law_is_called = { $law } ist eine Python-Funktion, die in jedem Regelintervall aufgerufen wird. Das geht in onpath.simulate, onpath experiment und onpath arena; hier ist ein Gesetz ein Objekt mit command(view)
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
@@ -1353,7 +1359,7 @@ error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
 error-path_named = Bahn { $name }: { $reason }
-error-law_no_text = ein Gesetz ist ein Name aus onpath.laws() oder ein Text wie „across = -K1*xi - K2*dxi; along = 0“, aber kein { $kind }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws(), ein Text wie „across = -K1*xi - K2*dxi; along = 0“, DATEI.py:NAME, eine Funktion oder ein Objekt mit command(view), aber kein { $kind }
 error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }

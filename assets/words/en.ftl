@@ -964,6 +964,8 @@ fault-narrow = two strands of the path are closer to each other than { $least } 
 
 stop-range = the numbers have left the range of a computer
 stop-typed_law = the typed law gives a number that is not finite, or is larger than { $most }
+stop-own_law = { $law } gives a number that is not finite, or is larger than { $most } ({ $file }, line { $line })
+stop-called_law = { $law } has been stopped: { $reason } ({ $file }, line { $line })
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
@@ -1037,6 +1039,10 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
 error-law_fails = { $law } cannot be used here: { $reason } ({ $file }, line { $line })
+error-law_of_file = { $law }: expected FILE.py:NAME, such as my_law.py:SlidingMode
+error-law_no_file = there is no file { $file }
+error-law_same_name = OnPath has a law named { $law }: choose another name
+error-law_is_called = { $law } is a Python function, which is called in every control interval. That works in onpath.simulate, onpath experiment and onpath arena; here a law is an object with command(view)
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
@@ -1045,7 +1051,7 @@ error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
 error-law_character = { $character } means nothing here
 error-path_named = path { $name }: { $reason }
-error-law_no_text = a law is a name of onpath.laws(), or a text such as “across = -K1*xi - K2*dxi; along = 0”, but not a { $kind }
+error-law_no_text = a law is a name of onpath.laws(), a text such as “across = -K1*xi - K2*dxi; along = 0”, FILE.py:NAME, a function, or an object with command(view), but not a { $kind }
 error-law_instead = write { $instead } instead of { $text }
 error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
 error-law_large_number = a number is at most { $most }

@@ -152,7 +152,11 @@ def settings_vector(
     counts = parameters.encoder_counts
     return layouts.settings.pack(
         {name: getattr(parameters, name) for name in GAINS}
-        | {name: gain.of(parameters) for name, gain in OWN_GAINS.items()}
+        | {
+            name: gain.of(parameters)
+            for name, gain in OWN_GAINS.items()
+            if name in layouts.settings.slices  # not if its law was added after this loop was built
+        }
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
