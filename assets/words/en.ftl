@@ -1364,3 +1364,69 @@ robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .ob
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> would read other files or run code: leave it out
 robot_file-left_out = left out: { $parts }
+
+## The arena (app/exports/arena_page.py)
+
+arena-title = The arena
+arena-made = OnPath · { $done ->
+        [one] 1 trial
+       *[other] { $done } trials
+    } of { $planned } · { $command }
+arena-same = Every law goes through the same trials: the same robot, path, obstruction and condition, the same gains, the same model, motors and torque limit, and the same random numbers. The torque limit is 1.5 times what undisturbed path following needs on that path.
+arena-rows = Most laws have two rows. With “cut”, torques are cut at the limit. With “across first”, a remedy that is no part of any law acts there: it gives up acceleration along the path before that across it. A law that commands torques itself has one row.
+arena-numbers = Each cell has the worst value over all trials that give one and, in small type, the median. The worst value leads to its run. The number in the circle is the rank in this measure among the rows of the same robot, from 1, the best; equal values share a rank. A law with a run that was stopped ranks behind all laws without one. There is no total: what matters is yours to say.
+arena-measures = What is measured
+arena-force_N = force to leave the path
+arena-force_N_text = A hand goes along with the end-point and pulls it across the path, with a force that grows by 2 N each second up to 10 N. This is the force when the end-point is first 5 mm from the path. Larger is better: the law yields less. A robot that is meant to yield is not worse for it.
+arena-distance_m = distance
+arena-distance_m_text = The largest distance of the end-point from the path, in all trials except the pull.
+arena-delay_s = delay
+arena-delay_s_text = How late the end-point is at the end of a trial, at the wanted speed; negative: early. Laws are ranked by its size. A law without a clock is late by about as long as it was held, on purpose. Laps are counted by the closest point: an end-point that cuts across the inside may lose a lap, which counts as 1 s.
+arena-energy_J = energy given to the hand
+arena-energy_J_text = The largest work that the end-point does on the hand, the brake or the wall. It is what a person who holds the robot feels as a push.
+arena-overshoot_m = overshoot after release
+arena-overshoot_m_text = How far the end-point leaves the path again after it is released, counted from the moment at which it is within 5 mm of the path and comes no nearer. “Not back”: it does not come within 5 mm until the end.
+arena-stops = stops
+arena-stops_text = Runs that were ended because the motion diverged or the law failed, of all runs. They have no other numbers.
+arena-of = { $stops } of { $runs }
+arena-law = law
+arena-limit = at the limit
+arena-cut = cut
+arena-remedy = across first
+arena-torques = cut, commands torques
+arena-median = median { $value }
+arena-rank = rank { $rank }
+arena-never = not with 10
+arena-not_back = not back
+arena-own = yours
+arena-trials = { $count ->
+        [one] 1 trial
+       *[other] { $count } trials
+    }
+arena-obstructions = The trials
+arena-trial = trial
+arena-robot = robot
+arena-path = path
+arena-obstruction = obstruction
+arena-condition = condition
+arena-pull = a pull across that grows
+arena-brake = a brake along the path, 1 s
+arena-hand = a hand that pulls, 1 s
+arena-wall = a wall across the path, 1 s
+arena-weak = motors half as strong
+arena-exact = exact model
+arena-payload = a payload that no law knows
+arena-noise = noise and encoders
+arena-slow = control at 100 Hz
+arena-runs = The runs behind the numbers
+arena-run = { $obstruction }; { $path }, { $condition } (trial { $number }, { $robot })
+arena-picture = Left: distance from the path over { $lasts } s, up to { $most } mm; shaded: while the obstruction acts; dashed: 5 mm. Right: the path, grey, and the way of the end-point.
+arena-recorded = The point moves as it was recorded.
+arena-figure = Try this law on this robot: a live figure
+arena-repeat = The same run:
+arena-stopped = stopped at { $time } s: { $reason }
+arena-laws = The laws
+arena-interrupted = interrupted: { $html } has the trials that all laws have finished
+arena-nothing = interrupted before all laws had finished a trial
+arena-first = first table, after { $seconds } s
+arena-written = written: { $html } and { $csv }
