@@ -59,6 +59,11 @@ def laws_of_files() -> list[str]:
     return list(_FILES.values())
 
 
+def as_given(law: str) -> str:
+    """A law as the command line takes it: its name or text, or FILE.py:NAME."""
+    return _FILES.get(law, law)
+
+
 def add_laws(laws: list[str]) -> None:
     """Add the laws of `laws_of_files` of another process; they get the same names."""
     for law in laws:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from onpath.app.common.own_laws import as_given
 from onpath.app.common.templates import render
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
@@ -163,7 +164,7 @@ def command_of(result: Result) -> str:
     """The command that repeats a run."""
     trial = result.trial
     given = ["onpath", "experiment", "obstruction", "--robot", trial.robot, "--path", trial.path]
-    given += ["--law", result.law]
+    given += ["--law", as_given(result.law)]
     for name, value in trial.settings(bool(result.remedy)).items():
         given += ["--set", f"{name}={value}"]
     return shlex.join(given)

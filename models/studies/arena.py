@@ -292,13 +292,14 @@ def measured(
     z = experiment.robot().frame.planar(moved.fields["y"])
     shown = np.column_stack([moved.t, moved.distance, z])[::EVERY]
     result = Result(law=law, remedy=remedy, trial=trial, shown=shown)
+    distance, force, y = moved.distance, moved.fields["force"], moved.fields["y"]
+    off = distance > OFF
+    if trial.obstruction == "pull" and off.any():  # what a stronger pull does is not asked
+        return dataclasses.replace(result, force_N=float(np.linalg.norm(force[off.argmax()])))
     if moved.stopped_at is not None:
         return dataclasses.replace(result, stopped_at_s=moved.stopped_at, reason=moved.reason)
-    distance, force, y = moved.distance, moved.fields["force"], moved.fields["y"]
     if trial.obstruction == "pull":
-        off = distance > OFF
-        size = float(np.linalg.norm(force[off.argmax()])) if off.any() else np.inf
-        return dataclasses.replace(result, force_N=size)
+        return dataclasses.replace(result, force_N=np.inf)
     steps = np.diff(y, axis=0, append=y[-1:])
     given = -np.cumsum((force * steps).sum(1))
     speed, theta = experiment.parameters.speed, moved.fields["theta"][:, 0]

@@ -26,6 +26,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 CHUNK = 200  # ticks between checks for divergence
+FAR_AWAY = 1e3  # [m]
 STEP = 0.01  # [s] after which a hand that goes along with the end-point has moved
 JUMP = 0.5  # [rad] in one tick; a closest point that moves farther has jumped
 LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])  # turns a tangent to the left
@@ -136,34 +137,34 @@ class ScheduledRun:
     def _push(self) -> Push:
         """The external action on the end-point from now on."""
         schedule, dt, frame = self._schedule, self._dt, self._robot.frame
-        hand = wall = None
+        hand, share, wall = None, 1.0, None
         if self._tick in schedule.ticks("push", dt):
             hand = frame.lift(np.array(schedule.hand()))
         if self._tick in schedule.ticks("pull", dt):
-            hand = self._pulling()
+            hand, share = self._pulling()
         if self._tick in schedule.ticks("wall", dt):
             wall = schedule.wall().lifted(frame)
         if not self._held():
-            return Push(hand=hand, wall=wall)
+            return Push(hand=hand, share=share, wall=wall)
         if self._brake is None:
             self._brake = self._braked()
         hold, hold_normal = self._brake
-        return Push(hand=hand, hold=hold, hold_normal=hold_normal, wall=wall)
+        return Push(hand=hand, share=share, hold=hold, hold_normal=hold_normal, wall=wall)
 
-    def _pulling(self) -> Array:
-        """Where the hand is that pulls across, shape (p,), [m]: its force is F n, without drag.
+    def _pulling(self) -> tuple[Array, float]:
+        """Where the hand is that pulls across, shape (p,), [m], and the share of its force.
 
-        The spring and the damper give F n = k (hand - y) - d y', with y' = σ'(θ) θ'.
+        It is far away, so that its force is the largest one and has the direction of the normal:
+        taken for the middle of the next `STEP`, as the force is.
         """
-        fields, grip, frame = self._fields(), self._robot.grip.hand, self._robot.frame
-        first = self._curve.plan.at(fields["theta"][0], 1)
-        zero = frame.lift(np.zeros(2))
-        left = frame.lift(LEFT @ first / np.linalg.norm(first)) - zero
-        rate = frame.lift(first * fields["theta_rate"][0]) - zero
-        pulled = self._tick * self._dt - self._schedule.pull_from
-        force = np.clip(self._schedule.pull_rate * pulled, -grip.largest, grip.largest)
-        y = self._robot.endpoint(fields["q"])
-        return y + (force * left + grip.damping * rate) / grip.stiffness
+        fields, frame, schedule = self._fields(), self._robot.frame, self._schedule
+        theta = fields["theta"][0] + STEP / 2 * fields["theta_rate"][0]
+        first = self._curve.plan.at(theta, 1)
+        left = frame.lift(LEFT @ first / np.linalg.norm(first)) - frame.lift(np.zeros(2))
+        passed = self._tick * self._dt + STEP / 2 - schedule.pull_from
+        share = schedule.pull_rate * passed / self._robot.grip.hand.largest
+        away = np.sign(share) * FAR_AWAY * left
+        return self._robot.endpoint(fields["q"]) + away, min(abs(share), 1.0)
 
     def _braked(self) -> tuple[tuple[Array, Array], Array | None]:
         """A brake that is applied now, see `brake_in`."""
