@@ -1372,7 +1372,7 @@ arena-made = OnPath · { $done ->
         [one] 1 trial
        *[other] { $done } trials
     } of { $planned } · { $command }
-arena-same = Every law goes through the same trials: the same robot, path, obstruction and condition, the same gains, the same model, motors and torque limit, and the same random numbers. The torque limit is 1.5 times what undisturbed path following needs on that path.
+arena-same = Every law goes through the same trials: the same robot, path, obstruction and condition, the same gains, the same model, motors and torque limit, and the same random numbers. The torque limit is 1.5 times what undisturbed path following needs on that path, with weak motors 0.9 times.
 arena-rows = Most laws have two rows. With “cut”, torques are cut at the limit. With “across first”, a remedy that is no part of any law acts there: it gives up acceleration along the path before that across it. A law that commands torques itself has one row.
 arena-numbers = Each cell has the worst value over all trials that give one and, in small type, the median. The worst value leads to its run. The number in the circle is the rank in this measure among the rows of the same robot, from 1, the best; equal values share a rank. A law with a run that was stopped ranks behind all laws without one. There is no total: what matters is yours to say.
 arena-measures = What is measured
@@ -1413,7 +1413,7 @@ arena-pull = a pull across that grows
 arena-brake = a brake along the path, 1 s
 arena-hand = a hand that pulls, 1 s
 arena-wall = a wall across the path, 1 s
-arena-weak = motors half as strong
+arena-weak = weak motors
 arena-exact = exact model
 arena-payload = a payload that no law knows
 arena-noise = noise and encoders
