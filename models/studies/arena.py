@@ -8,6 +8,7 @@ condition, and is an `Experiment`: `onpath experiment` repeats it.
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -306,13 +307,13 @@ def measured(
     given = -np.cumsum((force * steps).sum(1))
     speed, theta = experiment.parameters.speed, moved.fields["theta"][:, 0]
     delay = float(moved.t[-1] - (theta[-1] - theta[0]) / speed)
-    obstructed = trial.released is not None
+    released = trial.released
     return dataclasses.replace(
         result,
         distance_m=float(distance.max()),
         delay_s=delay,
-        energy_J=max(float(given.max()), 0.0) if obstructed else None,
-        overshoot_m=_overshoot(distance[moved.t >= trial.released]) if obstructed else None,
+        energy_J=None if released is None else max(float(given.max()), 0.0),
+        overshoot_m=None if released is None else _overshoot(distance[moved.t >= released]),
     )
 
 
@@ -332,18 +333,20 @@ def table(rows: Sequence[Row], results: Sequence[Result]) -> dict[Row, dict[str,
     cells: dict[Row, dict[str, Cell]] = {row: {} for row in rows}
     for name in MEASURES:
         worst = {row: _worst(row, name, results) for row in rows}
-        sign = -1.0 if name in LARGER_IS_BETTER else 1.0
-
-        def key(row: Row, worst: Any = worst, sign: float = sign, step: float = STEPS[name]) -> Any:
-            value = worst[row][0]
-            size = np.inf if value is None else sign * np.round(abs(value) / step)
-            return stops[row], value is None, size
-
-        order = sorted(key(row) for row in rows)
+        keys = {row: (stops[row], *_badness(name, worst[row][0])) for row in rows}
+        order = sorted(keys.values())
         for row in rows:
             value, median, of = worst[row]
-            cells[row][name] = Cell(value, median, order.index(key(row)) + 1, of)
+            cells[row][name] = Cell(value, median, order.index(keys[row]) + 1, of)
     return cells
+
+
+def _badness(name: str, value: float | None) -> tuple[bool, float]:
+    """What a measure is ranked by, the best first: a lacking value comes last."""
+    if value is None:
+        return True, 0.0
+    steps = abs(value) if math.isinf(value) else float(round(abs(value) / STEPS[name]))
+    return False, -steps if name in LARGER_IS_BETTER else steps
 
 
 def complete(

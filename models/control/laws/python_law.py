@@ -147,7 +147,7 @@ def _is_of(value: Any, module: str) -> bool:
 
 
 def _compiled(name: str, made: Any, origin: tuple[str, int]) -> Law:
-    given = {field: getattr(made, field) for field in GIVEN if hasattr(made, field)}
+    given: dict[str, Any] = {f: getattr(made, f) for f in GIVEN if hasattr(made, f)}
     for field in ("gains", "own_gains"):
         given[field] = tuple(given.get(field, ()))
     if odd := [each for each in given["own_gains"] if not isinstance(each, OwnGain)]:
@@ -156,10 +156,11 @@ def _compiled(name: str, made: Any, origin: tuple[str, int]) -> Law:
         raise ValueError(f"gains has {odd[0]!r}, which is not one of K1 to K5")
     given["memory"] = tuple((str(field), int(size)) for field, size in given.get("memory", ()))
     texts = {"label": _title(name), "text": _first_line(made), "source": ""}
-    named = {field: str(given.get(field) or text) for field, text in texts.items()}
+    given |= {field: str(given.get(field) or text) for field, text in texts.items()}
     if not callable(made.command):
         raise TypeError("command is no function")
-    return Law(**{**given, **named}, name=name, command=made.command, origin=origin)
+    given["command"] = made.command
+    return Law(**given, name=name, origin=origin)
 
 
 def _called(

@@ -109,3 +109,13 @@ def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
     assert run_command([*given, "--language", "de", *files]) == 0
     page = (tmp_path / "a.html").read_text("utf-8")
     assert "Bahnfolgen" in page and re.search(r">\d+,\d\d</a>", page)
+
+
+@pytest.mark.thorough
+def test_the_table_of_our_laws_is_what_the_arena_gives(
+    files: list[str], tmp_path: Path, capsys: Any
+) -> None:
+    assert run_command(["arena", "--no-figures", *files]) == 0
+    text = (ROOT / "models" / "studies" / "README.md").read_text("utf-8")
+    shown = text.partition("<!-- made by `onpath arena` -->")[2].partition("<!-- end -->")[0]
+    assert shown.strip() == capsys.readouterr().out.strip()
