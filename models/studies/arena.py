@@ -16,6 +16,7 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
@@ -37,7 +38,7 @@ RESERVE = 1.5  # torque limit over the largest torque of undisturbed path follow
 WEAK = 0.6  # and of weak motors, over that limit: 0.9 times what path following needs
 LASTS, RATE = 5.0, 2.0  # [s], [N/s] of a pull
 ACTS, AFTER = 1.0, 2.0  # [s] of the other obstructions, and after them
-EVERY = 20  # ms between the points of a run that is shown
+EVERY = 20  # [ms] for which a run that is shown has a point
 MOST_LOOPS = 16
 
 
@@ -88,7 +89,7 @@ class Result:
             it is within 5 mm and comes no nearer; infinity if it does not come back.
         stopped_at_s: time at which the run was stopped as diverged, or None.
         reason: why.
-        shown: (t [s], distance [m], z1, z2 [m]) every 20 ms, shape (k, 4).
+        shown: (t [s], distance [m], z1, z2 [m]) where it is farthest off in each 20 ms, (k, 4).
     """
 
     law: str
@@ -293,7 +294,8 @@ def measured(
 ) -> Result:
     """The measures of a run."""
     z = experiment.robot().frame.planar(moved.fields["y"])
-    shown = np.column_stack([moved.t, moved.distance, z])[::EVERY]
+    rows = np.column_stack([moved.t, moved.distance, z])
+    shown = rows[[part[rows[part, 1].argmax()] for part in _parts(len(rows))]]
     result = Result(law=law, remedy=remedy, trial=trial, shown=shown)
     distance, force, y = moved.distance, moved.fields["force"], moved.fields["y"]
     off = distance > OFF
@@ -315,6 +317,12 @@ def measured(
         energy_J=None if released is None else max(float(given.max()), 0.0),
         overshoot_m=None if released is None else _overshoot(distance[moved.t >= released]),
     )
+
+
+def _parts(count: int) -> list[NDArray[np.int_]]:
+    """Consecutive rows, at most `EVERY` in each part."""
+    rows = np.arange(count)
+    return [rows[begin : begin + EVERY] for begin in range(0, count, EVERY)]
 
 
 def _overshoot(distance: Array) -> float:

@@ -82,7 +82,8 @@ def test_the_measures_are_what_they_say() -> None:
     experiment = brake.experiment(False)
     (moved,) = run_all([experiment], "path_following")
     result = measured("path_following", False, brake, experiment, moved)
-    assert result.distance_m == moved.distance.max() and result.force_N is None
+    assert result.distance_m == moved.distance.max() == result.shown[:, 1].max()
+    assert result.force_N is None and len(result.shown) == len(moved.t) // 20 + 1
     lap = 2 * np.pi / experiment.parameters.speed
     assert result.delay_s == pytest.approx(1.0, abs=0.25 * lap)  # held for a second
     work = (moved.fields["force"][:-1] * np.diff(moved.fields["y"], axis=0)).sum(1)
