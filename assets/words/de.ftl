@@ -1359,7 +1359,7 @@ error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
 error-path_named = Bahn { $name }: { $reason }
-error-law_no_text = ein Gesetz ist ein Name aus onpath.laws(), ein Text wie „across = -K1*xi - K2*dxi; along = 0“, DATEI.py:NAME, eine Funktion oder ein Objekt mit command(view), aber kein { $kind }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws(), ein Text wie „across = -K1*xi - K2*dxi; along = 0“, DATEI.py:NAME, eine Funktion oder ein Objekt mit command(view), aber nichts vom Typ { $kind }
 error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }

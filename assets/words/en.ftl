@@ -1051,7 +1051,7 @@ error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
 error-law_character = { $character } means nothing here
 error-path_named = path { $name }: { $reason }
-error-law_no_text = a law is a name of onpath.laws(), a text such as “across = -K1*xi - K2*dxi; along = 0”, FILE.py:NAME, a function, or an object with command(view), but not a { $kind }
+error-law_no_text = a law is a name of onpath.laws(), a text such as “across = -K1*xi - K2*dxi; along = 0”, FILE.py:NAME, a function, or an object with command(view), but nothing of type { $kind }
 error-law_instead = write { $instead } instead of { $text }
 error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
 error-law_large_number = a number is at most { $most }

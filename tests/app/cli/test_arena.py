@@ -12,6 +12,9 @@ import pytest
 
 from onpath.app.cli.main import run_command
 from onpath.app.exports.arena_work import Processes
+from onpath.lessons.words import Words
+from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS
+from tests.support.catalogues import COMPLETE
 from tests.support.checkout import ROOT
 
 EXAMPLES = ROOT / "assets" / "examples"
@@ -109,6 +112,15 @@ def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
     assert run_command([*given, "--language", "de", *files]) == 0
     page = (tmp_path / "a.html").read_text("utf-8")
     assert "Bahnfolgen" in page and re.search(r">\d+,\d\d</a>", page)
+
+
+@pytest.mark.parametrize("language", COMPLETE)
+def test_everything_that_the_page_names_has_words(language: str) -> None:
+    words = Words(language)
+    for name in (*OBSTRUCTIONS, *CONDITIONS, *MEASURES, "cut", "remedy", "torques"):
+        assert words(f"arena.{name}")
+    for name in (*MEASURES, "stops"):
+        assert words(f"arena.{name}_text")
 
 
 @pytest.mark.thorough

@@ -176,8 +176,8 @@ def test_a_file_is_read_again_after_a_change(tmp_path: Path) -> None:
     [
         ("no_such.py:Law", "there is no file"),
         (f"{EXAMPLE}Typo", "did you mean SlidingMode"),
-        (3, "not a int"),
-        (ModuleType("m"), "not a module"),
+        (3, "of type int"),
+        (ModuleType("m"), "of type module"),
     ],
 )
 def test_what_is_no_law_is_refused(law: object, words: str) -> None:
