@@ -104,8 +104,8 @@ class ArenaCommand:
             check_writable(file)
         if self.language not in languages():
             raise ValueError(f"--language {self.language}: there are {', '.join(languages())}")
-        if self.rounds < 1 or self.processes < 0:
-            raise ValueError("--rounds, --processes: the number is too small")
+        if self.rounds < 1 or self.processes < 0 or self.seed < 0:
+            raise ValueError("--rounds, --processes or --seed: the number is too small")
         if self.only and not self.law:
             raise ValueError("--only: give laws to compare")
         laws = [law_given(text) for text in self.law]

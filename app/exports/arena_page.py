@@ -84,9 +84,8 @@ def arena_page(contents: Contents, words: Words) -> str:
                     "links": links,
                 }
             )
-        label = words.get(f"machine.{robot}.label", ROBOTS[robot].label)
         number = len({each.trial.number for each in results})
-        robots.append({"label": label, "lines": lines, "trials": number})
+        robots.append({"label": _robot(robot, words), "lines": lines, "trials": number})
         runs += [
             _run(results[i], mark, titles, contents, words) for i, mark in sorted(marks.items())
         ]
@@ -112,6 +111,10 @@ def arena_page(contents: Contents, words: Words) -> str:
         planned=contents.planned,
         command=contents.command,
     )
+
+
+def _robot(name: str, words: Words) -> str:
+    return words.get(f"machine.{name}.label", ROBOTS[name].label)
 
 
 def _limit(row: Row) -> str:
@@ -146,14 +149,14 @@ def _number(name: str, value: float, words: Words) -> str:
 
 def _told(name: str, value: float, words: Words) -> str:
     """A measure with its name and unit."""
-    unit = "" if math.isinf(value) else f" {SHOWN[name][1]}"
+    unit = "" if math.isinf(value) else f"\N{NO-BREAK SPACE}{SHOWN[name][1]}"
     return f"{words(f'arena.{name}')}: {_number(name, value, words)}{unit}"
 
 
 def _described(trial: Trial, words: Words) -> dict[str, object]:
     return {
         "number": trial.number,
-        "robot": words.get(f"machine.{trial.robot}.label", ROBOTS[trial.robot].label),
+        "robot": _robot(trial.robot, words),
         "path": words.get(f"path.{trial.path}", trial.path),
         "obstruction": words(f"arena.{trial.obstruction}"),
         "condition": words(f"arena.{trial.condition}"),
@@ -259,7 +262,7 @@ def markdown(contents: Contents, words: Words) -> str:
         rows = contents.rows[robot]
         cells = table(rows, results)
         number = len({each.trial.number for each in results})
-        lines = [f"{ROBOTS[robot].label}, {words('arena.trials', count=number)}", ""]
+        lines = [f"{_robot(robot, words)}, {words('arena.trials', count=number)}", ""]
         lines += ["| " + " | ".join([words("arena.law"), "", *units, words("arena.stops")]) + " |"]
         lines += ["|" + "---|" * (len(units) + 3)]
         for row in rows:

@@ -1680,7 +1680,7 @@ arena-made = OnPath · { $done ->
         [one] 1 Versuch
        *[other] { $done } Versuche
     } von { $planned } · { $command }
-arena-same = Jedes Gesetz durchläuft dieselben Versuche: Roboter, Bahn, Hindernis und Bedingung, Verstärkungen, Modell, Motoren, Drehmomentgrenze und Zufallszahlen sind gleich. Die Drehmomentgrenze ist das 1,5-Fache dessen, was ungestörtes Bahnfolgen auf dieser Bahn braucht, bei schwachen Motoren das 0,9-Fache.
+arena-same = Jedes Gesetz durchläuft dieselben Versuche: Roboter, Bahn, Hindernis und Bedingung, Verstärkungen, Modell, Motoren, Drehmomentgrenze und Zufallszahlen sind gleich. Die Drehmomentgrenze ist das 1,5-Fache dessen, was die ungestörte Bahnfolgeregelung auf dieser Bahn braucht, bei schwachen Motoren das 0,9-Fache.
 arena-rows = Die meisten Gesetze haben zwei Zeilen. Bei „gekappt“ werden die Drehmomente an der Grenze abgeschnitten. Bei „quer zuerst“ wirkt dort ein Mittel, das zu keinem Gesetz gehört: Es verzichtet auf Beschleunigung entlang der Bahn, bevor es auf die quer dazu verzichtet. Ein Gesetz, das selbst Drehmomente vorgibt, hat eine Zeile.
 arena-numbers = In jedem Feld steht der schlechteste Wert aller Versuche, die einen ergeben, und klein der Median. Der schlechteste Wert führt zu seinem Lauf. Die Zahl im Kreis ist der Rang in dieser Größe unter den Zeilen desselben Roboters, ab 1, dem besten; gleiche Werte haben denselben Rang. Ein Gesetz mit einem abgebrochenen Lauf steht hinter allen ohne einen. Es gibt keine Gesamtnote: Worauf es ankommt, entscheiden Sie.
 arena-measures = Was gemessen wird

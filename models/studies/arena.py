@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
+from zlib import crc32
 
 import numpy as np
 from numpy.typing import NDArray
@@ -141,33 +142,44 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
     """The trials of each round: every obstruction of every robot once.
 
     The first round is on the circle with an exact model; path and condition of the others are
-    drawn, and place and direction of all obstructions.
+    drawn, and place and direction of all obstructions. What is drawn for a robot does not depend on
+    the other robots, nor on the number of rounds.
+
+    Args:
+        seed: 0 or more.
 
     Raises:
         ValueError: a robot that has no circle to follow.
     """
-    draw, found, number = np.random.default_rng(seed), list[list[Trial]](), 0
+    found, number = list[list[Trial]](), 0
     for round_number in range(rounds):
         trials = list[Trial]()
         for robot in robots:
-            for obstruction in OBSTRUCTIONS:
-                path = PATHS[int(draw.integers(len(PATHS)))] if round_number else PATHS[0]
-                possible = _possible(robot, obstruction)
-                condition = possible[int(draw.integers(len(possible)))] if round_number else "exact"
-                given, released = _drawn(robot, path, obstruction, condition, draw)
-                trials.append(
-                    Trial(
-                        number=(number := number + 1),
-                        robot=robot,
-                        path=path,
-                        obstruction=obstruction,
-                        condition=condition,
-                        values=tuple(given.items()),
-                        released=released,
-                    )
-                )
+            for which, obstruction in enumerate(OBSTRUCTIONS):
+                numbers = [seed, crc32(robot.encode()), round_number, which]
+                draw, number = np.random.default_rng(numbers), number + 1
+                trials.append(_trial(number, robot, obstruction, draw, plain=round_number == 0))
         found.append(trials)
     return found
+
+
+def _trial(
+    number: int, robot: str, obstruction: str, draw: np.random.Generator, plain: bool
+) -> Trial:
+    """A trial that is drawn; a plain one is on the circle, with an exact model."""
+    possible = _possible(robot, obstruction)
+    path = PATHS[0 if plain else int(draw.integers(len(PATHS)))]
+    condition = "exact" if plain else possible[int(draw.integers(len(possible)))]
+    given, released = _drawn(robot, path, obstruction, condition, draw)
+    return Trial(
+        number=number,
+        robot=robot,
+        path=path,
+        obstruction=obstruction,
+        condition=condition,
+        values=tuple(given.items()),
+        released=released,
+    )
 
 
 def _possible(robot: str, obstruction: str) -> list[str]:

@@ -111,7 +111,7 @@ def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
     given = ["arena", "path_following", "--only", "--robot=five_bar", "--rounds=1", "--no-figures"]
     assert run_command([*given, "--language", "de", *files]) == 0
     page = (tmp_path / "a.html").read_text("utf-8")
-    assert "Bahnfolgen" in page and re.search(r">\d+,\d\d</a>", page)
+    assert "Bahnfolgeregelung" in page and re.search(r">\d+,\d\d</a>", page)
 
 
 @pytest.mark.parametrize("language", COMPLETE)

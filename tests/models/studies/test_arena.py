@@ -43,6 +43,13 @@ def test_more_rounds_only_add_trials() -> None:
     assert trials_of(ROBOTS_HERE, 3, 5)[:2] == trials_of(ROBOTS_HERE, 2, 5)
 
 
+def test_the_trials_of_a_robot_do_not_depend_on_others() -> None:
+    both, alone = trials_of(ROBOTS_HERE, 2, 5), trials_of(ROBOTS_HERE[1:], 2, 5)
+    for one, other in zip(both, alone, strict=True):
+        mine = [dataclasses.replace(t, number=0) for t in one if t.robot == ROBOTS_HERE[1]]
+        assert mine == [dataclasses.replace(trial, number=0) for trial in other]
+
+
 def test_all_laws_have_the_same_conditions_but_for_the_remedy() -> None:
     for trial in trials_of(("five_bar",), 2, 1)[1]:
         cut, remedy = trial.settings(False), trial.settings(True)
