@@ -28,7 +28,7 @@ class ExperimentCommand:
     law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
     """Laws to run: names with commas between, all, or both (trajectory_tracking and
     path_following); or a law of your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta -
-    speed)"."""
+    speed)", or in a Python file, as my_law.py:Name."""
     path: str | None = None
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
@@ -139,20 +139,25 @@ class ZeroDynamicsCommand:
 
 
 def laws_named(text: str) -> list[str]:
-    """The laws that a text asks for: names with commas between, "all", "both", or a typed law.
+    """The laws that a text asks for: "all", "both", a typed law, or names with commas between.
+
+    A name may be FILE.py:NAME.
 
     Raises:
         ValueError: an unknown name, or a text that is not a law.
     """
+    from onpath.app.common.own_laws import law_given
     from onpath.models.control.laws.own import is_text
-    from onpath.models.control.laws.registry import LAWS, NAMES, law_name
+    from onpath.models.control.laws.python_law import IN_FILE
+    from onpath.models.control.laws.registry import LAWS, NAMES
     from onpath.models.systems.parameter_specs import unknown_name
 
     if text in ("all", "both"):
         return list(LAWS if text == "all" else NAMES)
     if is_text(text):
-        return [law_name(text)]
-    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+        return [law_given(text)]
+    given = dict.fromkeys(name.strip() for name in text.split(","))
+    names = [law_given(name) if IN_FILE.fullmatch(name) else name for name in given]
     for name in names:
         if name not in LAWS:
             raise unknown_name(name, [*LAWS, "all", "both"], "law")

@@ -1264,6 +1264,8 @@ fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinand
 
 stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
 stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich oder größer als { $most } ist
+stop-own_law = { $law } ergibt eine Zahl, die nicht endlich oder größer als { $most } ist ({ $file }, Zeile { $line })
+stop-called_law = { $law } wurde angehalten: { $reason } ({ $file }, Zeile { $line })
 stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist divergiert
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
@@ -1345,6 +1347,10 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
 error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
+error-law_of_file = { $law }: erwartet wird DATEI.py:NAME, etwa my_law.py:SlidingMode
+error-law_no_file = es gibt keine Datei { $file }
+error-law_same_name = OnPath hat ein Gesetz namens { $law }: wählen Sie einen anderen Namen
+error-law_is_called = { $law } ist eine Python-Funktion, die in jedem Regelintervall aufgerufen wird. Das geht in onpath.simulate, onpath experiment und onpath arena; hier ist ein Gesetz ein Objekt mit command(view)
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
@@ -1353,7 +1359,7 @@ error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
 error-path_named = Bahn { $name }: { $reason }
-error-law_no_text = ein Gesetz ist ein Name aus onpath.laws() oder ein Text wie „across = -K1*xi - K2*dxi; along = 0“, aber kein { $kind }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws(), ein Text wie „across = -K1*xi - K2*dxi; along = 0“, DATEI.py:NAME, eine Funktion oder ein Objekt mit command(view), aber nichts vom Typ { $kind }
 error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }
@@ -1666,3 +1672,69 @@ robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .st
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
 robot_file-left_out = weggelassen: { $parts }
+
+## Die Arena (app/exports/arena_page.py)
+
+arena-title = Die Arena
+arena-made = OnPath · { $done ->
+        [one] 1 Versuch
+       *[other] { $done } Versuche
+    } von { $planned } · { $command }
+arena-same = Jedes Gesetz durchläuft dieselben Versuche: Roboter, Bahn, Hindernis und Bedingung, Verstärkungen, Modell, Motoren, Drehmomentgrenze und Zufallszahlen sind gleich. Die Drehmomentgrenze ist das 1,5-Fache dessen, was die ungestörte Bahnfolgeregelung auf dieser Bahn braucht, bei schwachen Motoren das 0,9-Fache.
+arena-rows = Die meisten Gesetze haben zwei Zeilen. Bei „gekappt“ werden die Drehmomente an der Grenze abgeschnitten. Bei „quer zuerst“ wirkt dort ein Mittel, das zu keinem Gesetz gehört: Es verzichtet auf Beschleunigung entlang der Bahn, bevor es auf die quer dazu verzichtet. Ein Gesetz, das selbst Drehmomente vorgibt, hat eine Zeile.
+arena-numbers = In jedem Feld steht der schlechteste Wert aller Versuche, die einen ergeben, und klein der Median. Der schlechteste Wert führt zu seinem Lauf. Die Zahl im Kreis ist der Rang in dieser Größe unter den Zeilen desselben Roboters, ab 1, dem besten; gleiche Werte haben denselben Rang. Ein Gesetz mit einem abgebrochenen Lauf steht hinter allen ohne einen. Es gibt keine Gesamtnote: Worauf es ankommt, entscheiden Sie.
+arena-measures = Was gemessen wird
+arena-force_N = Kraft bis zum Verlassen der Bahn
+arena-force_N_text = Eine Hand geht mit dem Endpunkt mit und zieht ihn quer zur Bahn, mit einer Kraft, die jede Sekunde um 2 N bis auf 10 N wächst. Dies ist die Kraft, bei der der Endpunkt erstmals 5 mm von der Bahn entfernt ist. Was bei stärkerem Zug geschieht, zählt nicht. Größer ist besser: Das Gesetz gibt weniger nach. Ein Roboter, der nachgeben soll, ist deshalb nicht schlechter.
+arena-distance_m = Abstand
+arena-distance_m_text = Der größte Abstand des Endpunkts von der Bahn, in allen Versuchen außer dem Zug.
+arena-delay_s = Verspätung
+arena-delay_s_text = Wie spät der Endpunkt am Ende eines Versuchs ist, bei der gewünschten Geschwindigkeit; negativ: zu früh. Der Rang richtet sich nach dem Betrag. Ein Gesetz ohne Uhr ist mit Absicht etwa so lange verspätet, wie es festgehalten wurde. Runden werden am nächsten Bahnpunkt gezählt: Ein Endpunkt, der innen abkürzt, kann eine Runde verlieren, was als 1 s zählt.
+arena-energy_J = Energie an die Hand
+arena-energy_J_text = Die größte Arbeit, die der Endpunkt an Hand, Bremse oder Wand verrichtet. Wer den Roboter hält, spürt sie als Stoß.
+arena-overshoot_m = Überschwingen nach dem Loslassen
+arena-overshoot_m_text = Wie weit der Endpunkt die Bahn nach dem Loslassen wieder verlässt, gezählt ab dem Augenblick, in dem er bis auf 5 mm an der Bahn ist und nicht mehr näher kommt. „Nicht zurück“: Er kommt bis zum Ende nicht auf 5 mm heran.
+arena-stops = Abbrüche
+arena-stops_text = Läufe, die beendet wurden, weil die Bewegung divergierte oder das Gesetz versagte, von allen Läufen. Sie haben keine anderen Zahlen.
+arena-of = { $stops } von { $runs }
+arena-law = Gesetz
+arena-limit = an der Grenze
+arena-cut = gekappt
+arena-remedy = quer zuerst
+arena-torques = gekappt, gibt Drehmomente vor
+arena-median = Median { $value }
+arena-rank = Rang { $rank }
+arena-never = nicht mit 10
+arena-not_back = nicht zurück
+arena-own = Ihres
+arena-trials = { $count ->
+        [one] 1 Versuch
+       *[other] { $count } Versuche
+    }
+arena-obstructions = Die Versuche
+arena-trial = Versuch
+arena-robot = Roboter
+arena-path = Bahn
+arena-obstruction = Hindernis
+arena-condition = Bedingung
+arena-pull = wachsender Zug quer zur Bahn
+arena-brake = Bremse entlang der Bahn, 1 s
+arena-hand = eine Hand, die zieht, 1 s
+arena-wall = eine Wand quer zur Bahn, 1 s
+arena-weak = schwache Motoren
+arena-exact = genaues Modell
+arena-payload = eine Nutzlast, die kein Gesetz kennt
+arena-noise = Rauschen und Drehgeber
+arena-slow = Regelung mit 100 Hz
+arena-runs = Die Läufe hinter den Zahlen
+arena-run = { $obstruction }; { $path }, { $condition } (Versuch { $number }, { $robot })
+arena-picture = Links: Abstand von der Bahn über { $lasts } s, bis { $most } mm; grau hinterlegt: solange das Hindernis wirkt; gestrichelt: 5 mm. Rechts: die Bahn, grau, und der Weg des Endpunkts.
+arena-recorded = Der Punkt bewegt sich wie aufgezeichnet.
+arena-figure = Dieses Gesetz an diesem Roboter ausprobieren: eine lebende Abbildung
+arena-repeat = Derselbe Lauf:
+arena-stopped = abgebrochen bei { $time } s: { $reason }
+arena-laws = Die Gesetze
+arena-interrupted = unterbrochen: { $html } enthält die Versuche, die alle Gesetze beendet haben
+arena-nothing = unterbrochen, bevor alle Gesetze einen Versuch beendet hatten
+arena-first = erste Tabelle, nach { $seconds } s
+arena-written = geschrieben: { $html } und { $csv }

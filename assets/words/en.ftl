@@ -964,6 +964,8 @@ fault-narrow = two strands of the path are closer to each other than { $least } 
 
 stop-range = the numbers have left the range of a computer
 stop-typed_law = the typed law gives a number that is not finite, or is larger than { $most }
+stop-own_law = { $law } gives a number that is not finite, or is larger than { $most } ({ $file }, line { $line })
+stop-called_law = { $law } has been stopped: { $reason } ({ $file }, line { $line })
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
@@ -1037,6 +1039,10 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
 error-law_fails = { $law } cannot be used here: { $reason } ({ $file }, line { $line })
+error-law_of_file = { $law }: expected FILE.py:NAME, such as my_law.py:SlidingMode
+error-law_no_file = there is no file { $file }
+error-law_same_name = OnPath has a law named { $law }: choose another name
+error-law_is_called = { $law } is a Python function, which is called in every control interval. That works in onpath.simulate, onpath experiment and onpath arena; here a law is an object with command(view)
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
@@ -1045,7 +1051,7 @@ error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
 error-law_character = { $character } means nothing here
 error-path_named = path { $name }: { $reason }
-error-law_no_text = a law is a name of onpath.laws(), or a text such as “across = -K1*xi - K2*dxi; along = 0”, but not a { $kind }
+error-law_no_text = a law is a name of onpath.laws(), a text such as “across = -K1*xi - K2*dxi; along = 0”, FILE.py:NAME, a function, or an object with command(view), but nothing of type { $kind }
 error-law_instead = write { $instead } instead of { $text }
 error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
 error-law_large_number = a number is at most { $most }
@@ -1358,3 +1364,69 @@ robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .ob
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> would read other files or run code: leave it out
 robot_file-left_out = left out: { $parts }
+
+## The arena (app/exports/arena_page.py)
+
+arena-title = The arena
+arena-made = OnPath · { $done ->
+        [one] 1 trial
+       *[other] { $done } trials
+    } of { $planned } · { $command }
+arena-same = Every law goes through the same trials: the same robot, path, obstruction and condition, the same gains, the same model, motors and torque limit, and the same random numbers. The torque limit is 1.5 times what undisturbed path following needs on that path, with weak motors 0.9 times.
+arena-rows = Most laws have two rows. With “cut”, torques are cut at the limit. With “across first”, a remedy that is no part of any law acts there: it gives up acceleration along the path before that across it. A law that commands torques itself has one row.
+arena-numbers = Each cell has the worst value over all trials that give one and, in small type, the median. The worst value leads to its run. The number in the circle is the rank in this measure among the rows of the same robot, from 1, the best; equal values share a rank. A law with a run that was stopped ranks behind all laws without one. There is no total: what matters is yours to say.
+arena-measures = What is measured
+arena-force_N = force to leave the path
+arena-force_N_text = A hand goes along with the end-point and pulls it across the path, with a force that grows by 2 N each second up to 10 N. This is the force when the end-point is first 5 mm from the path. What happens under a stronger pull does not count. Larger is better: the law yields less. A robot that is meant to yield is not worse for it.
+arena-distance_m = distance
+arena-distance_m_text = The largest distance of the end-point from the path, in all trials except the pull.
+arena-delay_s = delay
+arena-delay_s_text = How late the end-point is at the end of a trial, at the wanted speed; negative: early. Laws are ranked by its size. A law without a clock is late by about as long as it was held, on purpose. Laps are counted by the closest point: an end-point that cuts across the inside may lose a lap, which counts as 1 s.
+arena-energy_J = energy given to the hand
+arena-energy_J_text = The largest work that the end-point does on the hand, the brake or the wall. It is what a person who holds the robot feels as a push.
+arena-overshoot_m = overshoot after release
+arena-overshoot_m_text = How far the end-point leaves the path again after it is released, counted from the moment at which it is within 5 mm of the path and comes no nearer. “Not back”: it does not come within 5 mm until the end.
+arena-stops = stops
+arena-stops_text = Runs that were ended because the motion diverged or the law failed, of all runs. They have no other numbers.
+arena-of = { $stops } of { $runs }
+arena-law = law
+arena-limit = at the limit
+arena-cut = cut
+arena-remedy = across first
+arena-torques = cut, commands torques
+arena-median = median { $value }
+arena-rank = rank { $rank }
+arena-never = not with 10
+arena-not_back = not back
+arena-own = yours
+arena-trials = { $count ->
+        [one] 1 trial
+       *[other] { $count } trials
+    }
+arena-obstructions = The trials
+arena-trial = trial
+arena-robot = robot
+arena-path = path
+arena-obstruction = obstruction
+arena-condition = condition
+arena-pull = a pull across that grows
+arena-brake = a brake along the path, 1 s
+arena-hand = a hand that pulls, 1 s
+arena-wall = a wall across the path, 1 s
+arena-weak = weak motors
+arena-exact = exact model
+arena-payload = a payload that no law knows
+arena-noise = noise and encoders
+arena-slow = control at 100 Hz
+arena-runs = The runs behind the numbers
+arena-run = { $obstruction }; { $path }, { $condition } (trial { $number }, { $robot })
+arena-picture = Left: distance from the path over { $lasts } s, up to { $most } mm; shaded: while the obstruction acts; dashed: 5 mm. Right: the path, grey, and the way of the end-point.
+arena-recorded = The point moves as it was recorded.
+arena-figure = Try this law on this robot: a live figure
+arena-repeat = The same run:
+arena-stopped = stopped at { $time } s: { $reason }
+arena-laws = The laws
+arena-interrupted = interrupted: { $html } has the trials that all laws have finished
+arena-nothing = interrupted before all laws had finished a trial
+arena-first = first table, after { $seconds } s
+arena-written = written: { $html } and { $csv }

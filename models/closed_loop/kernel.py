@@ -139,7 +139,7 @@ def build_kernel(
         return _kernel(system, frame, kind, law, (substeps, grip))
     except CodedError:
         raise
-    except Exception as error:  # only a law's code is not tested with every robot
+    except (Exception, SystemExit) as error:  # only a law's code is not tested with every robot
         typed = CodedError("error.law_cannot_run") if is_text(law.name) else None
         raise typed or law_error(law.name, error, law.command) from error
 

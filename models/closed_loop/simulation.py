@@ -37,12 +37,14 @@ class Push:
 
     Attributes:
         hand: position of the hand, shape (p,), [m], or None.
+        share: of the hand's force that acts.
         hold: anchor [m] and unit tangent of the brake, each shape (p,), or None.
         hold_normal: a second direction in which the brake acts, shape (p,), or None.
         wall: a point of a wall's surface [m] and its unit normal, each shape (p,), or None.
     """
 
     hand: Array | None = None
+    share: float = 1.0
     hold: tuple[Array, Array] | None = None
     hold_normal: Array | None = None
     wall: tuple[Array, Array] | None = None
@@ -152,7 +154,11 @@ def settings_vector(
     counts = parameters.encoder_counts
     return layouts.settings.pack(
         {name: getattr(parameters, name) for name in GAINS}
-        | {name: gain.of(parameters) for name, gain in OWN_GAINS.items()}
+        | {
+            name: gain.of(parameters)
+            for name, gain in OWN_GAINS.items()
+            if name in layouts.settings.slices  # not if its law was added after this loop was built
+        }
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
@@ -213,7 +219,7 @@ def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
     none = np.zeros(p), np.zeros(p)
     (anchor, tangent), (place, normal) = push.hold or none, push.wall or none
     return {
-        "hand_active": float(push.hand is not None),
+        "hand_active": 0.0 if push.hand is None else push.share,
         "hand_target": np.zeros(p) if push.hand is None else push.hand,
         "hold_active": float(push.hold is not None),
         "hold_anchor": anchor,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import casadi as ca
 
@@ -253,6 +253,10 @@ class Law:
         motors: number of motors that it is made for; None: any.
         spatial: whether it is made for outputs in space, p = 3.
         always_integrates: whether it uses the integral even if K3 = 0.
+        origin: file and line of a law of one's own, see `python_law`; None for others. A number of
+            its command that is not finite stops the run, and the message names them.
+        called: makes, for each run, the function that is called between ticks and whose results are
+            the law's memory; None for a law that is compiled.
     """
 
     name: str
@@ -276,6 +280,8 @@ class Law:
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
+    origin: tuple[str, int] | None = None
+    called: Callable[[], Callable[..., Any]] | None = None
 
     @property
     def gain_names(self) -> tuple[str, ...]:
