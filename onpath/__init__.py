@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
+    from onpath.app.notebook.identify import identify as identify
     from onpath.app.notebook.path_files import check_path as check_path
     from onpath.app.notebook.path_files import path_from as path_from
     from onpath.app.notebook.robot import robot as robot
@@ -42,6 +43,7 @@ __all__ = (
     "circle",
     "ellipse",
     "figure",
+    "identify",
     "laws",
     "parameters",
     "path_from",
@@ -55,6 +57,7 @@ __all__ = (
 
 _MODULES = {
     "figure": "figure",
+    "identify": "identify",
     "robot": "robot",
     "path_from": "path_files",
     "check_path": "path_files",
