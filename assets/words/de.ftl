@@ -1409,7 +1409,7 @@ error-table_decimal_sign =
        *[point] einen Dezimalpunkt
     } haben; Ziffern lassen sich nicht gruppieren
 error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
-error-in_file = { $file }: { $reason }
+error-in_file = Datei { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } hat keine Spalte law
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
 error-record_times = Zeile { $line }, Spalte { $column }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen

@@ -1101,7 +1101,7 @@ error-table_decimal_sign =
        *[point] point
     }; digits cannot be grouped
 error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
-error-in_file = { $file }: { $reason }
+error-in_file = file { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } has no column law
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
 error-record_times = line { $line }, column { $column }: the times do not grow from row to row: they may have been rounded; save the file again with more digits

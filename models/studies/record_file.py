@@ -239,8 +239,8 @@ def _step(times: Array, lines: Sequence[int], column: str) -> float:
             raise CodedError("error.record_times", line=line, column=column)
         raise CodedError("error.record_gap", line=line, column=column, step=step, most=f"{GAP:g}")
     if dt > BUMP / FEWEST * (1 + EVEN):
-        rates = {"step": f"{1e3 * dt:.3g}", "most": f"{1e3 * BUMP / FEWEST:g}"}
-        raise CodedError("error.record_coarse", column=column, **rates)
+        step, most = f"{1e3 * dt:.3g}", f"{1e3 * BUMP / FEWEST:g}"
+        raise CodedError("error.record_coarse", column=column, step=step, most=most)
     return dt
 
 
