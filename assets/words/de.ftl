@@ -1408,7 +1408,7 @@ error-table_decimal_sign =
         [comma] ein Dezimalkomma
        *[point] einen Dezimalpunkt
     } haben; Ziffern lassen sich nicht gruppieren
-error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
+error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }. Ist es die eines wirklichen Arms, so gib ihre Spalten an
 error-in_file = Datei { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } hat keine Spalte law
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung

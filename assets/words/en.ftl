@@ -1100,7 +1100,7 @@ error-table_decimal_sign =
         [comma] comma
        *[point] point
     }; digits cannot be grouped
-error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
+error-record_of_another_robot = not a record of the robot { $robot }: { $reason }. If it is the log of a real arm, name its columns
 error-in_file = file { $file }: { $reason }
 error-record_without_laws = --law { $law }: { $file } has no column law
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
