@@ -189,7 +189,7 @@ def test_a_delay_of_the_logged_torques_changes_no_parameter(
 
 def test_a_delay_that_acts_like_friction_is_not_stated() -> None:
     """In a single wave, a delay of the torque is a change of the friction."""
-    t, omega = 1e-3 * np.arange(6000), 2 * np.pi
+    t, omega = np.linspace(0, 5.999, 6000), 2 * np.pi
     q1, v1 = 0.011 * np.sin(omega * t), 0.011 * omega * np.cos(omega * t)
     torque = -0.02 * omega**2 * q1 + 0.05 * v1
     q, v = np.stack([q1, 0 * t + 1], axis=1), np.stack([v1, 0 * t], axis=1)
