@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
+    from onpath.app.notebook.identify import identify as identify
     from onpath.app.notebook.own_law import followed as followed
     from onpath.app.notebook.own_law import own_gain as own_gain
     from onpath.app.notebook.own_law import tangential as tangential
@@ -47,6 +48,7 @@ __all__ = (
     "ellipse",
     "figure",
     "followed",
+    "identify",
     "laws",
     "own_gain",
     "parameters",
@@ -62,6 +64,7 @@ __all__ = (
 
 _MODULES = {
     "figure": "figure",
+    "identify": "identify",
     "robot": "robot",
     "followed": "own_law",
     "own_gain": "own_law",

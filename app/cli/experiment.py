@@ -164,8 +164,8 @@ def laws_named(text: str) -> list[str]:
     return names
 
 
-def assignments(pairs: tuple[str, ...]) -> dict[str, str]:
-    """The values of --set by name.
+def assignments(pairs: tuple[str, ...], option: str = "--set") -> dict[str, str]:
+    """The values of --set, or another option that may be repeated, by name.
 
     Raises:
         ValueError: one of them is not of the form name=value.
@@ -174,7 +174,7 @@ def assignments(pairs: tuple[str, ...]) -> dict[str, str]:
     for pair in pairs:
         name, equals, value = pair.partition("=")
         if not equals or not name or not value:
-            raise ValueError(f"--set {pair}: expected name=value")
+            raise ValueError(f"{option} {pair}: expected name=value")
         values[name.strip()] = value.strip()
     return values
 

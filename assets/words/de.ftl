@@ -764,6 +764,8 @@ compare-force = größte Kraft  [N]
 compare-stopped = angehalten
 compare-stopped_text = „angehalten“: An mindestens einer Stelle ist die Bewegung divergiert, und die Simulation wurde beendet.
 compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
+residuals-torque = Drehmoment, gefiltert
+residuals-left = nicht erklärt
 compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: Wähle eine solche Bahn und den Auftrag Tempo.
 obstruction-none = keines
 obstruction-brake = 2 s festgehalten, an acht Stellen
@@ -1412,10 +1414,14 @@ error-table_decimal_sign =
         [comma] ein Dezimalkomma
        *[point] einen Dezimalpunkt
     } haben; Ziffern lassen sich nicht gruppieren
-error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
+error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }. Ist es die eines wirklichen Arms, so gib ihre Spalten an
+error-in_file = Datei { $file }: { $reason }
+error-record_without_laws = --law { $law }: { $file } hat keine Spalte law
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
-error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
-error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
+error-record_times = Zeile { $line }, Spalte { $column }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
+error-record_gap = Zeile { $line }, Spalte { $column }: { $step } s vergehen ohne eine Zeile, erlaubt sind { $most } s: Teile die Datei dort
+error-record_coarse = Spalte { $column }: alle { $step } ms kommt eine Zeile, erlaubt sind höchstens { $most } ms dazwischen
+error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein, und seine Größe muss von 1e-12 bis 1e12 gehen
 
 ## Bahnen aus Dateien (models/path_files)
 

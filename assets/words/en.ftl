@@ -712,6 +712,8 @@ compare-force = largest force  [N]
 compare-stopped = stopped
 compare-stopped_text = “stopped”: at one or more of the places, the motion diverged and the simulation was ended.
 compare-picture = Largest distance to the path over delay at the end, for each law
+residuals-torque = torque, filtered
+residuals-left = not explained
 compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
 obstruction-none = nothing
 obstruction-brake = held for 2 s, at eight places
@@ -1104,10 +1106,14 @@ error-table_decimal_sign =
         [comma] comma
        *[point] point
     }; digits cannot be grouped
-error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
+error-record_of_another_robot = not a record of the robot { $robot }: { $reason }. If it is the log of a real arm, name its columns
+error-in_file = file { $file }: { $reason }
+error-record_without_laws = --law { $law }: { $file } has no column law
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
-error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
-error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
+error-record_times = line { $line }, column { $column }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
+error-record_gap = line { $line }, column { $column }: { $step } s pass without a row, and at most { $most } s may: cut the file there
+error-record_coarse = column { $column }: a row comes every { $step } ms, and at most { $most } ms may pass between them
+error-log_factor = the factor of { $name } is { $value }: it must not be 0, and its size from 1e-12 to 1e12
 
 ## Paths from files (models/path_files)
 

@@ -259,7 +259,7 @@ def test_a_law_that_fails_at_once_is_not_the_best_one() -> None:
         assert runs[law].max_distance == runs[law].distance.max()
 
 
-DOCUMENTED = ("simulate", "figure", "path_files")
+DOCUMENTED = ("simulate", "figure", "identify", "path_files")
 
 
 @pytest.mark.parametrize("module", ["", *(f".app.notebook.{name}" for name in DOCUMENTED)])
