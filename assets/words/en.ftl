@@ -1106,6 +1106,7 @@ error-record_uneven = line { $line }: the times must be evenly spaced, but this 
 ## Paths from files (models/path_files)
 
 say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-gcode_words = These words of the file have no effect on the path: { $words }.
 say-rounded = The tightest bend of the path has a radius of { $radius } mm.
 say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
 error-file_size = the file is larger than { $most } MB
@@ -1123,9 +1124,10 @@ error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
-error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are, and what leaves the path as it is, such as F, S and M3, has no effect
 error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
 error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_height = line { $line }: the tool changes its height while it draws; a path lies in a plane
 error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
 error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
 error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
