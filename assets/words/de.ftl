@@ -1625,7 +1625,7 @@ robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
 robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } fehlt
-robot_file-name = { $field } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-name = { $field } { $value }: Ein Name hat 1 bis 128 Buchstaben ohne Umlaute, Ziffern, _, - und .
 robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen

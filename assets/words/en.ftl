@@ -1311,7 +1311,7 @@ robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
 robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } is missing
-robot_file-name = { $field } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-name = { $field } { $value }: a name has 1 to 128 letters, digits, _, - and .
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers

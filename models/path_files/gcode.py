@@ -29,8 +29,8 @@ MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
 SIZES = {"20": UNITS["in"], "21": UNITS["mm"]}
 WAYS = {"90": False, "91": True}
 WITHOUT_EFFECT = frozenset(
-    [f"G{code}" for code in (4, 17, 40, 43, 49, 54, 61, 64, 80, 94)]
-    + [f"M{code}" for code in (0, 1, 3, 4, 5, 6, 7, 8, 9)]
+    [f"G{code}" for code in (4, 17, 40, 43, 49, 54, 61, 64, 80, 91.1, 92.1, 93, 94)]
+    + [f"M{code}" for code in (0, 1, 3, 4, 5, 6, 7, 8, 9, 48, 49, 52)]
 )
 """Codes besides those above that leave the path in the plane as it is."""
 SPOKEN = frozenset("FSTHP")

@@ -14,11 +14,13 @@ from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.file_chain import FileChain, Group, Options, Place, aligned, exact
 from onpath.models.systems.file_chain import turn as turned
-from onpath.models.systems.rigid_chain import Chain, Joint
+from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.xml_elements import Element, Fault, shown
 
 MOST_JOINTS = 8
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
+SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms
+HIDDEN = 3  # group of geoms, from which on MuJoCo's viewer shows none
 REFUSED = ("include", "plugin", "extension")  # which would read other files, or run code
 
 
@@ -91,6 +93,9 @@ class _Model:
             inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
             inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
             groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
+        for geom in range(model.ngeom):
+            number, here = frames[int(model.geom_bodyid[geom])]
+            groups[number].shapes += self._shapes(geom, here)
         number, here = frames[tip]
         if number == 0:
             raise Fault(self._root, Message("robot_file.still_tip"))
@@ -99,6 +104,7 @@ class _Model:
             bodies=tuple(group.body() for group in groups[1:]),
             tip=here.translation,
             facing=here.rotation[:, 2],
+            base=tuple(groups[0].shapes),
         )
         return FileChain(chain=chain, home=self._home(), remarks=tuple(self._remarks()))
 
@@ -161,6 +167,41 @@ class _Model:
         options, at = self._options, int(self._model.jnt_qposadr[i])
         reference = float(self._model.qpos0[at])
         return options.lock.get(name, options.pose.get(name, reference)) - reference
+
+    def _shapes(self, geom: int, body: Place) -> Iterator[Shape]:
+        """What is drawn of a geom: nothing of planes, height fields and what is invisible."""
+        model, kind = self._model, int(self._model.geom_type[geom])
+        if model.geom_group[geom] >= HIDDEN or not model.geom_rgba[geom][3]:
+            return
+        a, b, c = (float(x) for x in model.geom_size[geom])
+        sizes = {
+            SPHERE: ("sphere", (a, a, a)),
+            ELLIPSOID: ("sphere", (a, b, c)),
+            CAPSULE: ("capsule", (a, a, 2 * b)),
+            CYLINDER: ("cylinder", (a, a, 2 * b)),
+            BOX: ("box", (2 * a, 2 * b, 2 * c)),
+            MESH: ("mesh", (1.0, 1.0, 1.0)),
+        }
+        if kind not in sizes:
+            return
+        name, size = sizes[kind]
+        here = body @ _place(model.geom_pos[geom], model.geom_quat[geom])
+        yield Shape(
+            kind=name,
+            file="",
+            size=size,
+            rotation=here.rotation,
+            translation=here.translation,
+            triangles=self._triangles(int(model.geom_dataid[geom])) if kind == MESH else None,
+        )
+
+    def _triangles(self, mesh: int) -> tuple[Array, np.ndarray]:
+        """Vertices and triangles of a mesh, in the frame that MuJoCo has given it."""
+        model = self._model
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+        vertices = np.array(model.mesh_vert[first : first + count], dtype=float)
+        return vertices, np.array(model.mesh_face[face : face + faces])
 
     def _home(self) -> dict[str, float]:
         """Coordinates of the joints in the keyframe."""

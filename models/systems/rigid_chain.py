@@ -57,11 +57,12 @@ class Shape:
     """What a file draws for a body: a mesh, or a simple solid about its own origin.
 
     Attributes:
-        kind: "mesh", "box", "sphere" or "cylinder", whose axis is z.
-        file: absolute path of a mesh.
-        size: edges of a box; radius, radius and length of a cylinder; radius of a sphere, thrice;
-            scale of a mesh along its axes.
+        kind: "mesh", "box", "sphere", "cylinder" or "capsule", whose axis is z.
+        file: absolute path of a mesh; empty if its triangles are given.
+        size: edges of a box; radius, radius and length of a cylinder, and of the cylinder of a
+            capsule; radii of a sphere or ellipsoid; scale of a mesh along its axes.
         rotation, translation: of the shape in its body's frame, (3, 3) and (3,), [m].
+        triangles: vertices of a mesh, (k, 3), [m], and of each triangle the numbers of its three.
     """
 
     kind: str
@@ -69,6 +70,7 @@ class Shape:
     size: tuple[float, float, float]
     rotation: Array
     translation: Array
+    triangles: tuple[Array, np.ndarray] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)

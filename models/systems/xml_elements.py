@@ -16,7 +16,7 @@ MOST_ELEMENTS = 20_000
 DEEPEST = 30  # elements within each other
 LARGEST_NUMBER = 1e9  # [SI]
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+_NAME = re.compile(r"[A-Za-z0-9_.-]{1,128}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
