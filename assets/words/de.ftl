@@ -1630,14 +1630,14 @@ robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen
  }
-robot_file-large = { $field } { $value }: Die Zahl ist zu groß
+robot_file-large = { $field } { $value }: erwartet werden endliche Zahlen bis 1e9
 robot_file-no_link = ein Glied { $name } gibt es nicht
 robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
 robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
 robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
 robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
-robot_file-joints = mehr als { $most } Gelenke bewegen sich auf dem Weg zur Spitze: Sperren Sie einige
+robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
 robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
 robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es

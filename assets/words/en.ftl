@@ -1316,14 +1316,14 @@ robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers
  }
-robot_file-large = { $field } { $value }: too large a number
+robot_file-large = { $field } { $value }: expected finite numbers up to 1e9
 robot_file-no_link = there is no link { $name }
 robot_file-two_parents = the link { $name } already hangs on the joint { $other }
 robot_file-loop = the links form a loop: only trees of links can be simulated
 robot_file-apart = no joint leads here from { $name }: all links of a robot hang together
 robot_file-twice = the name already exists in line { $line }
 robot_file-many = more than { $most } of them
-robot_file-joints = more than { $most } joints move on the way to the tip: lock some
+robot_file-joints = more than { $most } joints move on the way to the tip: { $names }. Hold some of them with --lock joint=value (in Python, lock=…)
 robot_file-type = unknown type { $type }
 robot_file-free = a { $type } joint on the way to the tip: lock it
 robot_file-mimic = a joint that follows another on the way to the tip: lock it

@@ -176,8 +176,8 @@ def _substeps(source: ChainSource) -> int:
     numbers = np.array([1.0, 0.0, 0.0] + [0.0] * (system.parameters.numel() - 3))
     found = Rows([system.q, system.parameters], ca.vec(system.mass))(q, numbers)
     masses = found.reshape(-1, chain.n, chain.n)
-    least = np.linalg.eigvalsh(masses)
-    if not (least[:, 0] > 1e-9 * least[:, -1]).all():
+    least = np.linalg.eigvalsh(np.nan_to_num(masses))
+    if not (np.isfinite(masses).all() and (least[:, 0] > 1e-9 * least[:, -1]).all()):
         raise CodedError("robot_file.massless", joint=_light(chain, masses))
     damping = np.array([joint.damping for joint in chain.joints])
 
