@@ -28,4 +28,4 @@ def test_an_example_runs_and_prints_its_result(file: Path, tmp_path: Path) -> No
 
 
 def test_there_is_an_example_of_each_kind() -> None:
-    assert {"points", "drawing", "tool", "crossing"} <= {file.stem for file in EXAMPLES}
+    assert {"points", "drawing", "tool", "crossing", "fewer_motors"} <= {file.stem for file in EXAMPLES}
