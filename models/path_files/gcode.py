@@ -37,8 +37,8 @@ SPOKEN = frozenset("FSTHP")
 """Letters whose numbers do, too."""
 ENDS = frozenset(("M2", "M30"))
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
-_KNOWN = {f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS)} | WITHOUT_EFFECT | SPOKEN | ENDS
-_KNOWN |= set("XYZIJRNO")
+_OBEYED = {f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS)} | set("XYZIJRNO")
+_KNOWN = _OBEYED | WITHOUT_EFFECT | SPOKEN | ENDS
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
 
 Point = tuple[float, float]
