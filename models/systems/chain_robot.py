@@ -28,7 +28,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import LevelPlane, Plane
-from onpath.models.systems.drawing import Depths, Drawing, Point
+from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
 from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
 from onpath.models.systems.rigid_chain import (
@@ -58,6 +58,7 @@ NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0
 UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not tell
 FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
 MOST_STEPS = 2
+SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
 @dataclass(frozen=True, slots=True)
@@ -349,4 +350,14 @@ def _drawing(source: ChainSource) -> Drawing:
         depths=Depths(back=0.0, front=0.0, boss=0.0, pen=0.0),
         elevation=math.radians(60.0 if level else 9.0 if planar else 20.0),
         azimuth=math.radians(0.0 if planar else 18.0),
+        spots=_spots(source.chain),
     )
+
+
+def _spots(chain: Chain) -> tuple[Spot, ...]:
+    """The names of the joints; those at one place, as in a wrist, have one label."""
+    names, bars = dict[int, list[str]](), 0
+    for i, body in enumerate(chain.bodies, 1):
+        bars += bool(body.translation.any()) or body.joint.slides
+        names.setdefault(max(2 * bars - 1, 0), []).append("q" + str(i).translate(SUBSCRIPTS))
+    return tuple(Spot(", ".join(each), end) for end, each in names.items())
