@@ -82,7 +82,7 @@ def own_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> Ro
     """A robot from a file of this package, whose tests check what `read_robot` checks.
 
     Args:
-        name: of the URDF file in `assets/robots`, and in the catalogue.
+        name: of the URDF file in `assets/robots`, in the catalogue, and of the picture in `assets`.
         label, text: see `RobotEntry`.
         pose: at home, for all joints, [rad] or [m].
     """
@@ -90,9 +90,8 @@ def own_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> Ro
     chain = read_urdf(file, root_of(file_bytes(file)), Options()).chain
     home = tuple(pose[joint.name] for joint in chain.joints)
     axes = output_axes(chain)
-    return chain_entry(
-        ChainSource(name=name, label=label, text=text, chain=chain, home=home, axes=axes)
-    )
+    source = ChainSource(name=name, label=label, text=text, chain=chain, home=home, axes=axes)
+    return replace(chain_entry(source), picture=f"{name}.png")
 
 
 def _check(options: Options) -> None:
