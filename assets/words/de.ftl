@@ -978,8 +978,14 @@ machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spi
 machine-cart_pendulum-label = Wagen mit Pendel
 machine-cart_pendulum-text = Zwei Motoren bewegen einen Stift auf einem Wagen, keiner das Pendel, das an ihm hängt oder auf ihm steht.
 
+machine-planar_arm-label = Ebener Arm mit drei Gelenken
+machine-planar_arm-text = Drei Motoren, einer mehr, als die Bahn braucht: Neben der Bahn wird eine Haltung gehalten.
+
 machine-rod_gantry-label = Portal mit Stange
 machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stange, die mit dem Stift an ihm hängt.
+
+machine-seven_axes-label = Arm mit sieben Gelenken
+machine-seven_axes-text = Sieben Motoren: Ohne seine Haltung fällt der Arm, aber seine Spitze bleibt auf der Bahn.
 
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
@@ -1426,6 +1432,7 @@ error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein
 ## Bahnen aus Dateien (models/path_files)
 
 say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-gcode_words = Diese Wörter der Datei haben keine Wirkung auf die Bahn: { $words }.
 say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
 say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
 error-file_size = die Datei ist größer als { $most } MB
@@ -1443,9 +1450,10 @@ error-file_takes_long = das Lesen der Datei hat zu lange gedauert
 error-file_failed = die Datei konnte nicht gelesen werden
 error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
 error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
-error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, I, J, R, F und N
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, Z, I, J und R, und was die Bahn lässt, wie sie ist, etwa F, S und M3, hat keine Wirkung
 error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
 error-gcode_both = Zeile { $line }: { $text } widersprechen einander
+error-gcode_height = Zeile { $line }: das Werkzeug ändert beim Zeichnen seine Höhe; eine Bahn liegt in einer Ebene
 error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
 error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
 error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
@@ -1629,19 +1637,19 @@ robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
 robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } fehlt
-robot_file-name = { $field } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-name = { $field } { $value }: Ein Name hat 1 bis 128 Buchstaben ohne Umlaute, Ziffern, _, - und .
 robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen
  }
-robot_file-large = { $field } { $value }: Die Zahl ist zu groß
+robot_file-large = { $field } { $value }: erwartet werden endliche Zahlen bis 1e9
 robot_file-no_link = ein Glied { $name } gibt es nicht
 robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
 robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
 robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
 robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
-robot_file-joints = mehr als { $most } Gelenke bewegen sich auf dem Weg zur Spitze: Sperren Sie einige
+robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
 robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
 robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es

@@ -1118,6 +1118,7 @@ error-log_factor = the factor of { $name } is { $value }: it must not be 0, and 
 ## Paths from files (models/path_files)
 
 say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-gcode_words = These words of the file have no effect on the path: { $words }.
 say-rounded = The tightest bend of the path has a radius of { $radius } mm.
 say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
 error-file_size = the file is larger than { $most } MB
@@ -1135,9 +1136,10 @@ error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
-error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are, and what leaves the path as it is, such as F, S and M3, has no effect
 error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
 error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_height = line { $line }: the tool changes its height while it draws; a path lies in a plane
 error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
 error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
 error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
@@ -1321,19 +1323,19 @@ robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
 robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } is missing
-robot_file-name = { $field } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-name = { $field } { $value }: a name has 1 to 128 letters, digits, _, - and .
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers
  }
-robot_file-large = { $field } { $value }: too large a number
+robot_file-large = { $field } { $value }: expected finite numbers up to 1e9
 robot_file-no_link = there is no link { $name }
 robot_file-two_parents = the link { $name } already hangs on the joint { $other }
 robot_file-loop = the links form a loop: only trees of links can be simulated
 robot_file-apart = no joint leads here from { $name }: all links of a robot hang together
 robot_file-twice = the name already exists in line { $line }
 robot_file-many = more than { $most } of them
-robot_file-joints = more than { $most } joints move on the way to the tip: lock some
+robot_file-joints = more than { $most } joints move on the way to the tip: { $names }. Hold some of them with --lock joint=value (in Python, lock=…)
 robot_file-type = unknown type { $type }
 robot_file-free = a { $type } joint on the way to the tip: lock it
 robot_file-mimic = a joint that follows another on the way to the tip: lock it

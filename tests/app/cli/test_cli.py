@@ -124,9 +124,9 @@ def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_
     assert run_command([*SHORT, "--json", "--path", f"@{file} nearest"]) == 0
     said = capsys.readouterr()
     assert "follow the nearest path" in said.err and json.loads(said.out)["laws"]
-    file.write_text("G0 X0 Y0\nG1 X30\nM5\n", "utf-8")
+    file.write_text("G0 X0 Y0\nG1 X30\nG41\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
-    assert f"--path @{file}: line 3, column 1: 'M5' is not read" in capsys.readouterr().err
+    assert f"--path @{file}: line 3, column 1: 'G41' is not read" in capsys.readouterr().err
 
 
 def test_cut_corners_are_told(capsys: pytest.CaptureFixture[str]) -> None:
