@@ -235,6 +235,7 @@ class Law:
         source: where it comes from.
         good: its strength, in a sentence that a run confirms.
         limits: its weakness, in a sentence that a run confirms.
+        objection: what its authors would object to here, in a sentence.
         command: the law.
         reference: clock -> parameter θ of a further point at which the law needs the path; None if
             it needs the closest point only.
@@ -276,6 +277,7 @@ class Law:
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
+    objection: str = ""
 
     @property
     def gain_names(self) -> tuple[str, ...]:

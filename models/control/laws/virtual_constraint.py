@@ -84,4 +84,6 @@ LAW = Law(
     channels=wire_channels,
     good="It keeps to the curve and leaves the pace to whoever pushes it along.",
     limits="It does not travel by itself: at rest it stays where it is.",
+    objection="Its authors stabilize orbits of robots with fewer motors than joints, which"
+    " a bead on a wire is not.",
 )

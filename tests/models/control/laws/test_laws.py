@@ -198,6 +198,36 @@ def test_a_waiting_clock_does_not_leave_the_path_invariant() -> None:
     assert distances["waiting_clock"] > 3e-4
 
 
+def test_the_function_of_maneuvering_falls_as_its_authors_say() -> None:
+    """V = P11 |e|² + 2 P12 e · ε + P22 |ε|² and V' <= -K1 K2 |e|² - K2 |ε|², without a force."""
+    k1, k2, speed = 400.0, 40.0, 2 * np.pi
+    for begin in (0.0, 2.0, 4.5):
+        side = moving(Side("maneuvering"), begin, -3.0)
+        side.put(theta_ref=begin + 0.4)
+        log = side.run(0.5)
+        y, theta = log["y"], log["theta_ref"][:, 0]
+        rate = np.gradient(y, 1e-3, axis=0)
+        e = (y - CIRCLE.at(theta))[2:-2]
+        eps = (rate - speed * CIRCLE.at(theta, 1))[2:-2]
+        squares = np.sum(e**2, 1), np.sum(e * eps, 1), np.sum(eps**2, 1)
+        value = (k1 + k2**2 / 2) * squares[0] + k2 * squares[1] + squares[2]
+        loss = k1 * k2 * squares[0] + k2 * squares[2]
+        change = np.gradient(value, 1e-3)
+        assert value[0] > 0.1 and value[-1] < 1e-3 * value[0]
+        assert (change <= -loss + 0.02 * value.max() / 0.05).all()
+
+
+def test_within_its_bound_the_disturbance_observer_is_18_with_other_gains() -> None:
+    """With a payload that no model knows, and no far return: the same motion."""
+    k1, k2, rate = 400.0, 40.0, 20.0
+    gains = {"K1": k1 + rate * k2, "K2": k2 + rate, "K3": rate * k1}
+    one = Side("disturbance_observer", K1=k1, K2=k2, observer_rate=rate, payload=0.1)
+    other = Side("path_following", **gains, payload=0.1)
+    one_log, other_log = (moving(side, 0.0, 2 * np.pi).run(1.0) for side in (one, other))
+    assert np.abs(other_log["xi"]).max() > 5e-5
+    assert np.abs(one_log["xi"] - other_log["xi"]).max() < 0.03 * np.abs(other_log["xi"]).max()
+
+
 def test_the_event_based_reference_is_the_closest_point() -> None:
     side = Side("event_based")
     for log in (side.run(0.5), side.run(0.5, side.brake())):
