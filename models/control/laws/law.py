@@ -13,17 +13,23 @@ from typing import Literal
 
 import casadi as ca
 
+from onpath.models.arrays import Array
 from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import MechanicalSystem
 
 ZERO, ONE = ca.SX(0), ca.SX(1)
+
+PLAN = 40
+"""The most numbers of a plan."""
 
 Memory = tuple[tuple[str, int], ...]
 """Names and sizes of the fields that a law keeps from tick to tick, the same for all robots."""
@@ -129,6 +135,7 @@ class Clock:
             times this.
         ahead: time by which the controller looks ahead, [s].
         memory: the law's own memory, as its last evaluation left it.
+        plan: the numbers of `Law.plan`, (PLAN, 1); 0 where there are none.
     """
 
     theta: ca.SX
@@ -138,6 +145,7 @@ class Clock:
     interval: ca.SX
     ahead: ca.SX
     memory: Fields
+    plan: ca.SX
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,6 +252,8 @@ class Law:
         own_gains: its other gains.
         by_clock: whether its reference point runs by the clock, whatever the robot does.
         memory: what it keeps from tick to tick; all of it is 0 at the start.
+        plan: (robot, parameters, curve) -> at most `PLAN` numbers, computed whenever one of these
+            changes, which may take some 50 ms; None if it needs none.
         square: whether it needs as many motors and outputs as coordinates, n = m = p.
         commands_acceleration: whether it commands y'' rather than torques.
         pace: what determines its speed along the path: "wanted", the wanted speed; "energy", its
@@ -267,6 +277,7 @@ class Law:
     own_gains: tuple[OwnGain, ...] = ()
     by_clock: bool = False
     memory: Memory = ()
+    plan: Callable[[Robot, Parameters, Curve], Array] | None = None
     square: bool = False
     commands_acceleration: bool = True
     pace: Literal["wanted", "energy", "free", "none"] = "wanted"

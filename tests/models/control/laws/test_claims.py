@@ -19,6 +19,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 CONTEST = Contest(FIVE_BAR, FIVE_BAR.parameters(), presets()["circle"].curve)
 HELD = 2.0  # [s], by the brake
 ON_TIME = 0.01  # [s]
+NEAR = 1e-4  # [m]
 
 
 @cache
@@ -175,3 +176,41 @@ def test_maneuvering_takes_up_its_speed_without_the_haste_of_a_waiting_clock() -
 
 def test_held_back_maneuvering_leaves_the_curve_further_than_a_waiting_clock() -> None:
     assert off("maneuvering", "brake") > 4 * off("waiting_clock", "brake")
+
+
+WITHIN = {"torque_limit": 0.5, "at_limit": "cut"}
+
+
+def saturated(run: onpath.Run, begin: float) -> float:
+    """Share of the time after `begin`, [s], in which a torque is at its limit."""
+    u = np.abs(run.trajectory.fields["u"][round(1000 * begin) :]).max(axis=1)
+    return float((u > WITHIN["torque_limit"] - 1e-9).mean())
+
+
+@pytest.mark.parametrize("law", ["time_optimal_tracking", "time_optimal_following"])
+def test_time_optimal_laws_use_their_torque_and_no_more(law: str) -> None:
+    """Unobstructed; and round the circle in 0.65 s, the docstring's number."""
+    run = onpath.simulate(law=law, duration=4, **WITHIN)
+    u = np.abs(run.trajectory.fields["u"][1000:]).max()
+    assert saturated(run, 1.0) == 0 and 0.88 < u / 0.5 < 0.93
+    assert run.trajectory.distance[1000:].max() < NEAR
+    theta, t = run.trajectory.fields["theta"][:, 0], run.trajectory.t
+    lap = np.interp(theta[1500] + 2 * np.pi, theta, t) - t[1500]
+    assert lap == pytest.approx(0.65, abs=0.005)
+
+
+def test_held_back_the_time_optimal_clock_leaves_the_curve_and_the_speed_by_place_does_not() -> (
+    None
+):
+    held = {
+        law: onpath.simulate(law=law, duration=7, hold=(3, 5), **WITHIN)
+        for law in ("time_optimal_tracking", "time_optimal_following")
+    }
+    clock, place = held.values()
+    assert clock.trajectory.distance.max() > 0.04 and saturated(clock, 3.0) > 0.1
+    assert place.trajectory.distance.max() < 0.005 and saturated(place, 5.5) == 0
+
+
+def test_with_a_payload_that_it_does_not_know_the_fastest_speed_is_too_fast() -> None:
+    run = onpath.simulate(law="time_optimal_following", duration=4, payload=0.05, **WITHIN)
+    assert saturated(run, 1.0) > 0.1 and run.trajectory.distance.max() > 0.003
