@@ -417,8 +417,8 @@ law-velocity_field-text = Eine Strömung längs der Kurve trägt den Roboter und
 law-velocity_field-good = Wird es von der Kurve gezogen, gibt es der Hand weniger Energie als jedes Gesetz mit einem Fahrplan.
 law-velocity_field-limits = Es regelt seine Energie und nicht sein Tempo: Zurückgezogen und losgelassen läuft es schneller weiter, als es soll.
 law-velocity_field-objection = Seine Autoren begrenzen kein Drehmoment, weil ihr Schwungrad in stetiger Zeit nie leer wird.
-law-virtual_constraint-label = Virtuelle Zwangsbedingung
-law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs der Kurve in Ruhe, wie eine Perle auf einem Draht.
+law-virtual_constraint-label = Perle auf einem Draht
+law-virtual_constraint-text = Hält die Spitze durch eine virtuelle Zwangsbedingung auf der Kurve und lässt sie längs der Kurve in Ruhe.
 law-virtual_constraint-good = Sie hält die Kurve ein und überlässt das Tempo dem, der sie schiebt.
 law-virtual_constraint-limits = Sie bewegt sich nicht von selbst: In Ruhe bleibt sie, wo sie ist.
 law-virtual_constraint-objection = Ihre Autoren stabilisieren Orbits von Robotern mit weniger Motoren als Gelenken, und das ist eine Perle auf einem Draht nicht.
@@ -437,6 +437,11 @@ law-maneuvering-text = Folgt einem Punkt, der sich so auf der Kurve bewegt, dass
 law-maneuvering-good = Nach einem Start oder einem Ruck nimmt sie das gewünschte Tempo ohne die Hast einer wartenden Uhr auf.
 law-maneuvering-limits = Festgehalten steuert sie weiter das gewünschte Tempo vor und verlässt die Kurve weiter als eine wartende Uhr.
 law-maneuvering-objection = Ihre Autoren würden den Gradienten filtern und Robustheit gegen Störungen beweisen, wovon hier nichts genutzt wird.
+law-orbital_stabilization-label = Orbitale Stabilisierung
+law-orbital_stabilization-text = Geht auf der Kurve so hin und her, dass ein Pendel ohne Motor weiterschwingt.
+law-orbital_stabilization-good = Sie hält ein Pendel ohne Motor aufrecht, auf einem Orbit, zu dem es nach einem Stoß zurückkehrt, und bleibt auf der Kurve.
+law-orbital_stabilization-limits = Sie geht nie herum, und ein aufrechtes Pendel fällt, wo die Kurve für seinen Ausschlag zu kurz oder zu steil ist.
+law-orbital_stabilization-objection = Ihre Autoren behandeln jeden Roboter, dem ein Motor fehlt, und dieses Gesetz ist für einen Wagen geschrieben.
 law-time_optimal_following-label = Zeitoptimale Bahnfolge
 law-time_optimal_following-text = Bahnfolge mit dem Tempo, das an jeder Stelle so schnell ist, wie die Grenzen der Drehmomente zulassen.
 law-time_optimal_following-good = Sie geht so schnell, wie die Grenzen der Drehmomente zulassen, und bleibt festgehalten und losgelassen nahe an der Kurve.
@@ -1086,6 +1091,9 @@ parameter-observer_rate-help = wie schnell der Störbeobachter eine bleibende Kr
 
 parameter-observer_bound-label = Grenze des Beobachters
 parameter-observer_bound-help = die größte Beschleunigung, die der Störbeobachter seiner Schätzung entgegensetzt
+
+parameter-orbit_swing-label = Ausschlag
+parameter-orbit_swing-help = Amplitude des Pendels auf dem Orbit
 
 parameter-contour_ratio-label = Längs / quer
 parameter-contour_ratio-help = Konturregelung: Steifigkeit längs der Bahn, als Anteil der Steifigkeit quer dazu

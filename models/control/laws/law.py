@@ -263,6 +263,9 @@ class Law:
             None if that motion has no poles either.
         motors: number of motors that it is made for; None: any.
         spatial: whether it is made for outputs in space, p = 3.
+        robots: names of the systems that it is made for; none: any.
+        stabilizes: whether it also controls coordinates that have no motor, so that nothing can be
+            foreseen of them by the zero dynamics.
         always_integrates: whether it uses the integral even if K3 = 0.
     """
 
@@ -285,6 +288,8 @@ class Law:
     channels: Callable[[Parameters, Place], tuple[Channel, Channel]] | None = None
     motors: int | None = None
     spatial: bool = False
+    robots: tuple[str, ...] = ()
+    stabilizes: bool = False
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
@@ -302,6 +307,8 @@ class Law:
 
     def suits(self, system: MechanicalSystem) -> bool:
         """Whether the law can be used with a robot."""
+        if self.robots and system.name not in self.robots:
+            return False
         if (self.spatial and system.p != 3) or self.motors not in (None, system.m):
             return False
         return not self.square or system.n == system.m == system.p

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -214,3 +215,30 @@ def test_held_back_the_time_optimal_clock_leaves_the_curve_and_the_speed_by_plac
 def test_with_a_payload_that_it_does_not_know_the_fastest_speed_is_too_fast() -> None:
     run = onpath.simulate(law="time_optimal_following", duration=4, payload=0.05, **WITHIN)
     assert saturated(run, 1.0) > 0.1 and run.trajectory.distance.max() > 0.003
+
+
+def upright(law: str, **values: Any) -> onpath.Run:
+    """A cart with an upright pendulum, from rest at the top of the circle."""
+    given = {"pendulum": "upright", "start": (0, 0.05), "duration": 7.0, **values}
+    return onpath.simulate("cart_pendulum", "circle", law, **given)
+
+
+def leans(run: onpath.Run) -> float:
+    """Largest angle of the pendulum in the last second, [rad]."""
+    return float(np.abs(run.trajectory.fields["q"][-1000:, 2]).max())
+
+
+@pytest.mark.filterwarnings("ignore:the zero dynamics are unstable")
+def test_orbital_stabilization_keeps_an_upright_pendulum_up_also_after_a_push() -> None:
+    assert leans(upright("path_following")) > 1
+    for push in (None, (3.0, 3.2, (0.02, 0.05))):
+        run = upright("orbital_stabilization", push=push)
+        assert leans(run) == pytest.approx(0.1, abs=5e-4)
+        assert run.trajectory.distance[-1000:].max() < NEAR
+
+
+def test_a_swing_too_wide_for_its_curve_drops_the_pendulum() -> None:
+    run = upright("orbital_stabilization", orbit_swing=0.16)
+    assert run.stopped_at is not None or leans(run) > 1
+    theta = upright("orbital_stabilization").trajectory.fields["theta"]
+    assert np.ptp(theta) < 1.5  # to and fro, and never round

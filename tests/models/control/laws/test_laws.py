@@ -34,6 +34,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import coriolis
 from tests.support.rig import jacobian
+from tests.support.suitable_laws import laws_for
 
 CIRCLE = circle(0.05)
 PATHS = (CIRCLE, ellipse((0.06, 0.035)))
@@ -113,7 +114,7 @@ def test_every_law_says_what_it_is_and_where_it_comes_from(law: Any) -> None:
 
 
 @pytest.mark.parametrize("curve", PATHS, ids=("circle", "ellipse"))
-@pytest.mark.parametrize("law", [n for n, law in LAWS.items() if law.pace in ("wanted", "energy")])
+@pytest.mark.parametrize("law", [n for n in laws_for() if LAWS[n].pace in ("wanted", "energy")])
 def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
     law: str, curve: Curve
 ) -> None:
@@ -125,7 +126,7 @@ def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
         assert log["theta_rate"].mean() == pytest.approx(side.parameters.speed, rel=5e-3)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", laws_for())
 def test_the_compiled_loop_is_the_interpreted_one_bit_by_bit(law: str) -> None:
     side = Side(law, torque_limit=1.0)
     for push in (FREE, side.brake(), Push(hand=np.array([0.03, 0.02]))):
