@@ -109,25 +109,32 @@ def basis(theta: Array, closed: bool) -> tuple[Array, Array]:
 
     Closed: 1, cos kθ and sin kθ for k = 1 to `ORDER`. Open: (1 - τ²) T_k(τ) with τ = θ / π.
     """
-    symbol = ca.SX.sym("theta")
-    made = symbolic_basis(symbol, closed)
-    function = ca.Function("basis", [symbol], [made, ca.jacobian(made, symbol)]).map(len(theta))
-    value, slope = function(theta)
-    return np.array(value).T, np.array(slope).T
+    place, numbers = ca.SX.sym("place"), ca.SX.sym("numbers", COEFFICIENTS)
+    both = ca.vertcat(*square_of_speed(numbers, place, closed))
+    value, slope = ca.Function("basis", [place], ca.vertsplit(ca.jacobian(both, numbers))).map(
+        len(theta)
+    )(theta)
+    shape = len(theta), COEFFICIENTS
+    return np.array(ca.densify(value)).reshape(shape), np.array(ca.densify(slope)).reshape(shape)
 
 
-def symbolic_basis(theta: ca.SX, closed: bool) -> ca.SX:
-    """The functions of `basis` at one θ, (COEFFICIENTS, 1)."""
+def square_of_speed(numbers: ca.SX, theta: ca.SX, closed: bool) -> tuple[ca.SX, ca.SX]:
+    """x and dx/dθ at one θ from the coefficients, with few operations."""
+    c = ca.vertsplit(numbers)
     if closed:
         cosine, sine = ca.cos(theta), ca.sin(theta)
-        c, s, found = ca.SX(1), ca.SX(0), [ca.SX(1)]
-        for _ in range(ORDER):
-            c, s = c * cosine - s * sine, s * cosine + c * sine
-            found += [c, s]
-        return ca.vertcat(*found)
+        x, slope, now = c[0], ca.SX(0), (cosine, sine)
+        for k in range(1, ORDER + 1):
+            x += c[2 * k - 1] * now[0] + c[2 * k] * now[1]
+            slope += k * (c[2 * k] * now[0] - c[2 * k - 1] * now[1])
+            now = now[0] * cosine - now[1] * sine, now[1] * cosine + now[0] * sine
+        return x, slope
     tau = theta / np.pi
-    before, now, found = ca.SX(1), tau, [ca.SX(1)]
-    for _ in range(2 * ORDER):
-        found.append(now)
-        before, now = now, 2 * tau * now - before
-    return (1 - tau**2) * ca.vertcat(*found)
+    total, bent, double = c[0] + c[1] * tau, c[1], 2 * tau
+    before, now, slow, fast = ca.SX(1), tau, ca.SX(0), ca.SX(1)
+    for number in c[2:]:
+        slow, fast = fast, 2 * now + double * fast - slow
+        before, now = now, double * now - before
+        total, bent = total + number * now, bent + number * fast
+    inside = 1 - tau**2
+    return inside * total, (inside * bent - double * total) / np.pi

@@ -12,7 +12,7 @@ from onpath.models.control.fastest_speed import (
     COEFFICIENTS,
     LEAST,
     fastest_speed,
-    symbolic_basis,
+    square_of_speed,
 )
 from onpath.models.control.laws.law import PathReference
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT
@@ -47,11 +47,8 @@ def planned(
         closed: whether the path is closed.
         rate: θ', [rad/s]; None: that of the plan, so that ω' = x' / 2.
     """
-    place, numbers = ca.SX.sym("place"), ca.SX.sym("numbers", COEFFICIENTS)
-    square = ca.dot(symbolic_basis(place, closed), numbers)
-    both = ca.Function("square", [place, numbers], [square, ca.jacobian(square, place)])
     inside = theta if closed else ca.fmin(ca.fmax(theta, -np.pi), np.pi)
-    x, slope = both(inside, plan[1 : 1 + COEFFICIENTS])
+    x, slope = square_of_speed(plan[1 : 1 + COEFFICIENTS], inside, closed)
     direction, exists = ca.sign(task.speed), plan[0]
     speed = direction * ca.sqrt(ca.fmax(x, 0) + (0 if closed else LEAST**2))
     size = ca.fmax(ca.fabs(speed), LEAST)
