@@ -52,7 +52,9 @@ def disturbance_observer(view: View) -> ControlAction:
     What is kept is r = p + K2 λ, so that K2 λ' need not be integrated, which the controller only
     predicts:
 
-        d = L (λ' + K2 λ - r),   r' = -K1 λ + d - sat(d),   and at the start d = 0.
+        d = L (λ' + K2 λ - r),   r' = -K1 λ + d - sat(d).
+
+    In the first two evaluations d is 0: the first λ' is predicted without the torque to come.
 
     L is `observer_rate`, a `observer_bound`. Along the path, (19) acts as in path following.
 
@@ -67,7 +69,7 @@ def disturbance_observer(view: View) -> ControlAction:
     output, gains, memory = view.output, view.gains, view.clock.memory
     rate, size = view.own_gains[RATE.name], output.xi.numel()
     now = output.xi_rate + gains.k2 * output.xi
-    kept = ca.if_else(memory[STARTED], memory[MODEL][:size], now)
+    kept = ca.if_else(memory[STARTED] >= 1, memory[MODEL][:size], now)
     disturbance = rate * (now - kept)
     found = ca.sqrt(ca.dot(disturbance, disturbance))
     most = view.own_gains[BOUND.name] * output.xi_per_metre
@@ -76,7 +78,9 @@ def disturbance_observer(view: View) -> ControlAction:
     kept += view.clock.interval * (disturbance - opposed - gains.k1 * output.xi)
     action = followed(view, tangential(view), across, direction=output.acceleration_per_along)
     padded = ca.vertcat(kept, ca.SX.zeros(2 - size, 1))
-    return replace(action, error=None, memory={MODEL: padded, STARTED: ca.SX(1)})
+    return replace(
+        action, error=None, memory={MODEL: padded, STARTED: ca.fmin(memory[STARTED] + 0.5, 1)}
+    )
 
 
 def observer_channels(parameters: Parameters, _place: Place) -> tuple[Channel, Channel]:
