@@ -6,7 +6,7 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -14,6 +14,9 @@ from onpath.app.cli.path_option import read_path
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
+
+if TYPE_CHECKING:
+    from onpath.models.systems.robots import Robot
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class ExperimentCommand:
         if self.path is not None:
             chosen = chosen.along(read_path(self.path, chosen.robot()), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
-        given, laws = assignments(self.set) | times, laws_named(self.law)
+        given, laws = assignments(self.set) | times, laws_named(self.law, chosen.robot())
         chosen = chosen.with_values(given)
         remark = path_remark(chosen.curve())
         for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
@@ -138,10 +141,12 @@ class ZeroDynamicsCommand:
             print(json.dumps(robot_json(result), indent=2) if self.json else robot_table(result))
 
 
-def laws_named(text: str) -> list[str]:
+def laws_named(text: str, robot: Robot) -> list[str]:
     """The laws that a text asks for: "all", "both", a typed law, or names with commas between.
 
-    A name may be FILE.py:NAME.
+    "all" are all laws that suit the robot. A name may be FILE.py:NAME.
+
+    "all" are all laws that suit the robot.
 
     Raises:
         ValueError: an unknown name, or a text that is not a law.
@@ -153,7 +158,8 @@ def laws_named(text: str) -> list[str]:
     from onpath.models.systems.parameter_specs import unknown_name
 
     if text in ("all", "both"):
-        return list(LAWS if text == "all" else NAMES)
+        suitable = [name for name, law in LAWS.items() if law.suits(robot.system)]
+        return suitable if text == "all" else list(NAMES)
     if is_text(text):
         return [law_given(text)]
     given = dict.fromkeys(name.strip() for name in text.split(","))

@@ -121,6 +121,7 @@ def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX
         interval=interval(kind, settings),
         ahead=ahead,
         memory={name: state[name] for name, _ in law.memory},
+        plan=settings["plan"],
     )
 
 

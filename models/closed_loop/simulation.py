@@ -15,8 +15,9 @@ from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
 from onpath.models.control.implicit_level import check_level, implicit_level
+from onpath.models.control.laws.law import PLAN
 from onpath.models.control.laws.own import is_text
-from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import ambiguities
@@ -143,7 +144,7 @@ def settings_vector(
     """The settings of a closed loop as a flat vector: everything but the state and the curve.
 
     Args:
-        curve: for its level set only.
+        curve: for its level set, the speed limit, and the plan of a law.
         push: the external action.
 
     Returns:
@@ -170,6 +171,7 @@ def settings_vector(
             "level_centre": centre,
             "level_weights": weights,
             "level_constant": constant,
+            "plan": _plan(robot, layouts.law, parameters, curve),
             "torque_limit": parameters.torque_limit or NO_LIMIT / min(robot.system.strength),
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
@@ -187,6 +189,15 @@ def settings_vector(
             "model": robot.model(parameters),
         }
     )
+
+
+def _plan(robot: Robot, law: str, parameters: Parameters, curve: Curve) -> Array:
+    """The plan of a law, padded with zeros, (PLAN,)."""
+    plan, numbers = law_named(law).plan, np.zeros(PLAN)
+    if plan is not None:
+        found = plan(robot, parameters, curve)
+        numbers[: len(found)] = found
+    return numbers
 
 
 def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:

@@ -183,7 +183,7 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
         "grid": grid_of(robot, path.at(path.sample(GRID))).ravel().tolist(),
         "outline": _rounded(outline.T),
         "states": [figure.start(law, curve).tolist() for law in figure.every_law],
-        "settings": figure.settings(figure.laws[0], curve).tolist(),
+        "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if "drag" in figure.controls else [],
         "fit": fit_name(design),
     }

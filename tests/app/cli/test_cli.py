@@ -20,12 +20,13 @@ from onpath.app.notebook.path_files import path_from
 from onpath.app.notebook.simulate import simulate
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
-from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.control.settable import specs
 from onpath.models.path_files.placing import RADIUS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.checkout import ROOT
 from tests.support.csv_columns import read_csv
+from tests.support.suitable_laws import laws_for
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
 
@@ -66,7 +67,7 @@ def test_one_controller_alone_gives_the_same_numbers_as_beside_another(
 
 
 def test_laws_are_chosen_by_name_in_the_order_given(capsys: pytest.CaptureFixture[str]) -> None:
-    chosen = {"all": list(LAWS), ",".join(reversed(NAMES)): list(reversed(NAMES))}
+    chosen = {"all": laws_for(), ",".join(reversed(NAMES)): list(reversed(NAMES))}
     for text, names in chosen.items():
         assert run_command([*SHORT, "--json", "--law", text]) == 0
         result = json.loads(capsys.readouterr().out)

@@ -272,7 +272,7 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
     assert [name for name in presets() if f"path.{name}" not in known] == []
     laws = [f"law.{name}" for name in LAWS if f"law.{name}.label" in known]
     assert {f"law.{name}" for name in DEFAULT_LAWS.values()} <= {*laws}
-    parts = ("text", "good", "limits")
+    parts = ("text", "good", "limits", "objection")
     assert [law for law in laws for part in parts if f"{law}.{part}" not in known] == []
     own = [
         gain.name for law in LAWS.values() if f"law.{law.name}" in laws for gain in law.own_gains
@@ -348,7 +348,7 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
         for name, spec in specs(kind).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
-    parts = ("label", "text", "good", "limits")
+    parts = ("label", "text", "good", "limits", "objection")
     there_are |= {f"law.{name}.{part}" for name in LAWS for part in parts} | {"law.own.label"}
     there_are |= {f"law.own.{value.names[0]}" for value in (*MEANINGS, *SPACE_MEANINGS)}
     only_here = messages(language).keys() - messages("en").keys()
