@@ -146,8 +146,6 @@ def laws_named(text: str, robot: Robot) -> list[str]:
 
     "all" are all laws that suit the robot. A name may be FILE.py:NAME.
 
-    "all" are all laws that suit the robot.
-
     Raises:
         ValueError: an unknown name, or a text that is not a law.
     """
