@@ -38,17 +38,17 @@ class Push:
 
     Attributes:
         hand: position of the hand, shape (p,), [m], or None.
-        share: of the hand's force that acts.
         hold: anchor [m] and unit tangent of the brake, each shape (p,), or None.
         hold_normal: a second direction in which the brake acts, shape (p,), or None.
         wall: a point of a wall's surface [m] and its unit normal, each shape (p,), or None.
+        share: of the hand's force that acts.
     """
 
     hand: Array | None = None
-    share: float = 1.0
     hold: tuple[Array, Array] | None = None
     hold_normal: Array | None = None
     wall: tuple[Array, Array] | None = None
+    share: float = 1.0
 
     @property
     def acts(self) -> bool:

@@ -150,7 +150,7 @@ def test_a_robot_from_mjcf_is_drawn_as_mujoco_draws_it(tmp_path: Path) -> None:
     api: Any = pytest.importorskip("mujoco")
     wedge = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.05, 0], [0, 0, 0.08]])
     solid = trimesh.Trimesh(wedge, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-    (tmp_path / "wedge.stl").write_bytes(solid.export(file_type="stl"))
+    solid.export(tmp_path / "wedge.stl")
     file = tmp_path / "arm.xml"
     file.write_text(MJCF)
     entry = read_robot(file, Options(pose={"j1": -1.2, "j2": 1.5})).entry

@@ -54,6 +54,7 @@ def lap(own: Pendulum, plan: Array, swing: float, driven: bool = True) -> tuple[
 
     begin = np.concatenate([[swing, 0.0], np.eye(3).ravel()])
     found = solve_ivp(slope, (0, 5), begin, events=down, rtol=1e-9, atol=1e-12)
+    assert found.t_events is not None
     period = 4 * float(found.t_events[0][0])
     return period, solve_ivp(slope, (0, period), begin, rtol=1e-9).y[2:, -1].reshape(3, 3)
 

@@ -132,7 +132,7 @@ def test_the_set_point_is_reached_across_the_circle() -> None:
     assert abs(float(done.fields["theta_rate"][-1, 0])) < 0.01
 
 
-def pulled(law: str, outside: float, **values: float) -> onpath.Run:
+def pulled(law: str, outside: float, **values: Any) -> onpath.Run:
     """Held aside at rest for 3 s, up to 3.5 s, by a hand that is outside of the circle, [m]."""
     aside = (0.5, 3.5, (outside, 0.0))
     return onpath.simulate(law=law, task="position", target=0.0, push=aside, duration=5, **values)

@@ -221,7 +221,7 @@ def test_the_function_of_maneuvering_falls_as_its_authors_say() -> None:
 def test_within_its_bound_the_disturbance_observer_is_18_with_other_gains() -> None:
     """With a payload that no model knows, and no far return: the same motion."""
     k1, k2, rate = 400.0, 40.0, 20.0
-    gains = {"K1": k1 + rate * k2, "K2": k2 + rate, "K3": rate * k1}
+    gains: dict[str, Any] = {"K1": k1 + rate * k2, "K2": k2 + rate, "K3": rate * k1}
     one = Side("disturbance_observer", K1=k1, K2=k2, observer_rate=rate, payload=0.1)
     other = Side("path_following", **gains, payload=0.1)
     one_log, other_log = (moving(side, 0.0, 2 * np.pi).run(1.0) for side in (one, other))
