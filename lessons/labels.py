@@ -1,4 +1,4 @@
-"""Displayed names of what a task checks: parameters, their options, paths and robots."""
+"""Displayed names of parameters, their units and options, of paths and of robots."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from onpath.models.control.laws.own import OWN
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
 
 OTHERS = {
@@ -20,11 +21,47 @@ OTHERS = {
 """Settings other than parameters and laws: name -> key of its label."""
 
 
+def parameter_label(name: str, spec: Spec, words: Words) -> str:
+    """Displayed name of a parameter."""
+    return words.get(f"parameter.{name}.label", spec.label)
+
+
+def parameter_unit(name: str, spec: Spec, words: Words) -> str:
+    """Unit of a parameter; empty if it has none."""
+    return words.get(f"parameter.{name}.unit", spec.unit)
+
+
+def parameter_heading(name: str, spec: Spec, words: Words) -> str:
+    """Displayed name of a parameter and its unit, such as "speed [rad/s]"."""
+    unit = parameter_unit(name, spec, words)
+    return parameter_label(name, spec, words) + (f" [{unit}]" if unit else "")
+
+
+def parameter_help(name: str, spec: Spec, words: Words) -> str:
+    """Help text of a parameter."""
+    return words.get(f"parameter.{name}.help", spec.help)
+
+
+def option_label(name: str, option: object, words: Words) -> str:
+    """Displayed name of one of a parameter's options."""
+    return words.get(f"parameter.{name}.option.{option}", str(option).replace("_", " "))
+
+
+def path_label(name: str, words: Words) -> str:
+    """Displayed name of a path; a user's own keeps its name."""
+    return words.get(f"path.{name}", name)
+
+
+def robot_label(name: str, words: Words) -> str:
+    """Displayed name of a robot in the catalogue."""
+    return words.get(f"machine.{name}.label", ROBOTS[name].label)
+
+
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
     """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a side."""
     spec = specs(parameters).get(name)
     if spec is not None:
-        return words.get(f"parameter.{name}.label", spec.label)
+        return parameter_label(name, spec, words)
     return words(f"side.{name}") if name in DEFAULT_LAWS else words(OTHERS[name])
 
 
@@ -36,10 +73,10 @@ def value_label(name: str, value: object, words: Words) -> str:
     if name in DEFAULT_LAWS:
         return law_label(text, words)
     if name == "path":
-        return words("check.own_path") if text == OWN else words.get(f"path.{text}", text)
+        return words("check.own_path") if text == OWN else path_label(text, words)
     if name == "robot" and text in ROBOTS:
-        return words.get(f"machine.{text}.label", ROBOTS[text].label)
-    return words.get(f"parameter.{name}.option.{text}", text)
+        return robot_label(text, words)
+    return option_label(name, text, words)
 
 
 def event_label(event: str, detail: str, parameters: Parameters, words: Words) -> str:

@@ -8,10 +8,11 @@ In Python, without a browser:
 (3000,)
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
-arguments. `onpath.path_from("logo.svg")` reads a path from a file. Names are listed by
-`onpath.robots()`, `onpath.laws()`, `onpath.paths()` and `onpath.parameters("five_bar")`. The same
-arguments give the same motion here, on the command line, in figures and in the lab. A new lab and a
-figure begin more slowly, as with `**onpath.NEWCOMER`.
+arguments. `onpath.path_from("logo.svg")` reads a path from a file. A law of one's own is given as
+`law=`; one in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`.
+Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
+`onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
+in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
 """
 
 from importlib import import_module
@@ -21,6 +22,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
     from onpath.app.notebook.figure import figure as figure
+    from onpath.app.notebook.identify import identify as identify
+    from onpath.app.notebook.own_law import followed as followed
+    from onpath.app.notebook.own_law import own_gain as own_gain
+    from onpath.app.notebook.own_law import tangential as tangential
     from onpath.app.notebook.path_files import check_path as check_path
     from onpath.app.notebook.path_files import path_from as path_from
     from onpath.app.notebook.robot import robot as robot
@@ -42,7 +47,10 @@ __all__ = (
     "circle",
     "ellipse",
     "figure",
+    "followed",
+    "identify",
     "laws",
+    "own_gain",
     "parameters",
     "path_from",
     "paths",
@@ -50,12 +58,17 @@ __all__ = (
     "robots",
     "segment",
     "simulate",
+    "tangential",
     "through",
 )
 
 _MODULES = {
     "figure": "figure",
+    "identify": "identify",
     "robot": "robot",
+    "followed": "own_law",
+    "own_gain": "own_law",
+    "tangential": "own_law",
     "path_from": "path_files",
     "check_path": "path_files",
 }

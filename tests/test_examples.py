@@ -28,4 +28,5 @@ def test_an_example_runs_and_prints_its_result(file: Path, tmp_path: Path) -> No
 
 
 def test_there_is_an_example_of_each_kind() -> None:
-    assert {"points", "drawing", "tool", "crossing"} <= {file.stem for file in EXAMPLES}
+    kinds = {"points", "drawing", "tool", "crossing", "robot_from_file", "posture", "fewer_motors"}
+    assert kinds <= {file.stem for file in EXAMPLES}

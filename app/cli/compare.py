@@ -32,8 +32,8 @@ class CompareCommand:
     """Name of the robot, or its URDF or MJCF file."""
     file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A law to compare, also one of your own in two lines: "across = …; along = …"; repeat for
-    more. By default all that suit the robot."""
+    """A law to compare, also one of your own in two lines, "across = …; along = …", or in a Python
+    file, my_law.py:Name; repeat for more. By default all that suit the robot."""
     obstruction: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """An obstruction; repeat for more. By default all. Those with weak motors run twice: with the
     remedy of at_limit and, as NAME_cut, without it."""
@@ -144,14 +144,16 @@ def _laws(asked: tuple[str, ...], contest: Contest) -> list[str]:
     Raises:
         ValueError: one of them does not exist, or cannot be compared.
     """
+    from onpath.app.common.own_laws import compiled_law
     from onpath.models.control.laws.own import is_text
-    from onpath.models.control.laws.registry import law_name
+    from onpath.models.control.laws.python_law import IN_FILE
 
-    typed = {name: law_name(name) for name in asked if is_text(name)}
+    own = [name for name in asked if is_text(name) or IN_FILE.fullmatch(name)]
+    typed = {name: compiled_law(name) for name in own}
     for name in typed.values():
         if not contest.admits(name):
             raise ValueError(f"{name}: it does not suit {contest.robot.name}")
-    known = [*contest.laws(), *typed.values()]
+    known = list(dict.fromkeys([*contest.laws(), *typed.values()]))
     return _known(tuple(typed.get(name, name) for name in asked), known, "law")
 
 

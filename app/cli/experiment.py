@@ -6,7 +6,7 @@ import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
@@ -14,6 +14,9 @@ from onpath.app.cli.path_option import read_path
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
+
+if TYPE_CHECKING:
+    from onpath.models.systems.robots import Robot
 
 
 @dataclass(frozen=True)
@@ -28,7 +31,7 @@ class ExperimentCommand:
     law: Annotated[str, tyro.conf.arg(aliases=("--controller",))] = "both"
     """Laws to run: names with commas between, all, or both (trajectory_tracking and
     path_following); or a law of your own, as "across = -K1*xi - K2*dxi; along = -K5*(dtheta -
-    speed)"."""
+    speed)", or in a Python file, as my_law.py:Name."""
     path: str | None = None
     """Path: a preset, "circle R", "ellipse A B", "closed Z1 Z2 Z1 Z2 ...", "open ...", "segment
     ...", "implicit EXPRESSION" (of z1 and z2, 0 on the path; followed by its distance, or with
@@ -72,7 +75,7 @@ class ExperimentCommand:
         if self.path is not None:
             chosen = chosen.along(read_path(self.path, chosen.robot()), self.path)
         times = {} if self.profile is None else {"profile": self.profile}
-        given, laws = assignments(self.set) | times, laws_named(self.law)
+        given, laws = assignments(self.set) | times, laws_named(self.law, chosen.robot())
         chosen = chosen.with_values(given)
         remark = path_remark(chosen.curve())
         for text in (remark, unused_text(chosen, laws, given), forecast_text(chosen, laws)):
@@ -138,29 +141,35 @@ class ZeroDynamicsCommand:
             print(json.dumps(robot_json(result), indent=2) if self.json else robot_table(result))
 
 
-def laws_named(text: str) -> list[str]:
-    """The laws that a text asks for: names with commas between, "all", "both", or a typed law.
+def laws_named(text: str, robot: Robot) -> list[str]:
+    """The laws that a text asks for: "all", "both", a typed law, or names with commas between.
+
+    "all" are all laws that suit the robot. A name may be FILE.py:NAME.
 
     Raises:
         ValueError: an unknown name, or a text that is not a law.
     """
+    from onpath.app.common.own_laws import law_given
     from onpath.models.control.laws.own import is_text
-    from onpath.models.control.laws.registry import LAWS, NAMES, law_name
+    from onpath.models.control.laws.python_law import IN_FILE
+    from onpath.models.control.laws.registry import LAWS, NAMES
     from onpath.models.systems.parameter_specs import unknown_name
 
     if text in ("all", "both"):
-        return list(LAWS if text == "all" else NAMES)
+        suitable = [name for name, law in LAWS.items() if law.suits(robot.system)]
+        return suitable if text == "all" else list(NAMES)
     if is_text(text):
-        return [law_name(text)]
-    names = list(dict.fromkeys(name.strip() for name in text.split(",")))
+        return [law_given(text)]
+    given = dict.fromkeys(name.strip() for name in text.split(","))
+    names = [law_given(name) if IN_FILE.fullmatch(name) else name for name in given]
     for name in names:
         if name not in LAWS:
             raise unknown_name(name, [*LAWS, "all", "both"], "law")
     return names
 
 
-def assignments(pairs: tuple[str, ...]) -> dict[str, str]:
-    """The values of --set by name.
+def assignments(pairs: tuple[str, ...], option: str = "--set") -> dict[str, str]:
+    """The values of --set, or another option that may be repeated, by name.
 
     Raises:
         ValueError: one of them is not of the form name=value.
@@ -169,7 +178,7 @@ def assignments(pairs: tuple[str, ...]) -> dict[str, str]:
     for pair in pairs:
         name, equals, value = pair.partition("=")
         if not equals or not name or not value:
-            raise ValueError(f"--set {pair}: expected name=value")
+            raise ValueError(f"{option} {pair}: expected name=value")
         values[name.strip()] = value.strip()
     return values
 

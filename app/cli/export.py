@@ -27,7 +27,8 @@ class ExportFigure:
     """Name of the robot, or its URDF or MJCF file."""
     file_options: FileOptions = NO_OPTIONS
     law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A control law; give it twice for two robots. By default tracking beside path following."""
+    """A control law, also my_law.py:Name; give it twice for two robots. By default tracking beside
+    path following."""
     path: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """A path, such as circle or "ellipse 0.07 0.04", or @FILE with options, as for onpath
     experiment; repeat for more to choose from."""

@@ -13,6 +13,7 @@ from typing import Protocol
 
 import tyro
 
+from onpath.app.cli.arena import ArenaCommand
 from onpath.app.cli.compare import CompareCommand
 from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
 from onpath.app.cli.export import ExportCommand
@@ -52,6 +53,7 @@ COMMANDS: dict[str, type[Subcommand]] = {
     "serve": Serve,
     "experiment": ExperimentCommand,
     "compare": CompareCommand,
+    "arena": ArenaCommand,
     "figure": FigureCommand,
     "identify": IdentifyCommand,
     "zero-dynamics": ZeroDynamicsCommand,

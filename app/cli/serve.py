@@ -37,6 +37,9 @@ class Serve:
     robot: str = "five_bar"
     """Robot with which a lab begins: its name, or its URDF or MJCF file."""
     file_options: FileOptions = NO_OPTIONS
+    law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    """A law of your own in a Python file, as my_law.py:Name; repeat for more. They are in the menu
+    of laws, and the robot on the right begins with the first. Not with --classroom."""
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
@@ -107,6 +110,7 @@ class Serve:
         robot = self.file_options.name_of(self.robot)
         if robot not in ROBOTS:
             raise unknown_name(robot, list(ROBOTS), "robot")
+        law = self._law(ROBOTS[robot])
         keys = given_keys()
         classrooms = open_classes(keys) if self.classroom else []
         try:
@@ -124,6 +128,7 @@ class Serve:
                 hang_seconds=self.hang_seconds,
                 privacy_url=self.privacy_url,
                 path=self._path(ROBOTS[robot]),
+                law=law,
                 course_url=self.course_url,
                 allowed_origins=self.origin,
                 trusted_proxies=self.trusted_proxy,
@@ -133,6 +138,26 @@ class Serve:
             print(f"onpath: {error}", file=sys.stderr)
             return 1
         return None
+
+    def _law(self, entry: RobotEntry) -> str:
+        """The first of the laws of the user's own, all of which are added; "" if there are none.
+
+        Raises:
+            ValueError: one has an error, as far as a loop of this robot shows it.
+        """
+        from onpath.app.common.own_laws import compiled_law
+        from onpath.models.closed_loop.simulation import kernel_of, kind_of
+        from onpath.models.paths.curves import circle
+
+        if self.law and self.classroom:
+            raise ValueError(
+                "--law: a class has the laws of OnPath only; serve it without --classroom"
+            )
+        names = [compiled_law(text) for text in self.law]
+        parameters = entry.parameters()
+        for name in names:
+            kernel_of(entry.make(parameters), kind_of(name, parameters, circle(0.05)))
+        return names[0] if names else ""
 
     def _path(self, entry: RobotEntry) -> PathDesign | None:
         """The path of new labs; None: the usual one."""

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
+from onpath.app.common.own_laws import add_laws, laws_of_files
 from onpath.models.systems.catalogue import add_chains, added_chains
-from onpath.models.systems.rigid_chain import ChainSource
 
 IDLE = 60.0  # [s] without a call; then the process, which takes about 200 MB, is ended
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MALLOC_ARENA_MAX": "1"}
@@ -39,7 +39,7 @@ class ExportProcess:
     def __init__(self, idle: float = IDLE) -> None:
         self._idle = idle
         self._process: subprocess.Popen[bytes] | None = None
-        self._robots = list[ChainSource]()
+        self._added = list[tuple[Callable[[Any], None], list[Any]]]()
         self._calls, self._stops = threading.Lock(), 0
         self._rest: threading.Timer | None = None
 
@@ -70,9 +70,9 @@ class ExportProcess:
             limit = threading.Timer(seconds, process.kill)
             limit.start()
             try:
-                if self._robots:  # which the process does not find in the folder of robots
-                    _ask(process, add_chains, (self._robots,))
-                    self._robots = []
+                for add, added in self._added:  # what the process does not find in our folders
+                    _ask(process, add, (added,))
+                self._added = []
                 succeeded, result = _ask(process, work, arguments)
             except (EOFError, OSError, pickle.UnpicklingError) as error:
                 self._end()
@@ -99,7 +99,8 @@ class ExportProcess:
     def _started(self) -> subprocess.Popen[bytes]:
         if self._process is None or self._process.poll() is not None:
             self._end()
-            self._robots = added_chains()
+            added = [(add_chains, added_chains()), (add_laws, laws_of_files())]
+            self._added = [(add, each) for add, each in added if each]
             path = os.pathsep.join(filter(None, sys.path))
             self._process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "onpath.app.exports.worker"],

@@ -14,6 +14,13 @@ from matplotlib.patches import Patch
 
 from onpath.app.common.palette import OF_SIDE
 from onpath.app.exports.figures import STYLES, Quantity, draw_column, panels_of
+from onpath.lessons.labels import (
+    parameter_label,
+    parameter_unit,
+    path_label,
+    robot_label,
+    value_label,
+)
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -82,8 +89,8 @@ def history_figure(
     figure.suptitle(
         words(
             "figure.history",
-            robot=words.get(f"machine.{robot}.label", entry.label),
-            path=words.get(f"path.{path}", path),
+            robot=robot_label(robot, words),
+            path=path_label(path, words),
             seconds=f"{_span(every):.0f}",
         ),
         fontsize=15,
@@ -108,11 +115,10 @@ def parameter_line(parameters: Parameters, usual: Parameters, words: Words) -> s
 
 
 def _written(name: str, spec: Spec, value: float | int | str, words: Words) -> str:
-    label = words.get(f"parameter.{name}.label", spec.label)
-    unit = words.get(f"parameter.{name}.unit", spec.unit)
+    label, shown = parameter_label(name, spec, words), value_label(name, value, words)
     if isinstance(value, str):
-        return f"{label}: {words.get(f'parameter.{name}.option.{value}', value)}"
-    return f"{label} = {float(value):.4g} {unit}".strip()
+        return f"{label}: {shown}"
+    return f"{label} = {shown} {parameter_unit(name, spec, words)}".strip()
 
 
 def _span(runs: Sequence[Trajectory]) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 
 from onpath.app.common.atomic_file import check_writable, whole_file
 from onpath.app.common.newcomer import NEWCOMER
+from onpath.app.common.own_laws import compiled_law
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.app.notebook.arguments import curve_of
@@ -28,12 +29,12 @@ PATHS = ("circle", "ellipse", "rounded square", "clover")
 def figure(
     file: str | Path,
     robot: str | RobotEntry = "five_bar",
-    laws: Sequence[str] = tuple(DEFAULT_LAWS.values()),
+    laws: Sequence[Any] = tuple(DEFAULT_LAWS.values()),
     paths: Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
     *,
     sliders: Sequence[str] | None = None,
     controls: Sequence[str] | None = None,
-    choices: Sequence[str] = (),
+    choices: Sequence[Any] = (),
     title: str = "",
     language: str = "en",
     **parameters: Any,
@@ -46,7 +47,8 @@ def figure(
     Args:
         file: the file to write, such as "figure.html".
         robot: one of `onpath.robots()`, or what `onpath.robot` returns.
-        laws: one or two of `onpath.laws()`, or laws of one's own.
+        laws: one or two of `onpath.laws()`, or laws of one's own, as for `onpath.simulate`, but no
+            functions that are called.
         paths: paths to choose from, beginning with the first: names of `onpath.paths()`, texts or
             curves as for `onpath.simulate`, or a mapping from names to them.
         sliders: names of `onpath.parameters(robot)` that readers may change; None: the speed and
@@ -79,12 +81,11 @@ def figure(
     check_writable(path)
     if language not in languages():
         raise ValueError(f"language {language}: there are {', '.join(languages())}")
-    if isinstance(laws, str):
-        laws = [laws]
+    laws = [laws] if isinstance(laws, str) else laws
     if isinstance(paths, str):
         paths = [paths]
-    if isinstance(choices, str):
-        choices = [choices]
+    choices = [choices] if isinstance(choices, str) else choices
+    laws, choices = ([compiled_law(law) for law in each] for each in (laws, choices))
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
     given = by_declared_names(parameters, entry := entry_named(robot), figure)

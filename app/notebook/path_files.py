@@ -38,8 +38,8 @@ def path_from(
 
     Points are a table with two columns, or with columns named x and y, as any spreadsheet writes
     it; a name may state the unit, as in x_mm. Drawings need `pip install "onpath[svg]"`. Of G-code,
-    G0 to G3, G20, G21, G90 and G91 are read, and everything else is refused. Of several lines, the
-    longest is taken.
+    G0 to G3, G20, G21, G90 and G91 are read. What leaves the path as it is, such as F, S or M3, has
+    no effect, and everything else is refused. Of several lines, the longest is taken.
 
     A path has 12 harmonics, and so is smooth: see its `deviation` from the line in the file. Its
     drawing in a notebook shows both.
@@ -62,8 +62,8 @@ def path_from(
         OSError: the file cannot be read.
 
     Warns:
-        UserWarning: which of several lines has been taken, the smallest radius of rounded corners,
-            and a deviation of more than 4 mm.
+        UserWarning: which of several lines has been taken, words of G-code without effect, the
+            smallest radius of rounded corners, and a deviation of more than 4 mm.
 
     >>> import onpath, pathlib, tempfile
     >>> file = pathlib.Path(tempfile.mkdtemp(), "square.nc")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
+from onpath.app.common.own_laws import law_given
 from onpath.app.notebook.arguments import (
     array_of,
     curve_of,
@@ -21,9 +22,8 @@ from onpath.app.notebook.arguments import (
     start_point,
 )
 from onpath.app.notebook.run import Run
-from onpath.models.control.laws.registry import LAWS, law_name
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs, values_of
-from onpath.models.errors import CodedError
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
@@ -39,7 +39,7 @@ from onpath.models.systems.parameter_specs import Spec, unknown_name
 def simulate(
     robot: str | RobotEntry = "five_bar",
     path: Curve | str = "circle",
-    law: str = "path_following",
+    law: Any = "path_following",
     *,
     duration: float = 8.0,
     start: ArrayLike | None = None,
@@ -61,8 +61,11 @@ def simulate(
         path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
             "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
             [m].
-        law: one of `onpath.laws()`, or a law of one's own in two lines, such as
-            "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)".
+        law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
+            "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
+            in CasADi, a class of such objects, or a function that is called in every control
+            interval, see `python_law` in models/control/laws/python_law.py; or one of these in a
+            file, as "my_law.py:Name".
         duration: simulated time, [s].
         start: initial position of the end-point, shape (2,) in the path's plane or (p,)
             in the output space, [m]; None: the point of the path at theta = 0.
@@ -121,11 +124,19 @@ def simulate(
     >>> bool(abs(run.theta_rate[-1] - 5) < 0.1)
     True
 
+    A function, which is called in every control interval, returns θ'' and λ'':
+
+    >>> def pulled(now):
+    ...     return -now.K5 * (now.theta_rate - now.speed), -900 * now.xi[0] - 60 * now.xi_rate[0]
+    >>> run = onpath.simulate(law=pulled, duration=1)
+    >>> run.law, bool(run.max_distance < 1e-4)
+    ('pulled', True)
+
     >>> onpath.simulate(path="elipse")
     Traceback (most recent call last):
     onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
-    entry, law = entry_named(robot), _law(law)
+    entry, name = entry_named(robot), law_given(law)
     given = by_declared_names(parameters, entry, simulate)
     given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
@@ -142,11 +153,11 @@ def simulate(
         lifts=False,
     ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
-    run = Run(chosen, experiments.run(chosen, law))
+    run = Run(chosen, experiments.run(chosen, name))
     remarks = (
         experiments.path_remark(chosen.curve()),
-        unused_text(chosen, [law], given),
-        experiments.forecast_text(chosen, [law]),
+        unused_text(chosen, [name], given),
+        experiments.forecast_text(chosen, [name]),
         experiments.never_held(chosen, run.trajectory),
     )
     for text in remarks:
@@ -291,12 +302,6 @@ def entry_named(robot: str | RobotEntry) -> RobotEntry:
         return robot
     _check_name(robot, ROBOTS, "robot")
     return ROBOTS[robot]
-
-
-def _law(law: str) -> str:
-    if not isinstance(law, str):
-        raise CodedError("error.law_no_text", kind=type(law).__name__)
-    return law_name(law)
 
 
 def _check_name(name: Any, known: Iterable[str], what: str) -> None:

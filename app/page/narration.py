@@ -10,8 +10,8 @@ from msgspec import Struct
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.first_minute import INVITATIONS, Invitation
-from onpath.app.page.panels.widgets import label_of
 from onpath.app.scene.captions import Captions, spoken
+from onpath.lessons.labels import parameter_label, path_label, value_label
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.settable import specs
@@ -134,19 +134,15 @@ def _earlier_settings(snapshot: Snapshot, words: Words) -> str:
         return ""
     known = specs(ROBOTS[snapshot.key.robot].parameters)
     changes = [
-        f"{label_of(words, name, known[name])} = {_written(value)}"
+        f"{parameter_label(name, known[name], words)} = {value_label(name, value, words)}"
         for name, value in list(snapshot.remedy.items())[:MOST]
     ]
     return words("breakdown.earlier", changes=", ".join(changes))
 
 
-def _written(value: float | int | str) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
 def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> str:
     """A description of the screen for users who cannot see it: clock, path, and each robot."""
-    path = words.get(f"path.{snapshot.edit.name}", snapshot.edit.name)
+    path = path_label(snapshot.edit.name, words)
     sentences = [
         _spoken(snapshot, captions, words),
         words("summary.clock", time=f"{snapshot.time:.1f}", path=path),

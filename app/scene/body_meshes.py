@@ -76,10 +76,10 @@ def body_meshes(chain: Chain) -> BodyMeshes:
 
 
 def is_own(chain: Chain) -> bool:
-    """Whether all files of a chain are this package's."""
+    """Whether all meshes of a chain are this package's."""
     own = asset_path("robots").resolve()
-    files = [Path(shape.file) for shapes in _all_shapes(chain) for shape in shapes if shape.file]
-    return all(file.is_relative_to(own) for file in files)
+    meshes = [s for shapes in _all_shapes(chain) for s in shapes if s.kind == "mesh"]
+    return all(shape.file and Path(shape.file).is_relative_to(own) for shape in meshes)
 
 
 def read_shapes(chain: Chain) -> tuple[list[Mesh | None], list[tuple[str, str]]]:
@@ -95,16 +95,20 @@ def read_shapes(chain: Chain) -> tuple[list[Mesh | None], list[tuple[str, str]]]
             try:
                 solids.append(_solid(shape))
             except Exception as error:  # whatever a library says about a stranger's file
-                left_out.append((Path(shape.file).name, _reason(error)))
+                left_out.append((_name_of(shape), _reason(error)))
         mesh = _joined(solids) if solids else None
         if solids and mesh is None:
-            left_out.append((Path(shapes[0].file).name, 'pip install "onpath[meshes]"'))
+            left_out.append((_name_of(shapes[0]), 'pip install "onpath[meshes]"'))
         meshes.append(mesh)
     return meshes, left_out
 
 
 def _all_shapes(chain: Chain) -> list[tuple[Shape, ...]]:
     return [chain.base, *(body.shapes for body in chain.bodies)]
+
+
+def _name_of(shape: Shape) -> str:
+    return Path(shape.file).name or shape.kind
 
 
 def _reason(error: Exception) -> str:
@@ -122,7 +126,9 @@ def _solid(shape: Shape) -> Any:
     import trimesh
 
     x, y, z = shape.size
-    if shape.kind == "mesh":
+    if shape.triangles is not None:
+        solid = trimesh.Trimesh(*shape.triangles, process=False)
+    elif shape.kind == "mesh":
         path = Path(shape.file)
         with path.open("rb") as file:  # without a resolver, it can name no other files
             loaded = trimesh.load_mesh(file, file_type=path.suffix[1:].lower(), process=False)
@@ -131,7 +137,10 @@ def _solid(shape: Shape) -> Any:
     elif shape.kind == "box":
         solid = trimesh.creation.box(extents=(x, y, z))
     elif shape.kind == "sphere":
-        solid = trimesh.creation.icosphere(subdivisions=2, radius=x)
+        solid = trimesh.creation.icosphere(subdivisions=2)
+        solid.apply_scale(shape.size)
+    elif shape.kind == "capsule":
+        solid = trimesh.creation.capsule(radius=x, height=z, count=[ROUND, 6])
     else:
         solid = trimesh.creation.cylinder(radius=x, height=z, sections=ROUND)
     if not 0 < len(solid.faces) <= MOST_TRIANGLES:

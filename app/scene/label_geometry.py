@@ -25,6 +25,8 @@ BESIDE = 0.026
 """Distance between a length's line and its name [m]."""
 BEFORE = 0.016
 """How far in front of the links' plane arcs are drawn [m]."""
+IN_FRONT = 0.1
+"""How far before a joint of a chain its name stands, as a share of the reach."""
 WAIST_RADIUS, WAIST_HEIGHT = 0.09, -0.028
 """The arc of the waist: around the turntable's plate [m]."""
 AXIS = 0.075
@@ -123,6 +125,9 @@ def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
         )
     for length in drawing.lengths:
         yield _length(length, plane, ends)
+    for spot in drawing.spots:
+        place = ends[:, spot.end] + IN_FRONT * robot.reach * plane.near
+        yield Mark(spot.name, place, ca.SX(3, 0))
 
 
 def _plane(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:

@@ -199,7 +199,7 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHa
 
 
 def _add_ground(scene: viser.SceneApi, stage: Stage) -> None:
-    scene.add_grid(
+    grid = scene.add_grid(
         "/stage/floor",
         plane="xy",
         infinite_grid=True,
@@ -213,16 +213,26 @@ def _add_ground(scene: viser.SceneApi, stage: Stage) -> None:
         plane_color=stage.tones.floor.rgb,
         plane_opacity=1.0,
         shadow_opacity=0.5,
-        position=stage.origins.mean(0) + [0.0, 0.0, stage.floor],
     )
+    _put(grid, stage)
 
 
 def _add_painted_ground(scene: viser.SceneApi, stage: Stage) -> None:
     solids = tuple(mesh for _, mesh, _ in stage.parts())
     origins = tuple(map(tuple, stage.origins.tolist()))
     picture = painted_ground(solids, origins, stage.floor, stage.tones.floor)
-    middle = stage.origins.mean(0) + [0.0, 0.0, stage.floor]
-    add_png(scene, "/stage/floor", picture, (2 * RADIUS, 2 * RADIUS), middle, DOWN)
+    size = (2 * RADIUS, 2 * RADIUS)
+    _put(add_png(scene, "/stage/floor", picture, size, np.zeros(3), DOWN), stage)
+
+
+def _put(ground: viser.SceneNodeHandle, stage: Stage) -> None:
+    """Put the ground at its height.
+
+    viser does not send a position of 0, and a browser keeps that of the robot before this one.
+    """
+    place = stage.origins.mean(0) + [0.0, 0.0, stage.floor]
+    ground.position = place - [0.0, 0.0, 1.0]
+    ground.position = place
 
 
 def _add_lights(scene: viser.SceneApi, casts_shadow: bool) -> None:

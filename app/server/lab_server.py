@@ -93,7 +93,7 @@ class LabServer:
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
         robot: with which a new lab begins.
-        path: the path of new labs; see `new_lab`.
+        path, law: those of new labs; see `new_lab`.
         listening: further arguments of `make_server`.
 
     Raises:
@@ -114,6 +114,7 @@ class LabServer:
         privacy_url: str = "",
         robot: RobotEntry = FIVE_BAR,
         path: PathDesign | None = None,
+        law: str = "",
         **listening: Any,
     ) -> None:
         listening.setdefault("limits", Limits(max_upload_bytes=2 * path_upload.MOST_BYTES))
@@ -137,7 +138,9 @@ class LabServer:
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(self.simulation, lambda: new_lab(store, lessons, robot, path))
+        self.sessions = LabRegistry(
+            self.simulation, lambda: new_lab(store, lessons, robot, path, law)
+        )
         self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
         self._keeper = self._expiry = None
         if records is not None:

@@ -8,18 +8,24 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
+from onpath.models.control.sides import RIGHT
 from onpath.models.paths.path_design import PathDesign
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 
 
 def new_lab(
-    store: LoopCache, course: Course, robot: RobotEntry = FIVE_BAR, path: PathDesign | None = None
+    store: LoopCache,
+    course: Course,
+    robot: RobotEntry = FIVE_BAR,
+    path: PathDesign | None = None,
+    law: str = "",
 ) -> Lab:
     """A lab whose robots all start slowly; lessons and files keep the usual speed.
 
     Args:
         robot: the robot at first.
         path: the path at first, which this robot must be able to follow; None: the robot's circle.
+        law: the law of the robot on the right at first; "": path following.
     """
     lab = Lab(store, robot, course)
     session = lab.session
@@ -31,4 +37,6 @@ def new_lab(
         session.editor.settle()
         session.editor.forget_edits()
         session.reset()
+    if law:
+        session.reset({RIGHT: law})
     return lab

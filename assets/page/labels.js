@@ -7,7 +7,7 @@
   const dark = matchMedia("(prefers-color-scheme: dark)").matches;
   const ink = dark ? "vec3(0.93, 0.94, 0.96)" : "vec3(0.0)", paper = dark ? "vec3(0.09, 0.11, 0.14)" : "vec3(1.0)";
   const CHANGES = [
-    ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);", "discard;"],
+    ["gl_FragColor = vec4(1.0, 1.0, 1.0, 0.85 * vAlpha);", "gl_FragColor = vec4(0.0); discard;"],
     ["if (a < 0.004) discard;", ""],
     ["gl_FragColor = vec4(0.0, 0.0, 0.0, a);", `
   float rim = 0.9 * smoothstep(-aa, aa, distPx + 0.35 * uSdfRadius) * vAlpha;

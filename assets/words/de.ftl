@@ -386,34 +386,67 @@ law-trajectory_tracking-label = Folgeregelung
 law-trajectory_tracking-text = Folgt einem Punkt, der nach der Uhr auf der Kurve läuft, was der Roboter auch tut.
 law-trajectory_tracking-good = Sie ist pünktlich: Auch nach einem Hindernis ist sie wieder dort, wo die Uhr sie haben will.
 law-trajectory_tracking-limits = Festgehalten wartet sie nicht: Losgelassen verlässt sie die Kurve, um aufzuholen.
+law-trajectory_tracking-objection = Wer sie einsetzt, würde den Fahrplan nach dem Loslassen neu planen, damit nichts aufzuholen ist.
 law-path_following-label = Bahnfolgeregelung
 law-path_following-text = Bleibt auf der Kurve und regelt das Tempo auf ihr; eine Uhr hat sie nicht.
 law-path_following-good = Festgehalten und losgelassen bleibt sie auf der Kurve und geht ohne Hast mit dem gewünschten Tempo weiter.
 law-path_following-limits = Verlorene Zeit bleibt verloren: Nach der Bremse ist sie um so viel zu spät, wie sie festgehalten wurde.
+law-path_following-objection = Ihre Autoren begrenzen weder das Integral noch den Abstand, aus dem (16) zurückführt; hier geschieht beides.
 law-contouring-label = Konturregelung
 law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs der Kurve.
 law-contouring-good = Sie ist pünktlich und gibt längs der Kurve nach, während sie quer zu ihr steif ist, solange ihr Fehler klein ist.
 law-contouring-limits = Wird sie lange festgehalten, gerät sie weit ab: Ihre Achsen sind die eines Punktes, der davongelaufen ist.
+law-contouring-objection = Ihre Autoren meinen sie für Fehler, die gegen den Krümmungsradius klein sind, und würden das Verhältnis zur Maschine passend wählen.
 law-event_based-label = Ereignisbasiert
 law-event_based-text = Folgt mit der gewünschten Rate dem nächsten Punkt, als wäre er der Punkt einer Uhr.
 law-event_based-good = Sie erreicht das gewünschte Tempo schneller als alle anderen ohne Fahrplan.
 law-event_based-limits = Festgehalten verlangt sie weiter die Beschleunigung zu einem Tempo, das sie nicht hat, und verlässt die Kurve.
+law-event_based-objection = Ihre Autoren ließen einen Planer das Tempo längs der Bahn wählen, das hier vorgegeben ist.
 law-set_point-label = Festwertregelung
 law-set_point-text = Geht geradewegs zum Ziel und weiß nichts von der Kurve dazwischen.
 law-set_point-good = Sie erreicht das Ziel und bleibt dort, wo auch immer sie beginnt.
 law-set_point-limits = Unterwegs verlässt sie die Kurve, weil sie den geraden Weg nimmt.
+law-set_point-objection = Niemand schlägt sie für das Befolgen einer Bahn vor: Sie zeigt, was die Bahn beiträgt.
 law-velocity_field-label = Geschwindigkeitsfeld
 law-velocity_field-text = Eine Strömung längs der Kurve trägt den Roboter und gibt mit richtigem Modell und genauen Sensoren einer Hand nicht mehr Energie, als sie vorrätig hat.
 law-velocity_field-good = Wird es von der Kurve gezogen, gibt es der Hand weniger Energie als jedes Gesetz mit einem Fahrplan.
 law-velocity_field-limits = Es regelt seine Energie und nicht sein Tempo: Zurückgezogen und losgelassen läuft es schneller weiter, als es soll.
-law-virtual_constraint-label = Virtuelle Zwangsbedingung
-law-virtual_constraint-text = Hält die Spitze auf der Kurve und lässt sie längs der Kurve in Ruhe, wie eine Perle auf einem Draht.
+law-velocity_field-objection = Seine Autoren begrenzen kein Drehmoment, weil ihr Schwungrad in stetiger Zeit nie leer wird.
+law-virtual_constraint-label = Perle auf einem Draht
+law-virtual_constraint-text = Hält die Spitze durch eine virtuelle Zwangsbedingung auf der Kurve und lässt sie längs der Kurve in Ruhe.
 law-virtual_constraint-good = Sie hält die Kurve ein und überlässt das Tempo dem, der sie schiebt.
 law-virtual_constraint-limits = Sie bewegt sich nicht von selbst: In Ruhe bleibt sie, wo sie ist.
+law-virtual_constraint-objection = Ihre Autoren stabilisieren Orbits von Robotern mit weniger Motoren als Gelenken, und das ist eine Perle auf einem Draht nicht.
 law-waiting_clock-label = Wartende Uhr
 law-waiting_clock-text = Folgt einem Punkt, dessen Uhr langsamer geht, wenn der Roboter zurückbleibt.
 law-waiting_clock-good = Festgehalten und losgelassen bleibt sie der Kurve so nah wie die Bahnfolgeregelung.
 law-waiting_clock-limits = Eine Hand, die den Roboter wegzieht, stört auch seine Uhr: Danach eilt er erst, um seinen Punkt wieder einzuholen.
+law-waiting_clock-objection = Die Ljapunow-Funktion ihrer Autoren enthält auch die Geschwindigkeit, wie hier die der Manövrierregelung.
+law-disturbance_observer-label = Störbeobachter
+law-disturbance_observer-text = Bahnfolge, die die Kraft quer zur Kurve schätzt und ihr bis zu einer Grenze entgegenwirkt.
+law-disturbance_observer-good = Nach langem Ziehen ist er früher wieder auf der Kurve als die Bahnfolge, weil er die Kraft sofort vergisst.
+law-disturbance_observer-limits = Eine Kraft jenseits seiner Grenze bringt ihn ab wie eine Feder, und mit verrauschten Sensoren zittern seine Drehmomente stärker als die der Bahnfolge.
+law-disturbance_observer-objection = Seine Autoren würden auch längs der Bahn beobachten und ein Filter höherer Ordnung nehmen.
+law-maneuvering-label = Manövrierregelung
+law-maneuvering-text = Folgt einem Punkt, der sich so auf der Kurve bewegt, dass eine Ljapunow-Funktion fällt.
+law-maneuvering-good = Nach einem Start oder einem Ruck nimmt sie das gewünschte Tempo ohne die Hast einer wartenden Uhr auf.
+law-maneuvering-limits = Festgehalten steuert sie weiter das gewünschte Tempo vor und verlässt die Kurve weiter als eine wartende Uhr.
+law-maneuvering-objection = Ihre Autoren würden den Gradienten filtern und Robustheit gegen Störungen beweisen, wovon hier nichts genutzt wird.
+law-orbital_stabilization-label = Orbitale Stabilisierung
+law-orbital_stabilization-text = Geht auf der Kurve so hin und her, dass ein Pendel ohne Motor weiterschwingt.
+law-orbital_stabilization-good = Sie hält ein Pendel ohne Motor aufrecht, auf einem Orbit, zu dem es nach einem Stoß zurückkehrt, und bleibt auf der Kurve.
+law-orbital_stabilization-limits = Sie geht nie herum, und ein aufrechtes Pendel fällt, wo die Kurve für seinen Ausschlag zu kurz oder zu steil ist.
+law-orbital_stabilization-objection = Ihre Autoren behandeln jeden Roboter, dem ein Motor fehlt, und dieses Gesetz ist für einen Wagen geschrieben.
+law-time_optimal_following-label = Zeitoptimale Bahnfolge
+law-time_optimal_following-text = Bahnfolge mit dem Tempo, das an jeder Stelle so schnell ist, wie die Grenzen der Drehmomente zulassen.
+law-time_optimal_following-good = Sie geht so schnell, wie die Grenzen der Drehmomente zulassen, und bleibt festgehalten und losgelassen nahe an der Kurve.
+law-time_optimal_following-limits = Sie ist so gut wie ihr Modell: Mit einer Nutzlast, die sie nicht kennt, erreichen ihre Drehmomente die Grenzen.
+law-time_optimal_following-objection = Ein Tempo, das allein vom Ort abhängt, nutzt kein Drehmoment, das eine Störung übrig lässt.
+law-time_optimal_tracking-label = Zeitoptimale Folgeregelung
+law-time_optimal_tracking-text = Folgt einem Punkt, der so schnell auf der Kurve läuft, wie die Grenzen der Drehmomente zulassen.
+law-time_optimal_tracking-good = Innerhalb ihrer Drehmomente ist sie überall auf der Kurve, mit dem schnellsten Tempo, das sie zulassen.
+law-time_optimal_tracking-limits = Festgehalten verlässt sie die Kurve wie jedes Gesetz mit einer Uhr, und was sie dann verlangt, liegt jenseits ihrer Grenzen.
+law-time_optimal_tracking-objection = Wer so plant, würde nach einer Behinderung von dort aus neu planen, wo der Roboter ist.
 law-own-label = Eigenes Gesetz
 law-own-xi = Abstand von der Bahn, positiv links von ihr
 law-own-dxi = Änderungsrate von xi
@@ -754,6 +787,8 @@ compare-force = größte Kraft  [N]
 compare-stopped = angehalten
 compare-stopped_text = „angehalten“: An mindestens einer Stelle ist die Bewegung divergiert, und die Simulation wurde beendet.
 compare-picture = Größter Abstand zur Bahn über der Verspätung am Ende, für jede Regelung
+residuals-torque = Drehmoment, gefiltert
+residuals-left = nicht erklärt
 compare-path = Ein Vergleich braucht eine geschlossene Bahn und ein Tempo ungleich 0: Wähle eine solche Bahn und den Auftrag Tempo.
 obstruction-none = keines
 obstruction-brake = 2 s festgehalten, an acht Stellen
@@ -966,8 +1001,14 @@ machine-flexible-text = Drei Motoren, ein letztes Glied, das sich biegt: Die Spi
 machine-cart_pendulum-label = Wagen mit Pendel
 machine-cart_pendulum-text = Zwei Motoren bewegen einen Stift auf einem Wagen, keiner das Pendel, das an ihm hängt oder auf ihm steht.
 
+machine-planar_arm-label = Ebener Arm mit drei Gelenken
+machine-planar_arm-text = Drei Motoren, einer mehr, als die Bahn braucht: Neben der Bahn wird eine Haltung gehalten.
+
 machine-rod_gantry-label = Portal mit Stange
 machine-rod_gantry-text = Zwei Motoren bewegen einen Schlitten, keiner die Stange, die mit dem Stift an ihm hängt.
+
+machine-seven_axes-label = Arm mit sieben Gelenken
+machine-seven_axes-text = Sieben Motoren: Ohne seine Haltung fällt der Arm, aber seine Spitze bleibt auf der Bahn.
 
 machine-spatial_arm-label = Raumarm
 machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: Seine Bahn darf die Ebene verlassen.
@@ -1039,6 +1080,18 @@ parameter-at_limit_for-option-path_following = nur Bahnfolge
 
 parameter-clock_gain-label = Uhr wartet
 parameter-clock_gain-help = wie stark die wartende Uhr den Fehler längs der Bahn spürt; 0: eine gewöhnliche Uhr
+
+parameter-maneuver_gain-label = Punkt steigt ab
+parameter-maneuver_gain-help = wie stark der Punkt der Manövrierregelung den Gradienten absteigt; 0: eine gewöhnliche Uhr
+
+parameter-observer_rate-label = Rate des Beobachters
+parameter-observer_rate-help = wie schnell der Störbeobachter eine bleibende Kraft findet; 0: Er sucht keine
+
+parameter-observer_bound-label = Grenze des Beobachters
+parameter-observer_bound-help = die größte Beschleunigung, die der Störbeobachter seiner Schätzung entgegensetzt
+
+parameter-orbit_swing-label = Ausschlag
+parameter-orbit_swing-help = Amplitude des Pendels auf dem Orbit
 
 parameter-contour_ratio-label = Längs / quer
 parameter-contour_ratio-help = Konturregelung: Steifigkeit längs der Bahn, als Anteil der Steifigkeit quer dazu
@@ -1254,6 +1307,8 @@ fault-narrow = zwei Stränge der Bahn liegen weniger als { $least } mm auseinand
 
 stop-range = die Zahlen sind größer, als ein Rechner rechnen kann
 stop-typed_law = das eingetippte Regelgesetz ergibt eine Zahl, die nicht endlich oder größer als { $most } ist
+stop-own_law = { $law } ergibt eine Zahl, die nicht endlich oder größer als { $most } ist ({ $file }, Zeile { $line })
+stop-called_law = { $law } wurde angehalten: { $reason } ({ $file }, Zeile { $line })
 stop-fast = ein Gelenk dreht schneller als { $limit } rad/s: Die Bewegung ist divergiert
 stop-collapsed = das Getriebe ist zusammengeklappt (alle Glieder auf einer Geraden): Aus einer singulären Stellung führt der Regler es nicht heraus
 stop-singular = der Roboter ist nahe an einer singulären Stellung (zwei Glieder auf einer Geraden): Dort können seine Motoren die Spitze nicht in jede Richtung bewegen
@@ -1335,6 +1390,10 @@ error-no_step = in dieser Lektion gibt es keinen Schritt { $step }: Sie hat { $s
 
 error-no_translation = { $owner } verwendet CasADis Operation { $operation }, die sich nicht in { $target } übersetzen lässt
 error-law_fails = { $law } ist hier nicht möglich: { $reason } ({ $file }, Zeile { $line })
+error-law_of_file = { $law }: erwartet wird DATEI.py:NAME, etwa my_law.py:SlidingMode
+error-law_no_file = es gibt keine Datei { $file }
+error-law_same_name = OnPath hat ein Gesetz namens { $law }: wählen Sie einen anderen Namen
+error-law_is_called = { $law } ist eine Python-Funktion, die in jedem Regelintervall aufgerufen wird. Das geht in onpath.simulate, onpath experiment und onpath arena; hier ist ein Gesetz ein Objekt mit command(view)
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
 error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
@@ -1343,7 +1402,7 @@ error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
 error-law_character = { $character } bedeutet hier nichts
 error-path_named = Bahn { $name }: { $reason }
-error-law_no_text = ein Gesetz ist ein Name aus onpath.laws() oder ein Text wie „across = -K1*xi - K2*dxi; along = 0“, aber kein { $kind }
+error-law_no_text = ein Gesetz ist ein Name aus onpath.laws(), ein Text wie „across = -K1*xi - K2*dxi; along = 0“, DATEI.py:NAME, eine Funktion oder ein Objekt mit command(view), aber nichts vom Typ { $kind }
 error-law_instead = schreibe { $instead } statt { $text }
 error-law_not_a_number = { $text } ist keine Zahl; zwischen den Faktoren eines Produkts steht ein *
 error-law_large_number = eine Zahl ist höchstens { $most }
@@ -1396,14 +1455,19 @@ error-table_decimal_sign =
         [comma] ein Dezimalkomma
        *[point] einen Dezimalpunkt
     } haben; Ziffern lassen sich nicht gruppieren
-error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }
+error-record_of_another_robot = keine Aufzeichnung des Roboters { $robot }: { $reason }. Ist es die eines wirklichen Arms, so gib ihre Spalten an
+error-in_file = Datei { $file }: { $reason }
+error-record_without_laws = --law { $law }: { $file } hat keine Spalte law
 error-record_of_one_row = Zeile { $line }: eine einzelne Zeile eines Gesetzes ist keine Bewegung
-error-record_times = Zeile { $line }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
-error-record_uneven = Zeile { $line }: die Zeiten müssen gleich weit auseinander liegen, aber diese Zeile kommt { $step } s nach der davor, die meisten anderen { $usual } s
+error-record_times = Zeile { $line }, Spalte { $column }: Die Zeiten wachsen nicht von Zeile zu Zeile: Sie sind vielleicht gerundet; speichere die Datei mit mehr Stellen
+error-record_gap = Zeile { $line }, Spalte { $column }: { $step } s vergehen ohne eine Zeile, erlaubt sind { $most } s: Teile die Datei dort
+error-record_coarse = Spalte { $column }: alle { $step } ms kommt eine Zeile, erlaubt sind höchstens { $most } ms dazwischen
+error-log_factor = der Faktor von { $name } ist { $value }: er darf nicht 0 sein, und seine Größe muss von 1e-12 bis 1e12 gehen
 
 ## Bahnen aus Dateien (models/path_files)
 
 say-one_of_lines = Von { $count } Linien in der Datei wird die längste genommen: { $name }. Eine andere wählst du mit part=1 und so weiter; diese ist part={ $part }.
+say-gcode_words = Diese Wörter der Datei haben keine Wirkung auf die Bahn: { $words }.
 say-rounded = Die engste Biegung der Bahn hat einen Radius von { $radius } mm.
 say-nearest = Der Bahn kann so nicht gefolgt werden: { $reasons }. Die Roboter folgen der nächstliegenden gefundenen, die möglich ist; sie ist bis zu { $apart } mm entfernt.
 error-file_size = die Datei ist größer als { $most } MB
@@ -1421,9 +1485,10 @@ error-file_takes_long = das Lesen der Datei hat zu lange gedauert
 error-file_failed = die Datei konnte nicht gelesen werden
 error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
 error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
-error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, I, J, R, F und N
+error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, Z, I, J und R, und was die Bahn lässt, wie sie ist, etwa F, S und M3, hat keine Wirkung
 error-gcode_twice = Zeile { $line }, Spalte { $column }: { $text } sagt etwas, was die Zeile schon gesagt hat
 error-gcode_both = Zeile { $line }: { $text } widersprechen einander
+error-gcode_height = Zeile { $line }: das Werkzeug ändert beim Zeichnen seine Höhe; eine Bahn liegt in einer Ebene
 error-gcode_no_motion = Zeile { $line }: kein G0 bis G3 sagt, wie die Bewegung ist
 error-gcode_no_arc = Zeile { $line }: I, J und R gehören zu den Bögen von G2 und G3
 error-gcode_arc_form = Zeile { $line }: ein Bogen braucht entweder seinen Radius R oder I und J seines Mittelpunkts
@@ -1611,19 +1676,19 @@ robot_file-xml = das ist kein XML: { $reason }
 robot_file-root = die Datei eines Roboters beginnt mit <robot> (URDF) oder <mujoco> (MJCF)
 robot_file-xacro = das ist eine xacro-Datei: Rufen Sie erst xacro auf, etwa xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } fehlt
-robot_file-name = { $field } { $value }: Ein Name hat 1 bis 64 Buchstaben ohne Umlaute, Ziffern, _, - und .
+robot_file-name = { $field } { $value }: Ein Name hat 1 bis 128 Buchstaben ohne Umlaute, Ziffern, _, - und .
 robot_file-numbers = { $field } { $value }: erwartet { $count ->
     [one] wird eine Zahl
    *[other] werden { $count } Zahlen
  }
-robot_file-large = { $field } { $value }: Die Zahl ist zu groß
+robot_file-large = { $field } { $value }: erwartet werden endliche Zahlen bis 1e9
 robot_file-no_link = ein Glied { $name } gibt es nicht
 robot_file-two_parents = das Glied { $name } hängt schon am Gelenk { $other }
 robot_file-loop = die Glieder bilden eine Schleife: Nur Bäume aus Gliedern lassen sich simulieren
 robot_file-apart = kein Gelenk führt von { $name } hierher: Alle Glieder eines Roboters hängen zusammen
 robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
-robot_file-joints = mehr als { $most } Gelenke bewegen sich auf dem Weg zur Spitze: Sperren Sie einige
+robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
 robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
 robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
@@ -1660,3 +1725,69 @@ robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .st
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
 robot_file-left_out = weggelassen: { $parts }
+
+## Die Arena (app/exports/arena_page.py)
+
+arena-title = Die Arena
+arena-made = OnPath · { $done ->
+        [one] 1 Versuch
+       *[other] { $done } Versuche
+    } von { $planned } · { $command }
+arena-same = Jedes Gesetz durchläuft dieselben Versuche: Roboter, Bahn, Hindernis und Bedingung, Verstärkungen, Modell, Motoren, Drehmomentgrenze und Zufallszahlen sind gleich. Die Drehmomentgrenze ist das 1,5-Fache dessen, was die ungestörte Bahnfolgeregelung auf dieser Bahn braucht, bei schwachen Motoren das 0,9-Fache.
+arena-rows = Die meisten Gesetze haben zwei Zeilen. Bei „gekappt“ werden die Drehmomente an der Grenze abgeschnitten. Bei „quer zuerst“ wirkt dort ein Mittel, das zu keinem Gesetz gehört: Es verzichtet auf Beschleunigung entlang der Bahn, bevor es auf die quer dazu verzichtet. Ein Gesetz, das selbst Drehmomente vorgibt, hat eine Zeile.
+arena-numbers = In jedem Feld steht der schlechteste Wert aller Versuche, die einen ergeben, und klein der Median. Der schlechteste Wert führt zu seinem Lauf. Die Zahl im Kreis ist der Rang in dieser Größe unter den Zeilen desselben Roboters, ab 1, dem besten; gleiche Werte haben denselben Rang. Ein Gesetz mit einem abgebrochenen Lauf steht hinter allen ohne einen. Es gibt keine Gesamtnote: Worauf es ankommt, entscheiden Sie.
+arena-measures = Was gemessen wird
+arena-force_N = Kraft bis zum Verlassen der Bahn
+arena-force_N_text = Eine Hand geht mit dem Endpunkt mit und zieht ihn quer zur Bahn, mit einer Kraft, die jede Sekunde um 2 N bis auf 10 N wächst. Dies ist die Kraft, bei der der Endpunkt erstmals 5 mm von der Bahn entfernt ist. Was bei stärkerem Zug geschieht, zählt nicht. Größer ist besser: Das Gesetz gibt weniger nach. Ein Roboter, der nachgeben soll, ist deshalb nicht schlechter.
+arena-distance_m = Abstand
+arena-distance_m_text = Der größte Abstand des Endpunkts von der Bahn, in allen Versuchen außer dem Zug.
+arena-delay_s = Verspätung
+arena-delay_s_text = Wie spät der Endpunkt am Ende eines Versuchs ist, bei der gewünschten Geschwindigkeit; negativ: zu früh. Der Rang richtet sich nach dem Betrag. Ein Gesetz ohne Uhr ist mit Absicht etwa so lange verspätet, wie es festgehalten wurde. Runden werden am nächsten Bahnpunkt gezählt: Ein Endpunkt, der innen abkürzt, kann eine Runde verlieren, was als 1 s zählt.
+arena-energy_J = Energie an die Hand
+arena-energy_J_text = Die größte Arbeit, die der Endpunkt an Hand, Bremse oder Wand verrichtet. Wer den Roboter hält, spürt sie als Stoß.
+arena-overshoot_m = Überschwingen nach dem Loslassen
+arena-overshoot_m_text = Wie weit der Endpunkt die Bahn nach dem Loslassen wieder verlässt, gezählt ab dem Augenblick, in dem er bis auf 5 mm an der Bahn ist und nicht mehr näher kommt. „Nicht zurück“: Er kommt bis zum Ende nicht auf 5 mm heran.
+arena-stops = Abbrüche
+arena-stops_text = Läufe, die beendet wurden, weil die Bewegung divergierte oder das Gesetz versagte, von allen Läufen. Sie haben keine anderen Zahlen.
+arena-of = { $stops } von { $runs }
+arena-law = Gesetz
+arena-limit = an der Grenze
+arena-cut = gekappt
+arena-remedy = quer zuerst
+arena-torques = gekappt, gibt Drehmomente vor
+arena-median = Median { $value }
+arena-rank = Rang { $rank }
+arena-never = nicht mit 10
+arena-not_back = nicht zurück
+arena-own = Ihres
+arena-trials = { $count ->
+        [one] 1 Versuch
+       *[other] { $count } Versuche
+    }
+arena-obstructions = Die Versuche
+arena-trial = Versuch
+arena-robot = Roboter
+arena-path = Bahn
+arena-obstruction = Hindernis
+arena-condition = Bedingung
+arena-pull = wachsender Zug quer zur Bahn
+arena-brake = Bremse entlang der Bahn, 1 s
+arena-hand = eine Hand, die zieht, 1 s
+arena-wall = eine Wand quer zur Bahn, 1 s
+arena-weak = schwache Motoren
+arena-exact = genaues Modell
+arena-payload = eine Nutzlast, die kein Gesetz kennt
+arena-noise = Rauschen und Drehgeber
+arena-slow = Regelung mit 100 Hz
+arena-runs = Die Läufe hinter den Zahlen
+arena-run = { $obstruction }; { $path }, { $condition } (Versuch { $number }, { $robot })
+arena-picture = Links: Abstand von der Bahn über { $lasts } s, bis { $most } mm; grau hinterlegt: solange das Hindernis wirkt; gestrichelt: 5 mm. Rechts: die Bahn, grau, und der Weg des Endpunkts.
+arena-recorded = Der Punkt bewegt sich wie aufgezeichnet.
+arena-figure = Dieses Gesetz an diesem Roboter ausprobieren: eine lebende Abbildung
+arena-repeat = Derselbe Lauf:
+arena-stopped = abgebrochen bei { $time } s: { $reason }
+arena-laws = Die Gesetze
+arena-interrupted = unterbrochen: { $html } enthält die Versuche, die alle Gesetze beendet haben
+arena-nothing = unterbrochen, bevor alle Gesetze einen Versuch beendet hatten
+arena-first = erste Tabelle, nach { $seconds } s
+arena-written = geschrieben: { $html } und { $csv }

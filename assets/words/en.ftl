@@ -702,6 +702,8 @@ compare-force = largest force  [N]
 compare-stopped = stopped
 compare-stopped_text = “stopped”: at one or more of the places, the motion diverged and the simulation was ended.
 compare-picture = Largest distance to the path over delay at the end, for each law
+residuals-torque = torque, filtered
+residuals-left = not explained
 compare-path = A comparison needs a closed path and a speed along it other than 0: choose such a path, and the task speed.
 obstruction-none = nothing
 obstruction-brake = held for 2 s, at eight places
@@ -954,6 +956,8 @@ fault-narrow = two strands of the path are closer to each other than { $least } 
 
 stop-range = the numbers have left the range of a computer
 stop-typed_law = the typed law gives a number that is not finite, or is larger than { $most }
+stop-own_law = { $law } gives a number that is not finite, or is larger than { $most } ({ $file }, line { $line })
+stop-called_law = { $law } has been stopped: { $reason } ({ $file }, line { $line })
 stop-fast = a joint turns faster than { $limit } rad/s: the motion has diverged
 stop-collapsed = the linkage has collapsed (all links in one line): the controller cannot bring it out of a singular configuration
 stop-singular = the robot is close to a singular configuration (two links in one line): there its motors cannot move the end-point in every direction
@@ -1027,6 +1031,10 @@ error-no_step = there is no step { $step } in this lesson: it has { $steps ->
 
 error-no_translation = { $owner } uses the CasADi operation { $operation }, which cannot be translated to { $target }
 error-law_fails = { $law } cannot be used here: { $reason } ({ $file }, line { $line })
+error-law_of_file = { $law }: expected FILE.py:NAME, such as my_law.py:SlidingMode
+error-law_no_file = there is no file { $file }
+error-law_same_name = OnPath has a law named { $law }: choose another name
+error-law_is_called = { $law } is a Python function, which is called in every control interval. That works in onpath.simulate, onpath experiment and onpath arena; here a law is an object with command(view)
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
 error-law_not_ready = the law is still being made; try again in a moment
@@ -1035,7 +1043,7 @@ error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
 error-law_character = { $character } means nothing here
 error-path_named = path { $name }: { $reason }
-error-law_no_text = a law is a name of onpath.laws(), or a text such as “across = -K1*xi - K2*dxi; along = 0”, but not a { $kind }
+error-law_no_text = a law is a name of onpath.laws(), a text such as “across = -K1*xi - K2*dxi; along = 0”, FILE.py:NAME, a function, or an object with command(view), but nothing of type { $kind }
 error-law_instead = write { $instead } instead of { $text }
 error-law_not_a_number = { $text } is not a number; between the factors of a product there is a *
 error-law_large_number = a number is at most { $most }
@@ -1088,14 +1096,19 @@ error-table_decimal_sign =
         [comma] comma
        *[point] point
     }; digits cannot be grouped
-error-record_of_another_robot = not a record of the robot { $robot }: { $reason }
+error-record_of_another_robot = not a record of the robot { $robot }: { $reason }. If it is the log of a real arm, name its columns
+error-in_file = file { $file }: { $reason }
+error-record_without_laws = --law { $law }: { $file } has no column law
 error-record_of_one_row = line { $line }: a single row of a law is not a motion
-error-record_times = line { $line }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
-error-record_uneven = line { $line }: the times must be evenly spaced, but this row comes { $step } s after the one before, and most others { $usual } s
+error-record_times = line { $line }, column { $column }: the times do not grow from row to row: they may have been rounded; save the file again with more digits
+error-record_gap = line { $line }, column { $column }: { $step } s pass without a row, and at most { $most } s may: cut the file there
+error-record_coarse = column { $column }: a row comes every { $step } ms, and at most { $most } ms may pass between them
+error-log_factor = the factor of { $name } is { $value }: it must not be 0, and its size from 1e-12 to 1e12
 
 ## Paths from files (models/path_files)
 
 say-one_of_lines = Of { $count } lines in the file, the longest is taken: { $name }. Choose another one with part=1 and so on; this one is part={ $part }.
+say-gcode_words = These words of the file have no effect on the path: { $words }.
 say-rounded = The tightest bend of the path has a radius of { $radius } mm.
 say-nearest = The path cannot be followed as it is: { $reasons }. The robots follow the nearest path found that they can; it is up to { $apart } mm away.
 error-file_size = the file is larger than { $most } MB
@@ -1113,9 +1126,10 @@ error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
-error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, I, J, R, F and N are
+error-gcode_word = line { $line }, column { $column }: { $text } is not read. Of G-code, G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are, and what leaves the path as it is, such as F, S and M3, has no effect
 error-gcode_twice = line { $line }, column { $column }: { $text } says something that the line has said already
 error-gcode_both = line { $line }: { $text } contradict each other
+error-gcode_height = line { $line }: the tool changes its height while it draws; a path lies in a plane
 error-gcode_no_motion = line { $line }: no G0 to G3 says how to move
 error-gcode_no_arc = line { $line }: I, J and R are for the arcs of G2 and G3
 error-gcode_arc_form = line { $line }: an arc needs either its radius R, or I and J of its centre
@@ -1303,19 +1317,19 @@ robot_file-xml = this is not XML: { $reason }
 robot_file-root = a robot's file begins with <robot> (URDF) or <mujoco> (MJCF)
 robot_file-xacro = this is a xacro file: run xacro first, as xacro arm.urdf.xacro > arm.urdf
 robot_file-without = { $what } is missing
-robot_file-name = { $field } { $value }: a name has 1 to 64 letters, digits, _, - and .
+robot_file-name = { $field } { $value }: a name has 1 to 128 letters, digits, _, - and .
 robot_file-numbers = { $field } { $value }: expected { $count ->
     [one] a number
    *[other] { $count } numbers
  }
-robot_file-large = { $field } { $value }: too large a number
+robot_file-large = { $field } { $value }: expected finite numbers up to 1e9
 robot_file-no_link = there is no link { $name }
 robot_file-two_parents = the link { $name } already hangs on the joint { $other }
 robot_file-loop = the links form a loop: only trees of links can be simulated
 robot_file-apart = no joint leads here from { $name }: all links of a robot hang together
 robot_file-twice = the name already exists in line { $line }
 robot_file-many = more than { $most } of them
-robot_file-joints = more than { $most } joints move on the way to the tip: lock some
+robot_file-joints = more than { $most } joints move on the way to the tip: { $names }. Hold some of them with --lock joint=value (in Python, lock=…)
 robot_file-type = unknown type { $type }
 robot_file-free = a { $type } joint on the way to the tip: lock it
 robot_file-mimic = a joint that follows another on the way to the tip: lock it
@@ -1352,3 +1366,69 @@ robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .ob
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> would read other files or run code: leave it out
 robot_file-left_out = left out: { $parts }
+
+## The arena (app/exports/arena_page.py)
+
+arena-title = The arena
+arena-made = OnPath · { $done ->
+        [one] 1 trial
+       *[other] { $done } trials
+    } of { $planned } · { $command }
+arena-same = Every law goes through the same trials: the same robot, path, obstruction and condition, the same gains, the same model, motors and torque limit, and the same random numbers. The torque limit is 1.5 times what undisturbed path following needs on that path, with weak motors 0.9 times.
+arena-rows = Most laws have two rows. With “cut”, torques are cut at the limit. With “across first”, a remedy that is no part of any law acts there: it gives up acceleration along the path before that across it. A law that commands torques itself has one row.
+arena-numbers = Each cell has the worst value over all trials that give one and, in small type, the median. The worst value leads to its run. The number in the circle is the rank in this measure among the rows of the same robot, from 1, the best; equal values share a rank. A law with a run that was stopped ranks behind all laws without one. There is no total: what matters is yours to say.
+arena-measures = What is measured
+arena-force_N = force to leave the path
+arena-force_N_text = A hand goes along with the end-point and pulls it across the path, with a force that grows by 2 N each second up to 10 N. This is the force when the end-point is first 5 mm from the path. What happens under a stronger pull does not count. Larger is better: the law yields less. A robot that is meant to yield is not worse for it.
+arena-distance_m = distance
+arena-distance_m_text = The largest distance of the end-point from the path, in all trials except the pull.
+arena-delay_s = delay
+arena-delay_s_text = How late the end-point is at the end of a trial, at the wanted speed; negative: early. Laws are ranked by its size. A law without a clock is late by about as long as it was held, on purpose. Laps are counted by the closest point: an end-point that cuts across the inside may lose a lap, which counts as 1 s.
+arena-energy_J = energy given to the hand
+arena-energy_J_text = The largest work that the end-point does on the hand, the brake or the wall. It is what a person who holds the robot feels as a push.
+arena-overshoot_m = overshoot after release
+arena-overshoot_m_text = How far the end-point leaves the path again after it is released, counted from the moment at which it is within 5 mm of the path and comes no nearer. “Not back”: it does not come within 5 mm until the end.
+arena-stops = stops
+arena-stops_text = Runs that were ended because the motion diverged or the law failed, of all runs. They have no other numbers.
+arena-of = { $stops } of { $runs }
+arena-law = law
+arena-limit = at the limit
+arena-cut = cut
+arena-remedy = across first
+arena-torques = cut, commands torques
+arena-median = median { $value }
+arena-rank = rank { $rank }
+arena-never = not with 10
+arena-not_back = not back
+arena-own = yours
+arena-trials = { $count ->
+        [one] 1 trial
+       *[other] { $count } trials
+    }
+arena-obstructions = The trials
+arena-trial = trial
+arena-robot = robot
+arena-path = path
+arena-obstruction = obstruction
+arena-condition = condition
+arena-pull = a pull across that grows
+arena-brake = a brake along the path, 1 s
+arena-hand = a hand that pulls, 1 s
+arena-wall = a wall across the path, 1 s
+arena-weak = weak motors
+arena-exact = exact model
+arena-payload = a payload that no law knows
+arena-noise = noise and encoders
+arena-slow = control at 100 Hz
+arena-runs = The runs behind the numbers
+arena-run = { $obstruction }; { $path }, { $condition } (trial { $number }, { $robot })
+arena-picture = Left: distance from the path over { $lasts } s, up to { $most } mm; shaded: while the obstruction acts; dashed: 5 mm. Right: the path, grey, and the way of the end-point.
+arena-recorded = The point moves as it was recorded.
+arena-figure = Try this law on this robot: a live figure
+arena-repeat = The same run:
+arena-stopped = stopped at { $time } s: { $reason }
+arena-laws = The laws
+arena-interrupted = interrupted: { $html } has the trials that all laws have finished
+arena-nothing = interrupted before all laws had finished a trial
+arena-first = first table, after { $seconds } s
+arena-written = written: { $html } and { $csv }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -10,13 +12,15 @@ from onpath.models.control.law_poles import channels_of
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.path_following import NEAR_TURN
+from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters, declared, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
-TYPED_LAW = Message("stop.typed_law", {"most": f"{LARGEST_NUMBER:g}"})
+MOST = f"{LARGEST_NUMBER:g}"
+TYPED_LAW = Message("stop.typed_law", {"most": MOST})
 BEFORE = 0.1  # [s] before a fault in which its cause is looked for
 OFTEN = 0.5  # least share of that time with the motors at their limit
 WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
@@ -25,7 +29,13 @@ PULLED = 1.0  # [N]
 
 def not_finite(law: str) -> Message:
     """The reason why a state that is not finite stops a run under this law."""
-    return TYPED_LAW if is_text(law) else NOT_FINITE
+    if is_text(law):
+        return TYPED_LAW
+    origin = law_named(law).origin
+    if origin is None:
+        return NOT_FINITE
+    file, line = Path(origin[0]).name, str(origin[1])
+    return Message("stop.own_law", {"law": law, "most": MOST, "file": file, "line": line})
 
 
 def fault_in(
@@ -35,8 +45,8 @@ def fault_in(
 
     Args:
         log: layout of the rows.
-        law: name of the control law. A typed one shows by the reference point that its numbers
-            were not finite; see models/control/laws/own.py.
+        law: name of the control law. One of the user's own shows by the reference point that its
+            numbers were not finite; see models/control/laws/own.py.
         rows: of the log, shape (ticks, log.size).
     """
     fields = log.unpack(rows)
@@ -59,7 +69,7 @@ def explained(
         rows: of the log until the fault, shape (ticks, log.size); those of the last 0.1 s count.
     """
     causes = _causes(robot, log, law, rows, parameters)
-    if not causes or reason == TYPED_LAW:
+    if not causes or reason.code in (TYPED_LAW.code, "stop.own_law"):
         return reason
     return Message("stop.because", {"reason": reason, "causes": tuple(causes)})
 

@@ -63,12 +63,10 @@ class Kernel(LoopLayouts):
             needs, (TERMS, 1 or 2).
         advance: (state, settings, table @ basis) -> (next state, log row, basis for the next tick).
             Both take the part of the state that the loop changes.
-        law: name of the control law, for messages.
     """
 
     basis: ca.Function
     advance: ca.Function
-    law: str = ""
 
     @property
     def layouts(self) -> LoopLayouts:
@@ -79,6 +77,7 @@ class Kernel(LoopLayouts):
             log=self.log,
             changed=self.changed,
             table_shape=self.table_shape,
+            law=self.law,
         )
 
     def block(self, ticks: int) -> ca.Function:
@@ -139,7 +138,7 @@ def build_kernel(
         return _kernel(system, frame, kind, law, (substeps, grip))
     except CodedError:
         raise
-    except Exception as error:  # only a law's code is not tested with every robot
+    except (Exception, SystemExit) as error:  # only a law's code is not tested with every robot
         typed = CodedError("error.law_cannot_run") if is_text(law.name) else None
         raise typed or law_error(law.name, error, law.command) from error
 
@@ -158,7 +157,7 @@ def _kernel(
         table_shape=layouts.table_shape,
         basis=bases,
         advance=advance,
-        law=law.name,
+        law=layouts.law,
     )
 
 

@@ -11,7 +11,17 @@ from onpath.models.closed_loop.loop_vectors import GAINS
 from onpath.models.closed_loop.reference_speed import task_at
 from onpath.models.closed_loop.sensing import measure
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import Clock, ControlAction, Gains, Law, PathReference, View
+from onpath.models.control.laws.expressions import LARGEST_NUMBER
+from onpath.models.control.laws.law import (
+    Along,
+    Clock,
+    ControlAction,
+    Gains,
+    Law,
+    PathReference,
+    View,
+)
+from onpath.models.control.laws.references import clock_rate
 from onpath.models.control.space_output import space_output
 from onpath.models.control.virtual_output import LevelSet, VirtualOutput, virtual_output
 from onpath.models.layout import Fields
@@ -111,6 +121,7 @@ def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX
         interval=interval(kind, settings),
         ahead=ahead,
         memory={name: state[name] for name, _ in law.memory},
+        plan=settings["plan"],
     )
 
 
@@ -184,4 +195,34 @@ def commanded(law: Law, view: View) -> ControlAction:
             raise ValueError(f"its command has {numbers} numbers as {name}, not {size}")
     if odd := sorted(action.memory.keys() - sizes.keys()):
         raise ValueError(f"its command has {', '.join(odd)}, not in Law.memory")
-    return action
+    return action if law.origin is None else _checked(view.clock, action)
+
+
+def _checked(clock: Clock, action: ControlAction) -> ControlAction:
+    """The command; none in a tick in which a number is not finite or is huge.
+
+    After such a tick the reference point is NaN, so that the run stops; see `fault_in`.
+    """
+    along = action.along
+    vectors = [action.acceleration, action.torque, action.error, action.theta_ref, action.far]
+    vectors += [] if along is None else [along.command, along.direction]
+    numbers = ca.vertcat(
+        *[ca.vec(ca.SX(v)) for v in (*vectors, *action.memory.values()) if v is not None]
+    )
+    valid = ca.mmax(ca.if_else(ca.fabs(numbers) < LARGEST_NUMBER, 0, 1)) < 0.5
+
+    def safe(vector: ca.SX) -> ca.SX:
+        return ca.if_else(valid, vector, 0)
+
+    by_clock = clock.theta + clock.dt * clock_rate(clock)
+    theta_ref = by_clock if action.theta_ref is None else action.theta_ref
+    return replace(
+        action,
+        acceleration=None if action.acceleration is None else safe(action.acceleration),
+        torque=None if action.torque is None else safe(action.torque),
+        error=None if action.error is None else safe(action.error),
+        far=safe(action.far),
+        theta_ref=ca.if_else(valid, theta_ref, ca.SX(float("nan"))),
+        along=None if along is None else Along(safe(along.command), safe(along.direction)),
+        memory={name: safe(value) for name, value in action.memory.items()},
+    )

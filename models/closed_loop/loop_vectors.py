@@ -8,7 +8,7 @@ from functools import lru_cache
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control import composite_control as composite
-from onpath.models.control.laws.law import Memory
+from onpath.models.control.laws.law import PLAN, Memory
 from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.layout import Layout
 from onpath.models.systems.system import MechanicalSystem
@@ -26,6 +26,7 @@ class LoopLayouts:
             that it changes; the others stay as they are.
         changed: length of the leading part of the state that the loop changes.
         table_shape: shape of the curve's table.
+        law: name of the control law.
     """
 
     state: Layout
@@ -33,6 +34,7 @@ class LoopLayouts:
     log: Layout
     changed: int
     table_shape: tuple[int, int]
+    law: str
 
 
 def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
@@ -48,6 +50,7 @@ def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
         log=log_layout(system),
         changed=kept_layout(system, kind, memory).size,
         table_shape=kind.table_shape,
+        law=kind.controller,
     )
 
 
@@ -116,6 +119,7 @@ def settings_layout(system: MechanicalSystem) -> Layout:
             ("level_centre", 2),
             ("level_weights", 3),
             ("level_constant", 1),
+            ("plan", PLAN),  # of `Law.plan`; 0: none
             *((name, 1) for name in realism),
             ("hand_active", 1),
             ("hand_target", p),

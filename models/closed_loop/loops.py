@@ -2,7 +2,8 @@
 
 Both run many ticks per call, of one robot or of several, and agree bit by bit. The interpreted loop
 is available at once. The compiled loop (translated_loop.py) is an order of magnitude faster and, in
-long calls, releases the Python interpreter's lock.
+long calls, releases the Python interpreter's lock. A batch is four times as fast again for many
+robots, and agrees within rounding.
 """
 
 from __future__ import annotations
@@ -24,14 +25,37 @@ BLOCK = 16  # ticks per call of the interpreted loop, about one frame of the dis
 SHORT = 1000  # ticks, of all robots, up to which a compiled loop keeps the interpreter's lock
 
 
-class Loop(Protocol):
-    """A kernel that can be run.
+class ManyLoop(Protocol):
+    """A kernel that can be run for many robots at once.
 
     Attributes:
         layouts: of its flat vectors.
     """
 
     layouts: LoopLayouts
+
+    def run_many(
+        self,
+        states: Sequence[Array] | Array,
+        settings: Sequence[Array],
+        tables: Sequence[Array],
+        ticks: int,
+    ) -> tuple[Array, Array]:
+        """Advance several robots by `ticks`.
+
+        Args:
+            states, settings: flat vectors, laid out as `layouts`, one per robot.
+            tables: `Curve.table()`, one per robot.
+
+        Returns:
+            The new states, (robots, layouts.state.size), and log rows, (robots, ticks,
+            layouts.log.size).
+        """
+        ...
+
+
+class Loop(ManyLoop, Protocol):
+    """A kernel that can be run for one robot or many, with the same bits."""
 
     def run(self, state: Array, settings: Array, table: Array, ticks: int) -> tuple[Array, Array]:
         """Advance by `ticks`.
@@ -42,21 +66,6 @@ class Loop(Protocol):
 
         Returns:
             The new state, shape (layouts.state.size,), and the log rows, (ticks, layouts.log.size).
-        """
-        ...
-
-    def run_many(
-        self,
-        states: Sequence[Array] | Array,
-        settings: Sequence[Array],
-        tables: Sequence[Array],
-        ticks: int,
-    ) -> tuple[Array, Array]:
-        """Advance several robots by `ticks`; the arguments of `run`, one per robot.
-
-        Returns:
-            The new states, (robots, layouts.state.size), and log rows, (robots, ticks,
-            layouts.log.size), bit by bit those of `run`.
         """
         ...
 
@@ -137,6 +146,49 @@ class CompiledLoop(Loop):
         run = self._short if ticks * robots <= SHORT else self._long
         run(_address(inputs), _address(curves), _address(after), _address(rows), ticks, robots)
         return after, rows
+
+
+class BatchedLoop(ManyLoop):
+    """Runs machine code that advances several robots with the same instructions. Thread-safe.
+
+    Args:
+        layouts: those of its flat vectors.
+        address: of the same function as of a `CompiledLoop`, each of whose numbers stands for a
+            vector of them, one of each of `lanes` robots, and `robots` for the number of vectors.
+        owner: the object that keeps the machine code in memory.
+        lanes: robots that advance together.
+    """
+
+    def __init__(self, layouts: LoopLayouts, address: int, owner: object, lanes: int) -> None:
+        self.layouts, self._lanes, self._owner = layouts, lanes, owner
+        self._run = ctypes.CFUNCTYPE(*_SIGNATURE)(address)
+
+    @override
+    def run_many(
+        self,
+        states: Sequence[Array] | Array,
+        settings: Sequence[Array],
+        tables: Sequence[Array],
+        ticks: int,
+    ) -> tuple[Array, Array]:
+        layouts, robots = self.layouts, len(states)
+        after = self._in_lanes(states, robots, layouts.state.size)
+        inputs = self._in_lanes(settings, robots, layouts.settings.size)
+        curves = self._in_lanes(tables, robots, prod(layouts.table_shape))
+        groups = len(after)
+        rows = np.empty((groups, ticks, layouts.log.size, self._lanes))
+        self._run(*map(_address, (inputs, curves, after, rows)), ticks, groups)
+        state = np.moveaxis(after, 2, 1).reshape(-1, layouts.state.size)
+        log = np.moveaxis(rows, 3, 1).reshape(-1, ticks, layouts.log.size)
+        return state[:robots], log[:robots]
+
+    def _in_lanes(self, vectors: Sequence[Array] | Array, count: int, size: int) -> Array:
+        """Vectors (count, size) as (groups, size, lanes); the last one fills the last group."""
+        stacked = _stacked(vectors, count, size)
+        groups = -(-count // self._lanes)
+        filled = np.empty((groups * self._lanes, size))
+        filled[:count], filled[count:] = stacked, stacked[-1]
+        return np.ascontiguousarray(filled.reshape(groups, self._lanes, size).swapaxes(1, 2))
 
 
 def _stacked(vectors: Sequence[Array] | Array, count: int, size: int) -> Array:

@@ -7,7 +7,9 @@ last bit, hypot in the last two. `fmod` and `remainder` are exact everywhere.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
+from functools import cache
 
 import casadi as ca
 
@@ -107,6 +109,20 @@ OPERATIONS = {
     **{getattr(ca, f"OP_{name.upper()}"): _called(name) for name in LIBRARY},
 }
 """CasADi's number of an operation -> the operation: all on scalars except erfinv and printme."""
+
+
+CALLED = {getattr(ca, f"OP_{name.upper()}"): name for name in LIBRARY} | {ca.OP_CONSTPOW: "pow"}
+"""CasADi's number of an operation -> the function of the C library that it calls."""
+
+
+@cache
+def widened(llvm: str, lanes: int) -> str:
+    """Instructions of an operation that calls no library, for vectors of so many numbers."""
+    if lanes == 1:
+        return llvm
+    wide = llvm.replace("double", f"<{lanes} x double>").replace(".f64(", f".v{lanes}f64(")
+    wide = re.sub(r"\bi1\b", f"<{lanes} x i1>", wide)
+    return re.sub(r"(?<=[ ])-?[01]\.0\b", r"splat (double \g<0>)", wide)
 
 
 def no_translation(owner: str, operation: int, target: str) -> CodedError:

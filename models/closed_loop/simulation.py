@@ -15,8 +15,9 @@ from onpath.models.closed_loop.loop_vectors import GAINS, LoopLayouts
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.control import composite_control
 from onpath.models.control.implicit_level import check_level, implicit_level
+from onpath.models.control.laws.law import PLAN
 from onpath.models.control.laws.own import is_text
-from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.control.speed_limit import NO_SPEED_LIMIT, speed_limit
 from onpath.models.errors import CodedError
 from onpath.models.paths.curve_faults import ambiguities
@@ -40,12 +41,14 @@ class Push:
         hold: anchor [m] and unit tangent of the brake, each shape (p,), or None.
         hold_normal: a second direction in which the brake acts, shape (p,), or None.
         wall: a point of a wall's surface [m] and its unit normal, each shape (p,), or None.
+        share: of the hand's force that acts.
     """
 
     hand: Array | None = None
     hold: tuple[Array, Array] | None = None
     hold_normal: Array | None = None
     wall: tuple[Array, Array] | None = None
+    share: float = 1.0
 
     @property
     def acts(self) -> bool:
@@ -141,7 +144,7 @@ def settings_vector(
     """The settings of a closed loop as a flat vector: everything but the state and the curve.
 
     Args:
-        curve: for its level set only.
+        curve: for its level set, the speed limit, and the plan of a law.
         push: the external action.
 
     Returns:
@@ -152,7 +155,11 @@ def settings_vector(
     counts = parameters.encoder_counts
     return layouts.settings.pack(
         {name: getattr(parameters, name) for name in GAINS}
-        | {name: gain.of(parameters) for name, gain in OWN_GAINS.items()}
+        | {
+            name: gain.of(parameters)
+            for name, gain in OWN_GAINS.items()
+            if name in layouts.settings.slices  # not if its law was added after this loop was built
+        }
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),
@@ -164,6 +171,7 @@ def settings_vector(
             "level_centre": centre,
             "level_weights": weights,
             "level_constant": constant,
+            "plan": _plan(robot, layouts.law, parameters, curve),
             "torque_limit": parameters.torque_limit or NO_LIMIT / min(robot.system.strength),
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
@@ -181,6 +189,15 @@ def settings_vector(
             "model": robot.model(parameters),
         }
     )
+
+
+def _plan(robot: Robot, law: str, parameters: Parameters, curve: Curve) -> Array:
+    """The plan of a law, padded with zeros, (PLAN,)."""
+    plan, numbers = law_named(law).plan, np.zeros(PLAN)
+    if plan is not None:
+        found = plan(robot, parameters, curve)
+        numbers[: len(found)] = found
+    return numbers
 
 
 def _speed_limit(robot: Robot, parameters: Parameters, curve: Curve) -> float:
@@ -213,7 +230,7 @@ def _push_fields(push: Push, p: int) -> dict[str, float | Array]:
     none = np.zeros(p), np.zeros(p)
     (anchor, tangent), (place, normal) = push.hold or none, push.wall or none
     return {
-        "hand_active": float(push.hand is not None),
+        "hand_active": 0.0 if push.hand is None else push.share,
         "hand_target": np.zeros(p) if push.hand is None else push.hand,
         "hold_active": float(push.hold is not None),
         "hold_anchor": anchor,

@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from onpath.models.layout import Fields
+from onpath.models.systems.rigid_chain import solved
 from onpath.models.systems.system import MechanicalSystem
 
 BAND = 1e-4  # [rad/s]
@@ -123,7 +124,7 @@ def _holding(compliance: ca.SX, rests: ca.SX, acceleration: ca.SX) -> ca.SX:
     """λ of the module's docstring, (m, 1)."""
     chosen = ca.diag(rests)
     matrix = chosen @ compliance @ chosen + ca.diag(1 - rests)
-    return -(1 / ca.det(matrix)) * (ca.adj(matrix) @ (rests * acceleration))
+    return -solved(matrix, rests * acceleration)
 
 
 def _sign(x: ca.SX) -> ca.SX:

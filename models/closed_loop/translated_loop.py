@@ -4,29 +4,51 @@ The scalar instructions of a tick are translated one by one to LLVM's intermedia
 product of the curve's table and its basis functions, up to half of all operations, uses vector
 instructions, which sum the rows of the table in parallel. Each operation rounds exactly as
 in CasADi's virtual machine, and sums are taken in its order, so that both loops agree bit by bit.
+
+A batch advances 4 or 8 robots with the same instructions, whose numbers are vectors with one lane
+for each robot. It calls sin, cos and so on of glibc's libmvec, whose last bits differ, and those
+that libmvec lacks lane by lane.
 """
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Sequence
+from functools import cache, partial
 from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
-from onpath.models.closed_loop.operations import LIBRARY, OPERATIONS, no_translation
+from onpath.models.closed_loop.loops import (
+    BatchedLoop,
+    CompiledLoop,
+    InterpretedLoop,
+    Loop,
+    ManyLoop,
+)
+from onpath.models.closed_loop.operations import (
+    CALLED,
+    LIBRARY,
+    OPERATIONS,
+    no_translation,
+    widened,
+)
 from onpath.models.errors import CodedError
 
 if TYPE_CHECKING:
     from llvmlite.binding import TargetMachine
 
+VECTOR_LIBRARY = "libmvec.so.1"
+PREFIXES = {4: "_ZGVdN4", 8: "_ZGVeN8"}  # of its functions, for AVX2 and AVX-512
+WIDE = '"min-legal-vector-width"="512"'  # passes eight lanes in one register, as the library does
+
 _LOOP = """
 {library}
 
 define internal void @one_robot(ptr noalias %settings, ptr noalias %curve, ptr noalias %state,
-                                ptr noalias %log, i64 %ticks) {{
+                                ptr noalias %log, i64 %ticks) {attributes} {{
 before:
   %basis = alloca [{basis} x double], align 64
   %values = alloca [{values} x double], align 64
@@ -45,7 +67,7 @@ after:
 }}
 
 define void @onpath_run(ptr %settings, ptr %curves, ptr %states, ptr %logs, i64 %ticks,
-                        i64 %robots) {{
+                        i64 %robots) {attributes} {{
 before:
   %length = mul i64 %ticks, {log}
   %any = icmp sgt i64 %robots, 0
@@ -70,8 +92,11 @@ after:
 """
 
 
-def translate(kernel: Kernel) -> str:
+def translate(kernel: Kernel, lanes: int = 1) -> str:
     """LLVM assembly of `onpath_run`, the loops around the kernel's tick; see `CompiledLoop`.
+
+    Args:
+        lanes: robots that advance together, 1, 4 or 8; if several, see `BatchedLoop`.
 
     Raises:
         CodedError: the tick contains an operation without a translation; the message names it and
@@ -80,20 +105,22 @@ def translate(kernel: Kernel) -> str:
     given = "%state", "%settings"
     rows, terms = kernel.table_shape
     columns = kernel.advance.size_in(2)[1]
-    tick = instructions(kernel.basis, given, ("%basis",), "b", kernel.law)
-    tick += [line for k in range(columns) for line in _product(rows, terms, k)]
+    product = _product if lanes == 1 else partial(_products, lanes=lanes)
+    tick = instructions(kernel.basis, given, ("%basis",), "b", kernel.law, lanes)
+    tick += [line for k in range(columns) for line in product(rows, terms, k)]
     inputs, outputs = (*given, "%values"), ("%state", "%row")
-    tick += instructions(kernel.tick(), inputs, outputs, "v", kernel.law)
+    tick += instructions(kernel.tick(), inputs, outputs, "v", kernel.law, lanes)
     text = "\n  ".join(tick)
     return _LOOP.format(
-        library="\n".join(map(_declared, _functions(text))),
-        basis=terms * columns,
-        values=rows * columns,
-        settings=kernel.settings.size,
-        curve=rows * terms,
-        state=kernel.state.size,
-        log=kernel.log.size,
+        library="\n".join([*map(_declared, _functions(text)), *_vector_declarations(text)]),
+        basis=lanes * terms * columns,
+        values=lanes * rows * columns,
+        settings=lanes * kernel.settings.size,
+        curve=lanes * rows * terms,
+        state=lanes * kernel.state.size,
+        log=lanes * kernel.log.size,
         tick=text,
+        attributes=WIDE if lanes == 8 else "",
     )
 
 
@@ -103,6 +130,7 @@ def instructions(
     outputs: Sequence[str],
     prefix: str,
     owner: str,
+    lanes: int = 1,
 ) -> list[str]:
     """LLVM instructions for an SX function.
 
@@ -112,28 +140,39 @@ def instructions(
         inputs, outputs: names of pointers to dense matrices, stored by columns.
         prefix: of the names of all values.
         owner: name of the law or function, for messages.
+        lanes: if several, each number of the matrices is a vector of so many.
 
     Raises:
         CodedError: see `translate`.
     """
     reads, works, writes = list[str](), list[str](), list[str]()
     values = dict[int, str]()  # what the function's registers hold
+    number = _number(lanes)
     for i in range(function.n_instructions()):
         code, into = function.instruction_id(i), function.instruction_output(i)
         operands, v = function.instruction_input(i), f"%{prefix}{i}"
         if code == ca.OP_CONST:
-            values[into[0]] = _literal(function.instruction_constant(i))
+            literal = _literal(function.instruction_constant(i))
+            values[into[0]] = literal if lanes == 1 else f"splat (double {literal})"
         elif code == ca.OP_INPUT:
-            reads += [_place(v, inputs[operands[0]], operands[1]), f"{v} = load double, ptr {v}.at"]
+            reads += [
+                _place(v, inputs[operands[0]], lanes * operands[1]),
+                f"{v} = load {number}, ptr {v}.at, align 8",
+            ]
             values[into[0]] = v
         elif code == ca.OP_OUTPUT:
-            value = values[operands[0]]
-            writes += [_place(v, outputs[into[0]], into[1]), f"store double {value}, ptr {v}.at"]
+            writes += [
+                _place(v, outputs[into[0]], lanes * into[1]),
+                f"store {number} {values[operands[0]]}, ptr {v}.at, align 8",
+            ]
         else:
             given = [values[operand] for operand in operands]
             if code not in OPERATIONS:
                 raise no_translation(owner, code, "LLVM")
-            works.append(OPERATIONS[code].llvm.format(*given, v=v))
+            if lanes > 1 and code in CALLED:
+                works += _called(CALLED[code], given, v, lanes)
+            else:
+                works.append(widened(OPERATIONS[code].llvm, lanes).format(*given, v=v))
             values[into[0]] = v
     return [*reads, *works, *writes]
 
@@ -166,6 +205,84 @@ def _product(rows: int, terms: int, column: int) -> list[str]:
     ]
 
 
+def _products(rows: int, terms: int, column: int, lanes: int) -> list[str]:
+    """The same instructions as `_product` for each lane, one number of the column after another."""
+    lines, number = list[str](), _number(lanes)
+    for k in range(terms):
+        factor = f"%factor{column}.{k}"
+        lines += [
+            _place(factor, "%basis", lanes * (terms * column + k)),
+            f"{factor} = load {number}, ptr {factor}.at, align 8",
+        ]
+    for row in range(rows):
+        v, total = f"%sum{column}.{row}", "zeroinitializer"
+        for k in range(terms):
+            entry = f"{v}.row{k}"
+            lines += [
+                _place(entry, "%curve", lanes * (rows * k + row)),
+                f"{entry} = load {number}, ptr {entry}.at, align 8",
+                f"{v}.term{k} = fmul {number} {entry}, %factor{column}.{k}",
+                f"{v}.{k} = fadd {number} {total}, {v}.term{k}",
+            ]
+            total = f"{v}.{k}"
+        lines += [
+            _place(v, "%values", lanes * (rows * column + row)),
+            f"store {number} {total}, ptr {v}.at, align 8",
+        ]
+    return lines
+
+
+def _called(name: str, given: Sequence[str], v: str, lanes: int) -> list[str]:
+    """LLVM instructions that apply a function of the C library to vectors."""
+    number, together = _number(lanes), f"{PREFIXES[lanes]}{'v' * LIBRARY[name]}_{name}"
+    if _is_found(together):
+        arguments = ", ".join(f"{number} {each}" for each in given)
+        return [f"{v} = call {number} @{together}({arguments})"]
+    lines, whole = list[str](), "poison"
+    for lane in range(lanes):
+        own = f"{v}.lane{lane}"
+        lines += [
+            f"{own}.{i} = extractelement {number} {each}, i64 {lane}"
+            for i, each in enumerate(given)
+        ]
+        arguments = ", ".join(f"double {own}.{i}" for i in range(len(given)))
+        after = v if lane == lanes - 1 else f"{own}.whole"
+        lines += [
+            f"{own} = call double @{name}({arguments})",
+            f"{after} = insertelement {number} {whole}, double {own}, i64 {lane}",
+        ]
+        whole = after
+    return lines
+
+
+@cache
+def _is_found(name: str) -> bool:
+    """Whether a function of libmvec can be called."""
+    import llvmlite.binding as llvm
+
+    try:
+        llvm.load_library_permanently(VECTOR_LIBRARY)
+    except RuntimeError:
+        return False
+    return llvm.address_of_symbol(name) is not None
+
+
+def _vector_declarations(text: str) -> list[str]:
+    """Declarations of the functions of libmvec that instructions call."""
+    calls = sorted(set(re.findall(r"call (<(\d) x double>) @(_ZGV\w+?N\d(v+)_\w+)\(", text)))
+    attributes = {"4": "", "8": WIDE}
+    return [
+        f"declare {number} @{name}({', '.join([number] * len(given))}) memory(none)"
+        f" {attributes[lanes]}"
+        for number, lanes, name, given in calls
+    ]
+
+
+def _number(lanes: int) -> str:
+    """LLVM's type of a number."""
+    return "double" if lanes == 1 else f"<{lanes} x double>"
+
+
 def _functions(text: str) -> list[str]:
     """The functions of the C library that instructions call."""
     return [name for name in LIBRARY if f"@{name}(" in text]
@@ -192,11 +309,43 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
         CodedError: see `translate`.
         RuntimeError: LLVM does not support this machine.
     """
+    return CompiledLoop(kernel.layouts, *_compiled(translate(kernel)))
+
+
+def translate_batch(kernel: Kernel, lanes: int) -> BatchedLoop:
+    """Translate a kernel for several robots at a time; takes half as long again.
+
+    Args:
+        lanes: robots that advance together, 4 or 8.
+
+    Raises:
+        CodedError: see `translate`.
+        RuntimeError: LLVM does not support this machine, or it has no such lanes.
+    """
+    if lanes > most_lanes():
+        raise RuntimeError(f"this processor has no vectors of {lanes} numbers")
+    return BatchedLoop(kernel.layouts, *_compiled(translate(kernel, lanes)), lanes)
+
+
+@cache
+def most_lanes() -> int:
+    """Robots that advance together: 8 with AVX-512, 4 with AVX2, else 1."""
+    import llvmlite.binding as llvm
+
+    features = llvm.get_host_cpu_features()
+    return 8 if features.get("avx512f") else 4 if features.get("avx2") else 1
+
+
+def _compiled(text: str) -> tuple[int, object]:
+    """Address of `onpath_run`, and what keeps it in memory.
+
+    Raises:
+        RuntimeError: LLVM does not support this machine.
+    """
     import llvmlite.binding as llvm  # takes 0.1 s, which must not delay the first frame
 
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    text = translate(kernel)
     module = llvm.parse_assembly(text, llvm.create_context())
     code = _machine().emit_object(module)
     # The engine's own module is empty and in the global context: any other one is freed too early.
@@ -206,13 +355,22 @@ def translate_loop(kernel: Kernel) -> CompiledLoop:
     if missing:  # otherwise LLVM would abort the process
         raise RuntimeError(f"not found in this process: {', '.join(missing)}")
     engine.finalize_object()
-    return CompiledLoop(kernel.layouts, engine.get_function_address("onpath_run"), engine)
+    return engine.get_function_address("onpath_run"), engine
 
 
 def fastest_loop(kernel: Kernel) -> Loop:
     """The compiled loop, or the interpreted one if that cannot be made."""
     try:
         return translate_loop(kernel)
+    except (CodedError, RuntimeError):
+        return InterpretedLoop(kernel)
+
+
+def fastest_batch(kernel: Kernel) -> ManyLoop:
+    """The loop that advances many robots in the shortest time."""
+    lanes = most_lanes()
+    try:
+        return translate_batch(kernel, lanes) if lanes > 1 else translate_loop(kernel)
     except (CodedError, RuntimeError):
         return InterpretedLoop(kernel)
 

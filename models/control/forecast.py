@@ -41,7 +41,8 @@ def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Messag
     """The problem under a law if the robot starts at rest at q; None if none is foreseen.
 
     Args:
-        law: name of the control law. Nothing is foreseen of laws that command torques.
+        law: name of the control law. Nothing is foreseen of laws that command torques, and nothing
+            but a singularity of those that stabilize the coordinates without motors.
         q: configuration at the start, shape (n,).
 
     Returns:
@@ -56,7 +57,7 @@ def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Messag
         return None
     if not rank_number(robot, parameters, q, by_model=True) > LEAST_RANK:
         return SINGULAR
-    if system.m != system.p:
+    if system.m != system.p or law_named(law).stabilizes:
         return None
     rate = growth_rate(robot, parameters, q)
     if rate is None:

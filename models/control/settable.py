@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from functools import cache
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from onpath.models.control.laws.law import OwnGain
 from onpath.models.control.laws.registry import OWN_GAINS
 from onpath.models.systems.parameter_specs import Spec, checked, unknown_name
 from onpath.models.systems.parameters import Parameters, declared
@@ -17,13 +18,12 @@ P = TypeVar("P", bound=Parameters)
 
 def specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
     """Name -> declaration of everything that can be set; the gains of single laws come last."""
-    return _specs(kind if isinstance(kind, type) else type(kind))
+    return _specs(kind if isinstance(kind, type) else type(kind), tuple(OWN_GAINS.values()))
 
 
-@cache
-def _specs(kind: type[Parameters]) -> Mapping[str, Spec]:
-    gains = {name: gain.spec for name, gain in OWN_GAINS.items()}
-    return MappingProxyType({**declared(kind), **gains})
+@lru_cache(maxsize=64)
+def _specs(kind: type[Parameters], own: tuple[OwnGain, ...]) -> Mapping[str, Spec]:
+    return MappingProxyType({**declared(kind), **{gain.name: gain.spec for gain in own}})
 
 
 def value_of(parameters: Parameters, name: str) -> Any:

@@ -52,7 +52,7 @@ def speed_limit(
 def prepare_speed_limit(robot: Robot) -> None:
     """Build the function of `speed_limit` in advance; it takes tens of milliseconds."""
     if _is_square(robot.system):
-        _on_path(robot.system)
+        _on_path(robot.system, POINTS)
 
 
 def _is_square(system: MechanicalSystem) -> bool:
@@ -63,23 +63,44 @@ def _is_square(system: MechanicalSystem) -> bool:
 def _torques(robot: Robot, model: tuple[float, ...], curve: Curve, speed: float) -> Array:
     """Torques on the path at a constant speed [rad/s], shape (m, POINTS), [N m]."""
     theta = np.linspace(-np.pi, np.pi, POINTS, endpoint=not curve.closed)
+    rate, second = np.full(POINTS, speed), np.zeros(POINTS)
+    return path_torques(robot, model, curve, theta, rate, second)
+
+
+def path_torques(
+    robot: Robot,
+    model: tuple[float, ...],
+    curve: Curve,
+    theta: Array,
+    rate: Array,
+    second: Array,
+) -> Array:
+    """Torques of a motion along the path at some places, shape (m, l), [N m].
+
+    With y' = σ' θ' and y'' = σ'' θ'² + σ' θ''.
+
+    Args:
+        model: the plant's parameters as the controller assumes them, k numbers.
+        theta, rate, second: θ, θ' and θ'' at each place, (l,), [rad], [rad/s], [rad/s²].
+    """
     frame, origin = robot.frame, robot.frame.lift(np.zeros(2))
     q = np.stack([robot.rest(frame.lift(z)) for z in curve.at(theta)])
-    rates = frame.lift(speed * curve.at(theta, 1)) - origin
-    second = frame.lift(speed**2 * curve.at(theta, 2)) - origin
-    repeated = np.repeat(np.array(model)[:, None], POINTS, axis=1)
-    return np.array(_on_path(robot.system)(q.T, rates.T, second.T, repeated))
+    first = curve.at(theta, 1)
+    bent = rate[:, None] ** 2 * curve.at(theta, 2) + second[:, None] * first
+    rates, seconds = frame.lift(rate[:, None] * first) - origin, frame.lift(bent) - origin
+    repeated = np.repeat(np.array(model)[:, None], len(theta), axis=1)
+    return np.array(_on_path(robot.system, len(theta))(q.T, rates.T, seconds.T, repeated))
 
 
 @lru_cache(maxsize=8)
-def _on_path(system: MechanicalSystem) -> ca.Function:
-    """(q, y', y'', model) -> torques, for POINTS places."""
+def _on_path(system: MechanicalSystem, places: int) -> ca.Function:
+    """(q, y', y'', model) -> torques, for some places."""
     rate, second = ca.SX.sym("rate", system.p), ca.SX.sym("second", system.p)
     jacobian = ca.jacobian(system.controlled_output, system.q)
     v = ca.inv_minor(jacobian) @ rate
     u = linearization(system, system.q, v, system.parameters, second)
     inputs = [system.q, rate, second, system.parameters]
-    return ca.Function("on_path", inputs, [u]).map(POINTS)
+    return ca.Function("on_path", inputs, [u]).map(places)
 
 
 def _smallest_root(a: Array, b: Array, c: Array) -> Array:

@@ -5,8 +5,11 @@
     G2, G3    draw an arc clockwise, anticlockwise, with its centre at (I, J) from its beginning or
               with radius R, negative for the longer arc
 
-Codes hold until the next one. F, N, comments and % have no effect. Everything else is refused: a
-tool that is lifted, for example, or compensated, would follow another path than the one read here.
+Codes hold until the next one, and M2 and M30 end the program. Where the tool is raised or lowered,
+a line ends; Z does not change within one. Numbers of lines and programs, comments and % mean
+nothing. What tells the machine something, but leaves the path as it is, has no effect: speeds,
+tools, pauses, coolant, and the codes in `WITHOUT_EFFECT`. Everything else is refused: a
+compensated tool, for example, would follow another path than the one read here.
 """
 
 from __future__ import annotations
@@ -25,7 +28,17 @@ ROUNDED = 2e-5  # [m], difference that rounded numbers may make
 MOTIONS = {"0": 0, "1": 1, "2": 2, "3": 3}
 SIZES = {"20": UNITS["in"], "21": UNITS["mm"]}
 WAYS = {"90": False, "91": True}
+WITHOUT_EFFECT = frozenset(
+    [f"G{code}" for code in (4, 17, 40, 43, 49, 54, 61, 64, 80, 91.1, 92.1, 93, 94)]
+    + [f"M{code}" for code in (0, 1, 3, 4, 5, 6, 7, 8, 9, 48, 49, 52)]
+)
+"""Codes besides those above that leave the path in the plane as it is."""
+SPOKEN = frozenset("FSTHP")
+"""Letters whose numbers do, too."""
+ENDS = frozenset(("M2", "M30"))
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
+_OBEYED = {f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS)} | set("XYZIJRNO")
+_KNOWN = _OBEYED | WITHOUT_EFFECT | SPOKEN | ENDS
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
 
 Point = tuple[float, float]
@@ -36,12 +49,26 @@ class _Machine:
     """The state of the machine, and the lines drawn so far."""
 
     at: Point = (0.0, 0.0)
+    height: float = 0.0
     motion: int | None = None
     unit: float = SIZES["21"]
     relative: bool = False
     count: int = 0
     drawn: list[tuple[int, list[Point]]] = field(default_factory=list[tuple[int, list[Point]]])
     fresh: bool = True  # the next line begins where the machine is
+    unheeded: dict[str, None] = field(default_factory=dict[str, None])
+
+    def lift(self, height: float, *, moves: bool, line: int) -> None:
+        """Raise or lower the tool, which ends a line.
+
+        Args:
+            moves: whether it also moves in the plane.
+        """
+        if height == self.height:
+            return
+        if moves and self.motion:
+            raise CodedError("error.gcode_height", line=str(line))
+        self.height, self.fresh = height, True
 
     def go(self, points: list[Point], line: int) -> None:
         """Move through points, and draw unless the motion is G0."""
@@ -57,8 +84,8 @@ class _Machine:
         self.at = points[-1]
 
 
-def strokes_of_gcode(text: str) -> list[Stroke]:
-    """The lines that a tool draws, in the order of the file.
+def strokes_of_gcode(text: str) -> tuple[list[Stroke], tuple[str, ...]]:
+    """The lines that a tool draws, in the order of the file, and the words without effect.
 
     Raises:
         CodedError: the text has anything else than the codes above, or an impossible arc; the
@@ -69,13 +96,16 @@ def strokes_of_gcode(text: str) -> list[Stroke]:
         if len(line) > LONGEST_LINE:
             raise CodedError("error.table_long_line", line=str(number), most=str(LONGEST_LINE))
         bare = _COMMENT.sub(lambda found: " " * len(found[0]), line.upper())  # columns stay
-        if bare.strip() != "%":
-            _obey(machine, _words(bare, number), number)
-    return [drawn_stroke(points, f"line {line}") for line, points in machine.drawn]
+        words = _words(bare, number) if bare.strip() != "%" else {}
+        _obey(machine, words, number)
+        if words.keys() & ENDS:
+            break
+    strokes = [drawn_stroke(points, f"line {line}") for line, points in machine.drawn]
+    return strokes, tuple(machine.unheeded)
 
 
 def _words(bare: str, line: int) -> dict[str, float]:
-    """The words of a line by letter; codes as G0, G20 and so on, with the value 1.
+    """The words of a line by letter; codes of G and M as G0, M3 and so on.
 
     Raises:
         CodedError: a word that is not read, or is repeated.
@@ -88,11 +118,10 @@ def _words(bare: str, line: int) -> dict[str, float]:
             raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
         letter, number = found[1], found[2]
         name, value = letter, float(number)
-        if letter == "G":
+        if letter in "GM":
             whole, _, rest = number.partition(".")
-            name = f"G{whole.lstrip('0') or '0'}" if not rest.strip("0") else number
-        known = name[1:] in (*MOTIONS, *SIZES, *WAYS) if letter == "G" else letter in "XYIJRFN"
-        if not known or not isfinite(value):
+            name += whole.lstrip("0") or "0" if not rest.strip("0") else number
+        if name not in _KNOWN or not isfinite(value):
             column, text = _at(bare, place)
             raise CodedError("error.gcode_word", line=str(line), column=column, text=text)
         if name in words:
@@ -118,11 +147,20 @@ def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:
             raise CodedError("error.gcode_both", line=str(line), text=f"G{said[0]}, G{said[1]}")
         if said:
             setattr(machine, name, codes[said[0]])
+    machine.unheeded.update((name, None) for name in words if name in WITHOUT_EFFECT | SPOKEN)
     moves = words.keys() & set("XYIJR")
-    if not moves:
+    if not moves and "Z" not in words:
         return
+    if "G4" in words:  # X may be a time
+        raise CodedError("error.gcode_both", line=str(line), text=f"G4, {min(moves | {'Z'})}")
     if machine.motion is None:
         raise CodedError("error.gcode_no_motion", line=str(line))
+    if "Z" in words:
+        below = machine.height if machine.relative else 0.0
+        height = below + machine.unit * words["Z"]
+        machine.lift(height, moves=bool(moves), line=line)
+    if not moves:
+        return
     base = machine.at if machine.relative else (0.0, 0.0)
     x, y = (
         base[i] + machine.unit * words[name] if name in words else machine.at[i]

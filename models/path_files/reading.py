@@ -38,7 +38,7 @@ MOST_BYTES = 20_000_000
 GCODE = (".nc", ".gcode", ".ngc", ".gc", ".tap", ".cnc", ".g")
 NUMBERS = ("scale", "fit", "radius")
 WORDS = ("open", "closed")
-_GCODE = re.compile(r"\s*(%|N\d+|[GM]\s*\d|[;(])", re.IGNORECASE)
+_GCODE = re.compile(r"\s*(%|[NO]\d+|[GMT]\s*\d|[;(])", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,9 +87,9 @@ def path_of(data: bytes, name: str, placing: Placing, most: int = MOST_BYTES) ->
         if placing != Placing():
             raise CodedError("error.file_described")
         return _remarked(curve_from_text(text_of(data, encoding_of(data[:4]))), [])
-    strokes = _strokes(data, name, head, placing)
-    stroke, remarks = _chosen(strokes, placing.part)
-    return _path(stroke, placing, remarks)
+    strokes, remarks = _strokes(data, name, head, placing)
+    stroke, taken = _chosen(strokes, placing.part)
+    return _path(stroke, placing, [*taken, *remarks])
 
 
 def path_through(points: Array, placing: Placing) -> PathFile:
@@ -164,13 +164,18 @@ def check_placing(placing: Placing) -> None:
         raise CodedError("error.file_radius")
 
 
-def _strokes(data: bytes, name: str, head: str, placing: Placing) -> Sequence[Stroke]:
+def _strokes(
+    data: bytes, name: str, head: str, placing: Placing
+) -> tuple[Sequence[Stroke], list[Message]]:
+    """The lines of a file, and a remark on what has no effect."""
     if name.lower().endswith(".svg") or head.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _in_units(strokes_of_svg(data), placing, UNITS["px"])
+        return _in_units(strokes_of_svg(data), placing, UNITS["px"]), []
     if name.lower().endswith(GCODE) or _GCODE.match(head):
         text = text_of(data, encoding_of(data[:4]))
-        return _in_units(strokes_of_gcode(text), placing, UNITS["mm"])
-    return [stroke_of_table(data, placing.unit)]
+        strokes, words = strokes_of_gcode(text)
+        unheeded = Message("say.gcode_words", {"words": ", ".join(words)})
+        return _in_units(strokes, placing, UNITS["mm"]), [unheeded] if words else []
+    return [stroke_of_table(data, placing.unit)], []
 
 
 def _in_units(strokes: list[Stroke], placing: Placing, usual: float) -> list[Stroke]:

@@ -23,7 +23,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import Loop
+from onpath.models.closed_loop.loops import ManyLoop
 from onpath.models.closed_loop.simulation import (
     FREE,
     Push,
@@ -31,6 +31,7 @@ from onpath.models.closed_loop.simulation import (
     first_state,
     kernel_of,
     kind_of,
+    pushed,
     settings_vector,
 )
 from onpath.models.closed_loop.start import driven_rates
@@ -133,6 +134,10 @@ MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-1]
 """The numbers of an outcome for which larger is worse."""
 
 
+_Run = tuple[dict[str, Array], int | None]
+"""The log of a run, and the row in which it was stopped, if it was."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Contest:
     """The conditions that all laws share.
@@ -184,7 +189,9 @@ def compare(
         for name in obstructions:
             obstruction = OBSTRUCTIONS[name]
             places = 2 * np.pi * np.arange(obstruction.places) / obstruction.places - np.pi / 2
-            yield [_outcome(contest, law, obstruction, float(at), torque) for at in places]
+            runs = _runs(contest, law, obstruction, places, torque)
+            pairs = zip(places.tolist(), runs, strict=True)
+            yield [_outcome(contest, law, obstruction, at, run) for at, run in pairs]
 
 
 def with_cut(names: Sequence[str]) -> list[str]:
@@ -204,14 +211,14 @@ def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
 
 def _largest_torque(contest: Contest) -> float:
     """The least `torque_limit` without effect on unobstructed path following."""
-    parts, _ = _run(contest, "path_following", OBSTRUCTIONS["none"], 0.0, 0.0)
-    return float((np.abs(parts["u"]) / np.array(contest.robot.system.strength)).max())
+    ((log, _),) = _runs(contest, "path_following", OBSTRUCTIONS["none"], np.zeros(1), 0.0)
+    return float((np.abs(log["u"]) / np.array(contest.robot.system.strength)).max())
 
 
 def _outcome(
-    contest: Contest, law: str, obstruction: Obstruction, place: float, torque: float
+    contest: Contest, law: str, obstruction: Obstruction, place: float, run: _Run
 ) -> Outcome:
-    log, fault = _run(contest, law, obstruction, place, torque)
+    log, fault = run
     dt, speed = time_step(contest.parameters), contest.parameters.speed
     if fault is not None:
         measures = dict.fromkeys(MEASURES, np.inf)
@@ -246,10 +253,10 @@ def _outcome(
     )
 
 
-def _run(
-    contest: Contest, law: str, obstruction: Obstruction, place: float, torque: float
-) -> tuple[dict[str, Array], int | None]:
-    """The log of a run, and the row in which it was stopped, if it was."""
+def _runs(
+    contest: Contest, law: str, obstruction: Obstruction, places: Array, torque: float
+) -> list[_Run]:
+    """The runs at all places, which advance together."""
     robot, curve, usual = contest.robot, contest.curve, contest.parameters
     dt = time_step(usual)
     acting = dataclasses.replace(usual, speed=usual.speed * obstruction.speed)
@@ -257,18 +264,23 @@ def _run(
         limit, at_limit = obstruction.torque * torque, obstruction.at_limit or usual.at_limit
         acting = dataclasses.replace(acting, torque_limit=limit, at_limit=at_limit)
     kernel = kernel_of(robot, kind_of(law, usual, curve))
-    state = _start(contest, kernel, obstruction, place)
+    states = np.stack([_start(contest, kernel, obstruction, at) for at in places.tolist()])
     legs = (BEFORE, usual, False), (obstruction.seconds, acting, True), (AFTER, usual, False)
-    rows = list[Array]()
+    tables, rows = [curve.table()] * len(places), list[Array]()
     for seconds, parameters, obstructed in legs:
-        push = _push(contest, kernel, state, obstruction) if obstructed else FREE
         loop = _loop(robot, kind_of(law, parameters, curve))
-        settings = settings_vector(robot, kernel, parameters, curve, push)
-        state, log = loop.run(state, settings, curve.table(), round(seconds / dt))
+        free = settings_vector(robot, kernel, parameters, curve, FREE)
+        settings = [
+            pushed(kernel, free, _push(contest, kernel, state, obstruction) if obstructed else FREE)
+            for state in states
+        ]
+        states, log = loop.run_many(states, settings, tables, round(seconds / dt))
         rows.append(log)
-    whole = np.concatenate(rows)
-    fault = fault_in(robot, kernel.log, law, whole, usual)
-    return kernel.log.unpack(whole), None if fault is None else fault[0]
+    return [
+        (kernel.log.unpack(whole), None if fault is None else fault[0])
+        for whole in np.concatenate(rows, axis=1)
+        for fault in [fault_in(robot, kernel.log, law, whole, usual)]
+    ]
 
 
 def _start(contest: Contest, kernel: Kernel, obstruction: Obstruction, place: float) -> Array:
@@ -304,10 +316,10 @@ def _push(contest: Contest, kernel: Kernel, state: Array, obstruction: Obstructi
 
 
 @lru_cache(maxsize=64)
-def _loop(robot: Robot, kind: Kind) -> Loop:
-    from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
+def _loop(robot: Robot, kind: Kind) -> ManyLoop:
+    from onpath.models.closed_loop.translated_loop import fastest_batch  # loads LLVM
 
-    return fastest_loop(kernel_of(robot, kind))
+    return fastest_batch(kernel_of(robot, kind))
 
 
 def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Any:

@@ -9,14 +9,16 @@ import dataclasses
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.called_loop import CalledLoop, callable_loop
 from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import Kernel
-from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.loops import InterpretedLoop, Loop
 from onpath.models.closed_loop.sensing import readings
 from onpath.models.closed_loop.simulation import (
     FREE,
@@ -280,7 +282,7 @@ def _off_the_ellipse(robot: Robot) -> Array:
 def run(
     experiment: Experiment,
     controller: str,
-    loop: Callable[[Kernel], InterpretedLoop] = InterpretedLoop,
+    loop: Callable[[Kernel], Loop] = InterpretedLoop,
 ) -> Trajectory:
     """Simulate an experiment under one control law.
 
@@ -297,12 +299,14 @@ def run(
     law_named(controller)
     robot, curve = experiment.robot(), experiment.curve()
     check_level_set(experiment.parameters, curve)
-    kernel = kernel_of(robot, kind_of(controller, experiment.parameters, curve))
+    kind = kind_of(controller, experiment.parameters, curve)
+    kernel = kernel_of(robot, kind)
     schedule, start = experiment.schedule, experiment.begin()
     check_possible(robot, controller, experiment.parameters, robot.rest(start))
+    running = callable_loop(robot, kind, kernel, loop(kernel))
     scheduled = ScheduledRun(
         robot=robot,
-        loop=loop(kernel),
+        loop=running,
         curve=curve,
         parameters=experiment.parameters,
         schedule=schedule,
@@ -317,12 +321,22 @@ def run(
             tick, reason = fault
             rows = rows[:tick]
             message = explained(reason, robot, kernel.log, controller, rows, experiment.parameters)
-            fault = tick, message
+            failed = running.failure if isinstance(running, CalledLoop) else None
+            fault = tick, failed or message
         segments.append((rows, curve, held))
         done += len(rows)
         if fault is not None:
             break
-    return _finished(robot, kernel, controller, segments, experiment, fault)
+    return _finished(robot, kernel, controller, _joined(segments), experiment, fault)
+
+
+def _joined(segments: list[tuple[Array, Curve, bool]]) -> list[tuple[Array, Curve, bool]]:
+    """The segments, with consecutive ones that are alike as one."""
+    joined = list[tuple[Array, Curve, bool]]()
+    for (_, held), alike in groupby(segments, key=lambda each: (id(each[1]), each[2])):
+        parts = list(alike)
+        joined.append((np.concatenate([rows for rows, _, _ in parts]), parts[0][1], held))
+    return joined
 
 
 def _finished(

@@ -37,7 +37,8 @@ BUMP = 0.25  # [s], length of the window w
 OVERLAP = 5  # windows that contain any one instant
 LAGS = 2 * OVERLAP  # windows over which residuals may be correlated
 FEWEST = 20  # least number of samples in a window
-SMOOTHING = 41  # samples of the Savitzky-Golay filter
+SMOOTHING = 0.04  # [s], length of the Savitzky-Golay filter of degree 4
+FEWEST_SMOOTHED = 7  # its least number of samples
 SHORTEST = 1.0  # [s], shortest record
 LEAST_MOTION = 0.02  # [rad], least peak-to-peak motion of each joint
 WORST_CONDITION = 200.0  # largest condition number of the scaled regressor
@@ -108,18 +109,20 @@ def joint_torques(q: Array, force: Array, l1: float, l4: float) -> Array:
 
 
 def smooth_velocities(q: Array, dt: float) -> Array:
-    """Joint velocities from quantised angles by a Savitzky-Golay filter, (n, 2) -> (n, 2), [rad/s].
+    """Joint velocities from measured angles by a Savitzky-Golay filter, (n, 2) -> (n, 2), [rad/s].
 
-    The filter is symmetric and therefore has no delay.
+    The filter is symmetric and therefore has no delay. Its degree is 4, so that the velocities of
+    quick motions are not too small.
 
     Raises:
-        ValueError: fewer than `SMOOTHING` samples.
+        ValueError: fewer samples than the filter has.
     """
     from scipy.signal import savgol_filter  # slow to import; see app/server/warm_up.py
 
-    if len(q) < SMOOTHING:
+    samples = max(2 * round(SMOOTHING / dt / 2) + 1, FEWEST_SMOOTHED)
+    if len(q) < samples:
         raise CodedError("error.hardly_any_data")
-    return np.asarray(savgol_filter(q, SMOOTHING, 2, deriv=1, delta=dt, axis=0), dtype=float)
+    return np.asarray(savgol_filter(q, samples, 4, deriv=1, delta=dt, axis=0), dtype=float)
 
 
 def identify(record: JointRecord, names: tuple[str, ...] = INERTIA) -> Identified:
@@ -210,9 +213,9 @@ def standard_errors(regressor: Array, residual: Array) -> Array:
     """Standard errors of the least-squares estimates, shape (unknowns,).
 
     Neighbouring windows overlap, so their residuals are correlated. The covariance of the estimates
-    is therefore the sandwich A⁻¹ S A⁻¹ with A = X^T X and S from the residuals' autocovariance,
-    assumed stationary for each joint and tapered linearly with the lag (Bartlett's weights, as in
-    Newey and West), which keeps all variances non-negative.
+    is therefore the sandwich A⁻¹ S A⁻¹ with A = X^T X and S from the residuals' covariances
+    within and between the joints, assumed stationary and tapered linearly with the lag (Bartlett's
+    weights, as in Newey and West), which keeps all variances non-negative.
 
     Args:
         regressor: X, shape (k, 2, unknowns).
@@ -224,8 +227,8 @@ def standard_errors(regressor: Array, residual: Array) -> Array:
     middle = np.zeros((unknowns, unknowns))
     for lag in range(min(LAGS, k)):
         early, late = slice(None, k - lag), slice(lag, None)
-        covariance = (1 - lag / LAGS) * np.sum(residual[early] * residual[late], axis=0) / k
-        part = np.einsum("kji,kjl,j->il", regressor[early], regressor[late], covariance)
+        covariance = (1 - lag / LAGS) * (residual[early].T @ residual[late]) / k
+        part = np.einsum("kai,ab,kbl->il", regressor[early], covariance, regressor[late])
         middle += part if lag == 0 else part + part.T
     freedom = joints * k / max(joints * k - OVERLAP * unknowns, 1)
     return np.sqrt(np.maximum(np.diag(inverse @ middle @ inverse), 0.0) * freedom)
@@ -277,11 +280,13 @@ def _check(record: JointRecord) -> None:
 def bump(dt: float) -> tuple[Array, Array, Array, Array]:
     """Samples of the window w, of w' and w'', times dt, and integrals of w over each time step.
 
-    The window is w(t) ∝ (1 - x²)⁶ with x = 2 t / BUMP in [-1, 1] and unit area. It vanishes at its
-    ends to such an order that sums over samples equal the integrals to rounding. The integrals over
-    steps are for signals that are constant over each step, such as the torque.
+    The window is w(t) ∝ (1 - x²)⁶ with x in [-1, 1], of unit area and as long as the whole number
+    of steps nearest to `BUMP`. It vanishes at its ends to such an order that sums over samples
+    equal the integrals to rounding. The integrals over steps are for signals that are constant
+    over each step, such as the torque.
     """
-    steps, half = round(BUMP / dt), BUMP / 2
+    steps = round(BUMP / dt)
+    half = steps * dt / 2
     x = np.linspace(-1, 1, steps + 1)
     shape = Polynomial([1, 0, -1]) ** 6
     whole = shape.integ()

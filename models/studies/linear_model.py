@@ -21,6 +21,7 @@ from functools import lru_cache
 import casadi as ca
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
 from onpath.models.studies.identification import (
@@ -40,8 +41,10 @@ from onpath.models.systems.forces import DRY_VELOCITY
 from onpath.models.systems.system import MechanicalSystem
 
 UNMOVED = 1e-9  # rms of a column, relative to the largest, below which it counts as zero
-LATE = 1e-3  # [s], from which torques count as late
+LATEST = 0.1  # [s], largest delay or lead of logged torques
+DELAY = "delay"  # name of the delay among the estimates
 NEGLIGIBLE = 1e-3  # smaller shares of a parameter in a combination are left out
+Sums = tuple[tuple[str, float], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,11 +69,21 @@ class MotionRecord:
 
 @dataclass(frozen=True, slots=True)
 class BaseParameter:
-    """An estimated parameter, or with `others` its sum with multiples of those (SI)."""
+    """An estimated parameter, or with `others` its sum with multiples of those (SI).
+
+    Attributes:
+        name: of the parameter.
+        value: estimate.
+        error: its standard error.
+        low, high: interval that contains the true value with a probability of 95 %.
+        others: (name, multiple) of each further parameter of the sum.
+    """
 
     name: str
     value: float
     error: float
+    low: float
+    high: float
     others: tuple[tuple[str, float], ...] = ()
 
     def label(self) -> str:
@@ -79,7 +92,7 @@ class BaseParameter:
         return self.name + "".join(parts)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Estimate:
     """The result of an identification.
 
@@ -87,14 +100,19 @@ class Estimate:
         found: the estimates, in the order of the robot's parameters.
         unexcited: parameters on which the record does not depend.
         unexplained: rms of the filtered torque that the model does not explain, as a share.
-        late: apparent delay of the logged torques behind the motion, [s]; 0 unless a delay explains
-            much more.
+        delay: by which the logged torques are late, [s]; None if the motion does not tell it.
+        times: middle of each window, from the beginning of its record, shape (windows,), [s].
+        torque: filtered torque of each coordinate, shape (windows, n).
+        residual: the part of it that the model does not explain, shape (windows, n).
     """
 
     found: tuple[BaseParameter, ...]
     unexcited: tuple[str, ...]
     unexplained: float
-    late: float = 0.0
+    delay: BaseParameter | None
+    times: Array
+    torque: Array
+    residual: Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -146,6 +164,9 @@ def linear_model(system: MechanicalSystem) -> LinearModel:
 def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Array) -> Estimate:
     """Least-squares estimates from all records, with dry friction c_i if it explains much more.
 
+    The logged torques of the motors may be late or early by an unknown time, the same in all
+    records, which is estimated with the parameters.
+
     Args:
         geometry: the system's parameters; only those on which h and B depend are used.
 
@@ -155,66 +176,86 @@ def estimate(system: MechanicalSystem, records: list[MotionRecord], geometry: Ar
     """
     model = linear_model(system)
     parts = [_equations(system, model, record, geometry) for record in records]
-    columns, torque, change = (np.concatenate(each) for each in zip(*parts, strict=True))
     names = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
-    smooth = _solved(names[: len(model.names)], columns[..., : len(model.names)], torque)
-    dry = _solved(names, columns, torque)
-    enough = smooth.unexplained <= max(ENOUGH * dry.unexplained, EXACT)
-    best, used = (smooth, len(model.names)) if enough else (dry, len(names))
-    return replace(best, late=_lateness(columns[..., :used], torque, change))
+    late = _delay(parts)
+    dry = _solved(names, parts, late)
+    if any(record.measured for record in records):
+        return dry
+    smooth = _solved(names[: len(model.names)], parts, late)
+    return smooth if smooth.unexplained <= max(ENOUGH * dry.unexplained, EXACT) else dry
 
 
-def _lateness(columns: Array, torque: Array, change: Array) -> float:
-    """Delay of the motors' logged torque, [s]; 0 unless a delay explains much more.
+@dataclass(frozen=True, slots=True, eq=False)
+class _Equations:
+    """The equations that a record gives, one for each coordinate and window.
 
-    If B u lags by d, it was B u + d (B u)' to first order, so that -<w, (B u)'> is the column of d.
+    Attributes:
+        dt: time step of the record, [s].
+        columns: regressor, shape (windows, n, k + m); the last m are for dry friction.
+        known: what the right-hand side has besides the motors' torques, (windows, n).
+        motors: column of B for each motor, (rows, n, m).
+        u: logged torques, (rows, m).
+        starts: first row of each window.
     """
-    flat = columns.reshape(-1, columns.shape[-1])
-    sizes = np.sqrt(np.mean(flat**2, axis=0))
-    moved = sizes > UNMOVED * sizes.max()
-    basis, singular, _ = np.linalg.svd(flat[:, moved] / sizes[moved], full_matrices=False)
-    basis = basis[:, singular > singular[0] / WORST_CONDITION] * np.sqrt(len(flat))
-    scale = float(np.sqrt(np.mean(change**2))) or 1.0
-    whole = np.concatenate([basis.reshape(*change.shape, -1), -change[..., None] / scale], axis=2)
-    without = torque - whole[..., :-1] @ least_squares(whole[..., :-1], torque)[0]
-    values, _ = least_squares(whole, torque)
-    late, explained = float(values[-1]) / scale, ENOUGH * np.linalg.norm(torque - whole @ values)
-    return late if abs(late) > LATE and np.linalg.norm(without) > explained else 0.0
+
+    dt: float
+    columns: Array
+    known: Array
+    motors: Array
+    u: Array
+    starts: NDArray[np.int_]
+
+    def torque(self, late: float) -> Array:
+        """Right-hand side if the torques were logged `late` seconds after they acted."""
+        rows = len(self.u)
+        edges = np.arange(rows + 1.0)
+        whole = np.concatenate([np.zeros((1, self.u.shape[1])), np.cumsum(self.u, axis=0)])
+        sums: list[Array] = [np.interp(edges + late / self.dt, edges, each) for each in whole.T]
+        moved = np.diff(np.stack(sums, axis=1), axis=0)
+        held = bump(self.dt)[3]
+        return _filtered(np.einsum("rnm,rm->rn", self.motors, moved), held, self.dt) + self.known
+
+    def middles(self) -> Array:
+        """Middle of each window, from the beginning of the record, [s]."""
+        half = len(bump(self.dt)[3]) / 2
+        return np.asarray(self.dt * (self.starts + half), dtype=float)
+
+    def known_at(self, late: float) -> NDArray[np.bool_]:
+        """Windows for which all torques are known with this delay."""
+        rows, length, away = len(self.u), len(bump(self.dt)[3]), late / self.dt
+        return (self.starts + away >= 0) & (self.starts + length + away <= rows)
+
+
+def _filtered(signal: Array, kernel: Array, dt: float) -> Array:
+    """<kernel, signal> for all windows, whose first axis replaces that of the rows."""
+    weight, _, _, held = bump(dt)
+    windows = sliding_window_view(signal, len(weight), axis=0)[:: len(held) // OVERLAP]
+    return np.asarray(windows[..., : len(kernel)] @ kernel, dtype=float)
 
 
 def _equations(
     system: MechanicalSystem, model: LinearModel, record: MotionRecord, geometry: Array
-) -> tuple[Array, Array, Array]:
-    """Regressor (windows, n, k + m), right-hand side, and <w, (B u)'>.
-
-    The last m columns of the regressor are for dry friction.
-    """
+) -> _Equations:
     _check(record)
-    weight, rate, _, held = bump(record.dt)
-    step, rows, n = len(held) // OVERLAP, len(record.q), system.n
-
-    def filtered(signal: Array, kernel: Array) -> Array:
-        windows = sliding_window_view(signal, len(weight), axis=0)[::step]
-        return np.asarray(windows[..., : len(kernel)] @ kernel, dtype=float)
-
-    terms, known = model.terms.map(rows)(record.q.T, record.v.T)
-    size = len(model.names)
+    dt, rows, n, size = record.dt, len(record.q), system.n, len(model.names)
+    weight, rate, _, held = bump(dt)
+    terms, offset = model.terms.map(rows)(record.q.T, record.v.T)
     slopes = terms.full().reshape(n, rows, 2 * size).swapaxes(0, 1)
-    offsets = known.full().reshape(n, rows, 2).swapaxes(0, 1)
-    plant = np.tile(geometry[:, None], rows)
-    tau = model.effort.map(rows)(record.q.T, record.u.T, record.force.T, plant).full().T
-    columns = filtered(slopes[..., size:], weight) - filtered(slopes[..., :size], rate)
-    right = filtered(tau, held) + filtered(offsets[..., 0], rate)
-    right -= filtered(offsets[..., 1], weight)
-    friction = np.zeros((len(right), n, system.m))
-    for motor, u in enumerate(np.eye(system.m)):
-        unit = np.tile(u[:, None], rows)
-        column = model.effort.map(rows)(record.q.T, unit, 0 * record.force.T, plant).full().T
-        rate = np.sum(column * record.v, axis=1, keepdims=True)
-        friction[..., motor] = filtered(column * rate / np.sqrt(rate**2 + DRY_VELOCITY**2), held)
-    motors = model.effort.map(rows)(record.q.T, record.u.T, 0 * record.force.T, plant).full().T
-    change = -filtered(motors, np.diff(weight) / record.dt)  # <w, τ'> = -<w', τ>, by steps
-    return np.concatenate([columns, friction], axis=2), right, change
+    offsets = offset.full().reshape(n, rows, 2).swapaxes(0, 1)
+    plant, none = np.tile(geometry[:, None], rows), 0 * record.force.T
+
+    def effort(u: Array, force: Array) -> Array:
+        return np.asarray(model.effort.map(rows)(record.q.T, u, force, plant).full().T, dtype=float)
+
+    columns = _filtered(slopes[..., size:], weight, dt) - _filtered(slopes[..., :size], rate, dt)
+    known = _filtered(effort(0 * record.u.T, record.force.T), held, dt)
+    known += _filtered(offsets[..., 0], rate, dt) - _filtered(offsets[..., 1], weight, dt)
+    motors = np.stack([effort(np.tile(u[:, None], rows), none) for u in np.eye(system.m)], axis=2)
+    rates = np.einsum("rnm,rn->rm", motors, record.v)
+    dry = motors * (rates / np.sqrt(rates**2 + DRY_VELOCITY**2))[:, None]
+    starts = np.arange(0, rows - len(weight) + 1, len(held) // OVERLAP)
+    columns = np.concatenate([columns, _filtered(dry, held, dt)], axis=2)
+    return _Equations(dt=dt, columns=columns, known=known, motors=motors, u=record.u, starts=starts)
 
 
 def _check(record: MotionRecord) -> None:
@@ -227,32 +268,133 @@ def _check(record: MotionRecord) -> None:
         raise ValueError("the robot hardly moves")
 
 
-def _solved(names: tuple[str, ...], columns: Array, torque: Array) -> Estimate:
-    """Estimates of the base parameters from a regressor (windows, n, k)."""
-    scale = np.sqrt(np.mean(columns**2, axis=(0, 1)))
-    moved = [j for j in range(len(names)) if scale[j] > UNMOVED * scale.max()]
-    scaled = columns[..., moved] / scale[moved]
+def _together(parts: list[_Equations], late: float) -> tuple[Array, Array]:
+    """Regressor (windows, n, k + m) and right-hand side (windows, n) of all records."""
+    kept = [part.known_at(late) for part in parts]
+    columns = [part.columns[keep] for part, keep in zip(parts, kept, strict=True)]
+    torques = [part.torque(late)[keep] for part, keep in zip(parts, kept, strict=True)]
+    return np.concatenate(columns), np.concatenate(torques)
+
+
+def _delay(parts: list[_Equations]) -> float:
+    """The delay of the logged torques with which the model explains most of them, [s]."""
+    from scipy.optimize import minimize_scalar  # slow to import
+
+    def unexplained(late: float) -> float:
+        columns, torque = _together(parts, late)
+        moved, scaled = _scaled(columns)
+        residual = torque - scaled @ least_squares(scaled, torque)[0] if moved else torque
+        total = float(np.mean(torque**2))
+        return float(np.mean(residual**2)) / total if total else 0.0
+
+    steps = np.linspace(-LATEST, LATEST, 21)
+    best = float(min(steps, key=unexplained))
+    away = float(steps[1] - steps[0])
+    found = minimize_scalar(
+        unexplained,
+        bounds=(best - away, best + away),
+        method="bounded",
+        options={"xatol": 1e-6},
+    )
+    return float(found.x)
+
+
+def dependent_names(
+    system: MechanicalSystem, records: list[MotionRecord], geometry: Array, names: tuple[str, ...]
+) -> tuple[str, ...]:
+    """Parameters that the records do not tell: unexcited, or only told in sums with others.
+
+    Args:
+        geometry: see `estimate`.
+        names: of the parameters that matter, in any order.
+    """
+    model = linear_model(system)
+    known = (*model.names, *(f"c{i + 1}" for i in range(system.m)))
+    used = [i for i, name in enumerate(known) if name in names]
+    columns, _ = _together([_equations(system, model, r, geometry) for r in records], 0.0)
+    moved, scaled = _scaled(columns[..., used])
     chosen, others, shares = _independent(scaled.reshape(-1, len(moved)))
-    regressor = scaled[..., chosen]
+    mixed = {moved[j] for j in others}
+    mixed |= {moved[i] for i, row in zip(chosen, shares, strict=True) if _significant(row)}
+    return tuple(known[used[j]] for j in range(len(used)) if j not in moved or j in mixed)
+
+
+def _significant(shares: Array) -> bool:
+    return bool(np.any(np.abs(shares) > NEGLIGIBLE))
+
+
+def _scaled(columns: Array) -> tuple[list[int], Array]:
+    """The columns that are not zero, and these with an rms of 1."""
+    size = np.sqrt(np.mean(columns**2, axis=(0, 1)))
+    moved = np.flatnonzero(size > UNMOVED * size.max(initial=0.0)).tolist()
+    return moved, columns[..., moved] / size[moved]
+
+
+def _solved(names: tuple[str, ...], parts: list[_Equations], late: float) -> Estimate:
+    """Estimates of the base parameters and the delay, with the first columns of the regressor."""
+    columns, torque = _together(parts, late)
+    change = _change(parts, late)
+    moved, scaled = _scaled(columns[..., : len(names)])
+    if late and _depends(change, scaled):
+        return replace(_solved(names, parts, 0.0), delay=None)
+    scale = np.sqrt(np.mean(columns**2, axis=(0, 1)))[moved]
+    chosen, others, shares = _independent(scaled.reshape(-1, len(moved)))
+    jerk = float(np.sqrt(np.mean(change**2))) or 1.0
+    regressor = np.concatenate([scaled[..., chosen], -change[..., None] / jerk], axis=2)
     values, _ = least_squares(regressor, torque)
-    residual: Array = np.asarray(torque - regressor @ values, dtype=float)
+    residual = np.asarray(torque - regressor @ values, dtype=float)
     errors = standard_errors(regressor, residual)
+    wide = errors * _quantile(regressor)
+
+    def parameter(i: int, name: str, size: float, sums: Sums = (), shift: float = 0.0):
+        value = float(values[i]) / size + shift
+        error, half = float(errors[i]) / size, float(wide[i]) / size
+        return BaseParameter(name, value, error, value - half, value + half, sums)
+
     found = list[tuple[int, BaseParameter]]()
     for i, place in enumerate(chosen):
-        size = scale[moved[place]]
-        sums = [(moved[j], float(share)) for j, share in zip(others, shares[i], strict=True)]
-        combined = tuple(
-            (names[j], share * scale[j] / size) for j, share in sums if abs(share) > NEGLIGIBLE
+        sums = tuple(
+            (names[moved[j]], float(share) * scale[j] / scale[place])
+            for j, share in zip(others, shares[i], strict=True)
+            if abs(share) > NEGLIGIBLE
         )
-        known = BaseParameter(names[moved[place]], values[i] / size, errors[i] / size, combined)
-        found.append((moved[place], known))
-    total = float(np.sqrt(np.mean(torque**2)))
-    left = float(np.sqrt(np.mean(residual**2)))
+        found.append((moved[place], parameter(i, names[moved[place]], scale[place], sums)))
+    total, left = (float(np.sqrt(np.mean(each**2))) for each in (torque, residual))
     return Estimate(
-        tuple(each for _, each in sorted(found, key=lambda pair: pair[0])),
-        tuple(name for j, name in enumerate(names) if j not in moved),
-        left / total if total else 0.0,
+        found=tuple(each for _, each in sorted(found, key=lambda pair: pair[0])),
+        unexcited=tuple(name for j, name in enumerate(names) if j not in moved),
+        unexplained=left / total if total else 0.0,
+        delay=parameter(len(chosen), DELAY, jerk, shift=late),
+        times=np.concatenate([part.middles()[part.known_at(late)] for part in parts]),
+        torque=torque,
+        residual=residual,
     )
+
+
+def _change(parts: list[_Equations], late: float) -> Array:
+    """Derivative of the right-hand side with respect to the delay, shape (windows, n), [N m/s]."""
+    changes = list[Array]()
+    for part in parts:
+        step, keep = max(part.dt, 1e-3), part.known_at(late)
+        after, before = part.torque(late + step), part.torque(late - step)
+        changes.append((after - before)[keep] / (2 * step))
+    return np.concatenate(changes)
+
+
+def _depends(change: Array, scaled: Array) -> bool:
+    """Whether the effect of a delay is that of a change of parameters."""
+    flat, column = scaled.reshape(-1, scaled.shape[-1]), change.ravel()
+    left = column - flat @ np.linalg.lstsq(flat, column)[0]
+    return bool(np.linalg.norm(left) <= np.linalg.norm(column) / WORST_CONDITION)
+
+
+def _quantile(regressor: Array) -> float:
+    """Half of a 95 % interval in standard errors: Student's t for windows that do not overlap."""
+    from scipy.stats import t  # slow to import
+
+    windows, coordinates, unknowns = regressor.shape
+    freedom = windows * coordinates / OVERLAP - unknowns
+    return float(t.ppf(0.975, max(freedom, 1.0)))
 
 
 def _independent(regressor: Array) -> tuple[list[int], list[int], Array]:

@@ -1,9 +1,15 @@
-"""Reads the CSV files of `onpath experiment --csv` and of the lab as records of motion."""
+"""Reads records of motion: CSV files of OnPath, and logs of real arms.
+
+The columns of a log have the names and units that its user states. Its rows need not be evenly
+spaced in time; they are then interpolated. The angles are measured, and their rates are filtered.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
+from math import pi
 from pathlib import Path
 
 import numpy as np
@@ -11,25 +17,105 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import header, measured_names
 from onpath.models.errors import CodedError
-from onpath.models.studies.identification import smooth_velocities
+from onpath.models.studies.identification import BUMP, FEWEST, smooth_velocities
 from onpath.models.studies.linear_model import MotionRecord
 from onpath.models.studies.table_file import Table, read_table
+from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import Robot
 
 LAW = "law"  # name of its column
-UNEVEN = 0.1  # largest relative deviation of a time step from the others
+EVEN = 1e-3  # largest relative deviation of the time steps that is taken for rounding
+GAP = 0.05  # [s], longest time without a row
+FAR = 1e6  # largest absolute value of angles, torques and forces (SI)
+ANGLES = {"rad": 1.0, "deg": pi / 180, "rev": 2 * pi}
+LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3}
+UNITS: Mapping[str, Mapping[str, float]] = {
+    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9},
+    "rad": ANGLES,
+    "m": LENGTHS,
+    "Nm": {"Nm": 1.0, "mNm": 1e-3, "Ncm": 1e-2},
+    "N": {"N": 1.0, "mN": 1e-3, "kN": 1e3},
+}
+"""SI unit of a quantity -> the units in which a log may have it, in SI units."""
 
 
-def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
+def quantities(robot: Robot) -> dict[str, str]:
+    """Names of what a log has to contain -> the column's name in files of OnPath.
+
+    For instance "t" -> "t_s", "q1" -> "q1_rad", "tau1" -> "tau1_Nm", "force1" -> "force1_N".
+    """
+    system = robot.system
+    efforts = [name for name in header(robot) if name.startswith(("tau", "force"))]
+    columns = ["t_s", *system.coordinate_names, *efforts]
+    return {name.rpartition("_")[0]: name for name in columns}
+
+
+@dataclass(frozen=True, slots=True)
+class LogColumns:
+    """The columns of a real arm's log.
+
+    Attributes:
+        names: name of each of the `quantities` in the file.
+        named: those of the quantities whose columns the user has named.
+        scales: factor of each to SI units.
+    """
+
+    names: Mapping[str, str]
+    named: frozenset[str]
+    scales: Mapping[str, float]
+
+
+def log_columns(
+    robot: Robot, columns: Mapping[str, str], units: Mapping[str, str | float]
+) -> LogColumns:
+    """The columns of a log.
+
+    Args:
+        columns: the file's names of some of the `quantities`; the others have the names of files
+            of OnPath.
+        units: unit of some of the quantities, or its factor to SI units; others are in SI units.
+
+    Raises:
+        CodedError: an unknown quantity or unit, or an impossible factor.
+    """
+    known = quantities(robot)
+    for name in (*columns, *units):
+        if name not in known:
+            raise unknown_name(name, list(known), "quantity")
+    scales = {name: _scale(name, units.get(name, 1.0), known[name]) for name in known}
+    return LogColumns({**known, **columns}, frozenset(columns), scales)
+
+
+def _scale(name: str, unit: str | float, usual: str) -> float:
+    possible = UNITS[usual.rpartition("_")[2]]
+    if unit in possible:
+        return possible[str(unit)]
+    try:
+        factor = float(unit)
+    except ValueError:
+        raise unknown_name(str(unit), list(possible), f"unit of {name}") from None
+    if not 1e-12 <= abs(factor) <= 1e12:  # NaN fails too
+        raise CodedError("error.log_factor", name=name, value=f"{factor:g}")
+    return factor
+
+
+def read_records(
+    path: Path, robot: Robot, log: LogColumns | None = None
+) -> list[tuple[str, MotionRecord]]:
     """The law and the record of each part of the file: consecutive rows of one side and law.
 
     The law is "" in a file without a column of that name. The columns may be in any order.
 
+    Args:
+        log: the columns of a real arm's log; None: it is a file of OnPath.
+
     Raises:
-        CodedError: the file has another form or is of another robot; the message tells the details.
+        CodedError: the file has another form or is of another robot; the message names line and
+            column.
         OSError: it cannot be read.
     """
-    measured, table = _table(path, robot)
+    measured, table = _own(path, robot) if log is None else (True, _log(path, robot, log))
+    time = "t_s" if log is None else log.names["t"]
     laws = table.texts.get(LAW)
     keys = list(zip(*table.texts.values(), strict=True)) or [()] * len(table.lines)
     records = list[tuple[str, MotionRecord]]()
@@ -37,12 +123,12 @@ def read_records(path: Path, robot: Robot) -> list[tuple[str, MotionRecord]]:
         rows = list(part)
         lines = table.lines[rows[0] : rows[-1] + 1]
         law = laws[rows[0]] if laws else ""
-        records.append((law, _record(table.numbers[rows], lines, robot, measured)))
+        records.append((law, _record(table.numbers[rows], lines, robot, measured, time)))
     return records
 
 
-def _table(path: Path, robot: Robot) -> tuple[bool, Table]:
-    """Whether the file has measured joint angles, and its table, with these if possible."""
+def _own(path: Path, robot: Robot) -> tuple[bool, Table]:
+    """Whether a file of OnPath has measured joint angles, and its table, with these if possible."""
     missing: CodedError | None = None
     for measured in (True, False):
         try:
@@ -66,30 +152,110 @@ def _columns(robot: Robot, measured: bool) -> list[str]:
     return ["t_s", *angles, *rates, *efforts]
 
 
-def _record(rows: Array, lines: Sequence[int], robot: Robot, measured: bool) -> MotionRecord:
-    """The record of some rows.
+def _log(path: Path, robot: Robot, log: LogColumns) -> Table:
+    """The table of a real arm's log in SI units, with the columns of `_own`; the rates are 0.
+
+    Without columns of forces there are none.
+    """
+    forces = [name for name in log.names if name.startswith("force")]
+    motion = [name for name in log.names if name not in forces]
+    try:
+        table = _quantities(path, log, [*motion, *forces])
+    except CodedError as error:
+        if error.message.code != "error.table_no_column" or log.named.intersection(forces):
+            raise
+        table = _quantities(path, log, motion)
+    n, m, rows = robot.system.n, robot.system.m, len(table.lines)
+    numbers = np.zeros((rows, 1 + 2 * n + m + robot.system.p))
+    numbers[:, : 1 + n] = table.numbers[:, : 1 + n]
+    efforts = table.numbers[:, 1 + n :]
+    numbers[:, 1 + 2 * n : 1 + 2 * n + efforts.shape[1]] = efforts
+    return Table(numbers, table.texts, table.lines)
+
+
+def _quantities(path: Path, log: LogColumns, wanted: Sequence[str]) -> Table:
+    """Some quantities of a log, in SI units; times from the first row on.
+
+    Raises:
+        CodedError: see `read_records`.
+    """
+    columns = [log.names[name] for name in wanted]
+    table = read_table(path, columns, (LAW,), time=log.names["t"])
+    numbers = table.numbers.copy()
+    numbers[:, 0] -= numbers[0, 0]
+    numbers *= [log.scales[name] for name in wanted]
+    far = np.argwhere(np.abs(numbers[:, 1:]) > FAR)
+    if len(far):
+        row, column = int(far[0, 0]), int(far[0, 1])
+        value = f"{table.numbers[row, 1 + column]:g}"
+        line, name = str(table.lines[row]), columns[1 + column]
+        raise CodedError("error.table_large_number", line=line, column=name, text=value)
+    return Table(numbers, table.texts, table.lines)
+
+
+def _record(
+    rows: Array, lines: Sequence[int], robot: Robot, measured: bool, time: str
+) -> MotionRecord:
+    """The record of some rows, evenly spaced.
 
     Args:
         lines: their lines in the file.
         measured: whether the joint angles are measured; their rates are then filtered.
+        time: name of the column of times, for messages.
 
     Raises:
-        CodedError: their times are not evenly spaced.
+        CodedError: the times do not grow, or there are too few rows, or a gap between them.
     """
-    n, m = robot.system.n, robot.system.m
-    steps = np.diff(rows[:, 0])
+    n, m, joints = robot.system.n, robot.system.m, robot.system.joints
+    dt = _step(rows[:, 0], lines, time)
+    times = rows[:, 0]
+    q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
+    if np.abs(np.diff(times) - dt).max() > EVEN * dt:
+        whole = round((times[-1] - times[0]) / dt)
+        grid: Array = np.linspace(float(times[0]), float(times[-1]), whole + 1)
+        dt = float(grid[1] - grid[0])
+        q, v = _interpolated(times, q, grid), _interpolated(times, v, grid)
+        u, force = _means(times, u, grid), _means(times, force, grid)
+    if measured:
+        v[:, :joints] = smooth_velocities(q[:, :joints], dt)
+    return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured)
+
+
+def _step(times: Array, lines: Sequence[int], column: str) -> float:
+    """The median time step.
+
+    Raises:
+        CodedError: see `_record`.
+    """
+    steps = np.diff(times)
     if not steps.size:
         raise CodedError("error.record_of_one_row", line=str(lines[0]))
     dt = float(np.median(steps))
-    if dt <= 0:
-        raise CodedError("error.record_times", line=str(lines[1]))
-    uneven = np.flatnonzero(np.abs(steps - dt) > UNEVEN * dt)
-    if uneven.size:
-        at = int(uneven[0])
-        step, usual = f"{steps[at]:.6g}", f"{dt:.6g}"
-        raise CodedError("error.record_uneven", line=str(lines[at + 1]), step=step, usual=usual)
-    q, v, u, force = np.split(rows[:, 1:], np.cumsum([n, n, m]), axis=1)
-    if measured:
-        joints = robot.system.joints
-        v[:, :joints] = smooth_velocities(q[:, :joints], dt)
-    return MotionRecord(dt=dt, q=q, v=v, u=u, force=force, measured=measured)
+    bad = np.flatnonzero((steps <= 0) | (steps > max(GAP, dt)))
+    if bad.size:
+        at = int(bad[0])
+        line, step = str(lines[at + 1]), f"{steps[at]:.3g}"
+        if steps[at] <= 0:
+            raise CodedError("error.record_times", line=line, column=column)
+        raise CodedError("error.record_gap", line=line, column=column, step=step, most=f"{GAP:g}")
+    if dt > BUMP / FEWEST * (1 + EVEN):
+        step, most = f"{1e3 * dt:.3g}", f"{1e3 * BUMP / FEWEST:g}"
+        raise CodedError("error.record_coarse", column=column, step=step, most=most)
+    return dt
+
+
+def _interpolated(times: Array, values: Array, grid: Array) -> Array:
+    """Smooth values at other times; Akima's curve does not swing where two times nearly meet."""
+    from scipy.interpolate import Akima1DInterpolator  # slow to import
+
+    return np.asarray(Akima1DInterpolator(times, values)(grid), dtype=float)
+
+
+def _means(times: Array, values: Array, grid: Array) -> Array:
+    """Means over the steps of a grid of values that are constant from row to row."""
+    dt = grid[1] - grid[0]
+    ends, edges = np.append(times, times[-1] + dt), np.append(grid, grid[-1] + dt)
+    sums = np.cumsum(values * np.diff(ends)[:, None], axis=0)
+    whole = np.concatenate([np.zeros((1, values.shape[1])), sums])
+    columns: list[Array] = [np.interp(edges, ends, each) for each in whole.T]
+    return np.asarray(np.diff(np.stack(columns, axis=1), axis=0) / dt, dtype=float)

@@ -13,7 +13,7 @@ from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
 from onpath.models.closed_loop.speed_profile import SpeedProfile, profile_from
 from onpath.models.systems.parameter_specs import number_of
 
-_TIMES = ("hold", "push", "wall")
+_TIMES = ("hold", "push", "wall", "pull")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,10 @@ class Schedule:
         hold_direction: "along" the path's tangent, "across" it, or "both", in the path's plane.
         push_from, push_to: interval in which a hand pulls at the end-point, [s]; equal: never.
         push_z1, push_z2: position of the hand in the path's plane, [m].
+        pull_from, pull_to: interval in which a hand goes along with the end-point and pulls it
+            across the path with a growing force, [s]; equal: never.
+        pull_rate: growth of its force, to the left of the path if positive, [N/s]; the force grows
+            up to that of the hand, see models/systems/forces.py.
         wall_from, wall_to: interval in which there is a wall, [s]; equal: never.
         wall_z1, wall_z2: a point of its surface, in the path's plane, [m].
         wall_angle: angle of its normal, which points to the free side, with the first axis, [rad].
@@ -61,6 +65,9 @@ class Schedule:
     push_to: float = 0.0
     push_z1: float = 0.0
     push_z2: float = 0.0
+    pull_from: float = 0.0
+    pull_to: float = 0.0
+    pull_rate: float = 5.0
     wall_from: float = 0.0
     wall_to: float = 0.0
     wall_z1: float = 0.0
@@ -73,6 +80,7 @@ class Schedule:
         _within("duration", self.duration, 0.01, 600.0, "s")
         _within("reverse_at", self.reverse_at, 0.0, 600.0, "s")
         _within("hold_at", self.hold_at or 0.0, -np.pi, np.pi, "rad")
+        _within("pull_rate", self.pull_rate, -100.0, 100.0, "N/s")
         for name in ("clock_offset", "wall_angle"):
             _within(name, getattr(self, name), -2 * np.pi, 2 * np.pi, "rad")
         for name in ("start_along", "start_across"):
@@ -85,6 +93,8 @@ class Schedule:
         if self.hold_direction not in DIRECTIONS:
             choices = ", ".join(DIRECTIONS)
             raise ValueError(f"hold_direction: {self.hold_direction!r} is not one of {choices}")
+        if max(self.push_from, self.pull_from) < min(self.push_to, self.pull_to):
+            raise ValueError("pull_from: there is one hand, which pushes at that time")
         if self.profile is not None and self.reverse_at:
             raise ValueError("reverse_at: the profile already says when the speed changes")
 
@@ -97,7 +107,7 @@ class Schedule:
         return Wall(self.wall_z1, self.wall_z2, self.wall_angle)
 
     def ticks(self, what: str, dt: float) -> range:
-        """The ticks of an interval: "hold", "push" or "wall".
+        """The ticks of an interval: "hold", "push", "pull" or "wall".
 
         Args:
             dt: length of a tick, [s].

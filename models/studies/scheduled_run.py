@@ -8,12 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.loops import InterpretedLoop
+from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.obstacles import brake_in
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import (
     Push,
     first_state,
+    pushed,
     settings_vector,
     time_step,
 )
@@ -25,7 +26,10 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 CHUNK = 200  # ticks between checks for divergence
+FAR_AWAY = 1e3  # [m]
+STEP = 0.01  # [s] after which a hand that goes along with the end-point has moved
 JUMP = 0.5  # [rad] in one tick; a closest point that moves farther has jumped
+LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])  # turns a tangent to the left
 
 
 class ScheduledRun:
@@ -46,7 +50,7 @@ class ScheduledRun:
     def __init__(
         self,
         robot: Robot,
-        loop: InterpretedLoop,
+        loop: Loop,
         curve: Curve,
         parameters: Parameters,
         schedule: Schedule,
@@ -60,6 +64,7 @@ class ScheduledRun:
         self._theta = np.empty(0)  # of the row before, while it waits
         self._profile: SpeedProfile | None = None
         self._brake: tuple[tuple[Array, Array], Array | None] | None = None
+        self._moves, self._inputs = False, np.empty(0)  # of the last part
         self._tick, self._state = 0, self._first(start)
 
     def parts(self) -> Iterator[tuple[Array, bool]]:
@@ -87,12 +92,16 @@ class ScheduledRun:
     def _next_event(self) -> int:
         """The next tick at which the inputs change."""
         schedule, dt = self._schedule, self._dt
-        windows = [self._hold, schedule.ticks("push", dt), schedule.ticks("wall", dt)]
+        others = [schedule.ticks(name, dt) for name in ("push", "pull", "wall")]
+        windows = [self._hold, *others]
         times = [tick for window in windows for tick in (window.start, window.stop)]
         times.append(round(schedule.reverse_at / dt))
         if self._profile is not None:
             times.append(self._profile.leg(self._tick, dt).end or 0)
-        return min((tick for tick in times if tick > self._tick), default=self._tick + CHUNK)
+        event = min((tick for tick in times if tick > self._tick), default=self._tick + CHUNK)
+        pulls, step = self._tick in schedule.ticks("pull", dt), self._tick + round(STEP / dt)
+        self._moves = pulls and step < event
+        return step if self._moves else event
 
     def _passage(self, rows: Array) -> int | None:
         """The first of these rows at which the end-point has passed the place of the hold, or None.
@@ -110,6 +119,8 @@ class ScheduledRun:
 
     def _settings(self) -> Array:
         """The inputs of the loop from now on; a profile also sets the present speed reference."""
+        if self._moves:  # the hand alone has moved
+            return pushed(self._kernel, self._inputs, self._push())
         schedule, dt, tick = self._schedule, self._dt, self._tick
         wanted = self._parameters
         if 0 < round(schedule.reverse_at / dt) <= tick:
@@ -119,22 +130,41 @@ class ScheduledRun:
             leg = self._profile.leg(tick, dt)
             wanted = dataclasses.replace(wanted, speed=leg.last, ramp=leg.rate)
             self._fields()["speed_ref"][:] = leg.at(tick)
-        return settings_vector(self._robot, self._kernel, wanted, self._curve, self._push())
+        push = self._push()
+        self._inputs = settings_vector(self._robot, self._kernel, wanted, self._curve, push)
+        return self._inputs
 
     def _push(self) -> Push:
         """The external action on the end-point from now on."""
         schedule, dt, frame = self._schedule, self._dt, self._robot.frame
-        hand = wall = None
+        hand, share, wall = None, 1.0, None
         if self._tick in schedule.ticks("push", dt):
             hand = frame.lift(np.array(schedule.hand()))
+        if self._tick in schedule.ticks("pull", dt):
+            hand, share = self._pulling()
         if self._tick in schedule.ticks("wall", dt):
             wall = schedule.wall().lifted(frame)
         if not self._held():
-            return Push(hand=hand, wall=wall)
+            return Push(hand=hand, share=share, wall=wall)
         if self._brake is None:
             self._brake = self._braked()
         hold, hold_normal = self._brake
-        return Push(hand=hand, hold=hold, hold_normal=hold_normal, wall=wall)
+        return Push(hand=hand, share=share, hold=hold, hold_normal=hold_normal, wall=wall)
+
+    def _pulling(self) -> tuple[Array, float]:
+        """Where the hand is that pulls across, shape (p,), [m], and the share of its force.
+
+        It is far away, so that its force is the largest one and has the direction of the normal:
+        taken for the middle of the next `STEP`, as the force is.
+        """
+        fields, frame, schedule = self._fields(), self._robot.frame, self._schedule
+        theta = fields["theta"][0] + STEP / 2 * fields["theta_rate"][0]
+        first = self._curve.plan.at(theta, 1)
+        left = frame.lift(LEFT @ first / np.linalg.norm(first)) - frame.lift(np.zeros(2))
+        passed = self._tick * self._dt + STEP / 2 - schedule.pull_from
+        share = schedule.pull_rate * passed / self._robot.grip.hand.largest
+        away = np.sign(share) * FAR_AWAY * left
+        return self._robot.endpoint(fields["q"]) + away, min(abs(share), 1.0)
 
     def _braked(self) -> tuple[tuple[Array, Array], Array | None]:
         """A brake that is applied now, see `brake_in`."""

@@ -36,6 +36,7 @@ from onpath.models.systems.parameter_specs import MINUS
 LONGEST_LINE = 10_000  # [characters]
 MOST_LINES = 1_000_000
 LARGEST = 1e9  # of any number, in absolute value
+LATEST = 1e20  # of a time, which may be in nanoseconds since 1970
 SEPARATORS = "\t;,"
 NUMBER = re.compile(
     rf"[-+{MINUS}]?(?=[.,]?\d)\d*(?P<sign>[.,]?)\d*(?:[eE][-+{MINUS}]?\d+)?", re.ASCII
@@ -59,12 +60,15 @@ class Table:
     lines: Sequence[int]
 
 
-def read_table(path: Path, numbers: Sequence[str], texts: Sequence[str] = ()) -> Table:
+def read_table(
+    path: Path, numbers: Sequence[str], texts: Sequence[str] = (), time: str = ""
+) -> Table:
     """Read some columns of a table; the others may contain anything.
 
     Args:
         numbers: names of columns of finite numbers, which the table must have.
         texts: names of columns of texts, which it may have.
+        time: which of the numbers may be as large as `LATEST`.
 
     Raises:
         CodedError: it is no such table; the message names the line, and the column of a bad number.
@@ -74,7 +78,7 @@ def read_table(path: Path, numbers: Sequence[str], texts: Sequence[str] = ()) ->
         encoding = encoding_of(raw.peek(1))
         # undecodable bytes are replaced, and refused if they matter
         with io.TextIOWrapper(raw, encoding, errors="replace", newline=None) as file:
-            return _read(lines_of(file), numbers, texts)
+            return _read(lines_of(file), numbers, texts, time)
 
 
 def encoding_of(head: bytes) -> str:
@@ -97,7 +101,9 @@ def lines_of(file: io.TextIOWrapper) -> Iterator[tuple[int, str]]:
             yield number, line.rstrip("\n")
 
 
-def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str]) -> Table:
+def _read(
+    lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Sequence[str], time: str
+) -> Table:
     number, line = next(lines, (1, ""))
     if declared := DECLARED.fullmatch(line):
         separator = declared["separator"]
@@ -111,6 +117,7 @@ def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Seque
     while names and not names[-1]:
         names.pop()
     wanted = [_place(name, names, number) for name in numbers]
+    most = {i: LATEST if names[i] == time else LARGEST for i in wanted}
     others = {name: names.index(name) for name in texts if name in names}
     reader, flat, rows = NumberReader(), array("d"), list[int]()
     found = {name: list[str]() for name in others}
@@ -119,7 +126,7 @@ def _read(lines: Iterator[tuple[int, str]], numbers: Sequence[str], texts: Seque
         if len(cells) < len(names) or any(cells[len(names) :]):
             expected, got = str(len(names)), str(len(cells))
             raise CodedError("error.table_cells", line=str(number), wanted=expected, count=got)
-        flat.extend(reader.number(cells[i], number, names[i]) for i in wanted)
+        flat.extend(reader.number(cells[i], number, names[i], most[i]) for i in wanted)
         for name, i in others.items():
             found[name].append(cells[i])
         rows.append(number)
@@ -159,8 +166,11 @@ class NumberReader:
 
     _sign: str = field(default="", init=False)
 
-    def number(self, cell: str, line: int, column: str) -> float:
+    def number(self, cell: str, line: int, column: str, most: float = LARGEST) -> float:
         """The number in a cell.
+
+        Args:
+            most: its largest absolute value.
 
         Raises:
             CodedError: it is not a number, or has another decimal sign than those before.
@@ -177,6 +187,6 @@ class NumberReader:
                     "error.table_decimal_sign", line=at, column=column, text=text, other=other
                 )
             self._sign = sign
-        if not isfinite(value) or abs(value) > LARGEST:
+        if not isfinite(value) or abs(value) > most:
             raise CodedError("error.table_large_number", line=at, column=column, text=text)
         return value

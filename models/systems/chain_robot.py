@@ -5,10 +5,10 @@ and a payload at the end-point,
 
     M(q) v' + c(q, v) + D v = u + J_h^T F.
 
-The controller's model differs from the plant by a factor e of all masses and inertias, by the
-gravity that it assumes, and by the payload, which it does not know. A robot whose tip can only move
-in a plane has p = 2 outputs, others p = 3. With more joints than outputs it is redundant, and holds
-a posture by
+The controller's model differs from the plant by a factor of all masses and inertias, by one of all
+weights, and by the payload, which it does not know. M and c are linear in these three. A robot
+whose tip can only move in a plane has p = 2 outputs, others p = 3. With more joints than outputs it
+is redundant, and holds a posture by
 
     u0 = c + D v - M (k_d v + k_p (q - q_home)),
 
@@ -28,7 +28,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import LevelPlane, Plane
-from onpath.models.systems.drawing import Depths, Drawing, Point
+from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
 from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
 from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
 from onpath.models.systems.rigid_chain import (
@@ -37,8 +37,8 @@ from onpath.models.systems.rigid_chain import (
     bias_forces,
     chain_frames,
     chain_inertias,
-    height_of_mass,
     mass_matrix,
+    potential_energy,
     solved,
     tip_of,
 )
@@ -49,7 +49,7 @@ from onpath.models.systems.robots import (
     RobotEntry,
     StopCondition,
 )
-from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
+from onpath.models.systems.system import MechanicalSystem, mechanical_system
 
 STEPS = (0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0)
 """Shares of the way from home to y, each with a step of Newton's method."""
@@ -58,6 +58,7 @@ NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0
 UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not tell
 FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
 MOST_STEPS = 2
+SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,14 +192,16 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
     """The equations of motion; see this module's docstring."""
     chain, n = source.chain, source.chain.n
     q, v = ca.SX.sym("q", n), ca.SX.sym("v", n)
-    names = ("inertia", "gravity", "payload")
+    names = ("inertia", "weight", "payload")
     names += ("posture_stiffness", "posture_damping") if source.redundant else ()
     parameters = ca.SX.sym("parameters", len(names))
     p = dict(zip(names, ca.vertsplit(parameters), strict=True))
-    frames, inertias = chain_frames(chain, q), chain_inertias(chain, p["payload"])
-    mass = p["inertia"] * mass_matrix(chain, frames, inertias)
+    frames = chain_frames(chain, q)
+    inertias = chain_inertias(chain, p["inertia"], p["payload"])
+    weights = chain_inertias(chain, p["weight"], p["payload"])
+    mass = mass_matrix(chain, frames, inertias, p["inertia"])
     friction = ca.DM([joint.damping for joint in chain.joints]) * v
-    bias = p["inertia"] * bias_forces(chain, frames, inertias, v, p["gravity"]) + friction
+    bias = bias_forces(chain, frames, inertias, weights, v) + friction
     posture = None
     if source.redundant:
         away = p["posture_damping"] * v + p["posture_stiffness"] * (q - ca.DM(source.home))
@@ -218,7 +221,7 @@ def chain_system(source: ChainSource) -> MechanicalSystem:
         bias=bias,
         inputs=n,
         output=ca.densify(ca.DM(source.axes) @ (tip_of(chain, frames) - ca.DM(_home_of(source)))),
-        potential_energy=p["inertia"] * p["gravity"] * height_of_mass(frames, inertias),
+        potential_energy=potential_energy(frames, weights),
         solve=solved,
         posture=posture,
         strength=tuple(efforts),
@@ -243,14 +246,13 @@ def chain_robot(source: ChainSource) -> Robot:
 
     def plant(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
-        values = {"inertia": 1.0, "gravity": GRAVITY, "payload": chosen.payload}
+        values = {"inertia": 1.0, "weight": 1.0, "payload": chosen.payload}
         return system.parameter_vector(values | _posture(chosen))
 
     def model(parameters: Parameters) -> Array:
         chosen = own_parameters(kind, parameters)
-        inertia = 1 + chosen.error_inertia / 100
-        weight = GRAVITY * (1 + chosen.error_gravity / 100)
-        values = {"inertia": inertia, "gravity": weight / inertia, "payload": 0.0}
+        inertia, weight = 1 + chosen.error_inertia / 100, 1 + chosen.error_gravity / 100
+        values = {"inertia": inertia, "weight": weight, "payload": 0.0}
         return system.parameter_vector(values | _posture(chosen))
 
     def inverse(y: ca.SX) -> ca.SX:
@@ -276,21 +278,6 @@ def chain_robot(source: ChainSource) -> Robot:
         if (width := joint.high - joint.low) < math.inf:
             left = ca.fmin(system.q[i] - joint.low, joint.high - system.q[i])
             regularity = ca.fmin(regularity, left / (NEAR_LIMIT * width))
-    beyond, low, high = ca.SX(0), *_limits(chain)
-    for i, joint in enumerate(chain.joints):
-        if joint.high - joint.low < math.inf:
-            passed = ca.logic_or(system.q[i] < joint.low, system.q[i] > joint.high)
-            beyond = ca.fmax(beyond, passed)
-
-    def limit_passed(q: Array | None, parameters: Parameters) -> Message:
-        if q is None:
-            return Message("stop.joints")
-        worst = int(np.argmax(np.maximum(low - q, q - high)))
-        joint = chain.joints[worst]
-        limit = joint.low if q[worst] < joint.low else joint.high
-        unit = f"{1e3 * limit:.0f} mm" if joint.slides else f"{math.degrees(limit):.0f}°"
-        return Message("stop.joint", {"joint": joint.name, "limit": unit})
-
     return Robot(
         system=system,
         plant=plant,
@@ -301,7 +288,7 @@ def chain_robot(source: ChainSource) -> Robot:
         reach=_reach(chain),
         regularity=regularity,
         stops=(
-            StopCondition(beyond, limit_passed),
+            *_limit_stops(chain, system.q),
             StopCondition(spread < LEAST_REGULARITY * at_home, AT_A_LIMIT),
         ),
         frame=LevelPlane() if system.p == 3 else Plane(),
@@ -309,6 +296,25 @@ def chain_robot(source: ChainSource) -> Robot:
         substeps=source.substeps,
         chain=chain,
     )
+
+
+def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
+    """A joint passes a limit, if any has limits."""
+    beyond, low, high = ca.SX(0), *_limits(chain)
+    for i, joint in enumerate(chain.joints):
+        if joint.high - joint.low < math.inf:
+            beyond = ca.fmax(beyond, ca.logic_or(q[i] < joint.low, q[i] > joint.high))
+
+    def limit_passed(q: Array | None, parameters: Parameters) -> Message:
+        if q is None:
+            return Message("stop.joints")
+        worst = int(np.argmax(np.maximum(low - q, q - high)))
+        joint = chain.joints[worst]
+        limit = joint.low if q[worst] < joint.low else joint.high
+        unit = f"{1e3 * limit:.0f} mm" if joint.slides else f"{math.degrees(limit):.0f}°"
+        return Message("stop.joint", {"joint": joint.name, "limit": unit})
+
+    return () if beyond.is_zero() else (StopCondition(beyond, limit_passed),)
 
 
 def _posture(parameters: ChainParameters) -> dict[str, float]:
@@ -344,4 +350,14 @@ def _drawing(source: ChainSource) -> Drawing:
         depths=Depths(back=0.0, front=0.0, boss=0.0, pen=0.0),
         elevation=math.radians(60.0 if level else 9.0 if planar else 20.0),
         azimuth=math.radians(0.0 if planar else 18.0),
+        spots=_spots(source.chain),
     )
+
+
+def _spots(chain: Chain) -> tuple[Spot, ...]:
+    """The names of the joints; those at one place, as in a wrist, have one label."""
+    names, bars = dict[int, list[str]](), 0
+    for i, body in enumerate(chain.bodies, 1):
+        bars += bool(body.translation.any()) or body.joint.slides
+        names.setdefault(max(2 * bars - 1, 0), []).append("q" + str(i).translate(SUBSCRIPTS))
+    return tuple(Spot(", ".join(each), end) for end, each in names.items())

@@ -65,6 +65,19 @@ class Waist:
 
 
 @dataclass(frozen=True, slots=True)
+class Spot:
+    """A name beside a joint.
+
+    Attributes:
+        name: as shown, such as "q₁".
+        end: number of the end of a bar at which the joint is; bar i has 2 i and 2 i + 1.
+    """
+
+    name: str
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
 class Length:
     """A length to label.
 
@@ -105,7 +118,8 @@ class Drawing:
         note: position of the note that the drawing is not to scale.
         force_scale: length of the force's arrow, [m/N].
         sheet: low and high corner (x, z), and y, of the area for freehand strokes.
-        angles, waist, lengths: labels that are shown on demand, as in the paper's figures 1 and 4.
+        angles, waist, lengths, spots: labels that are shown on demand, as in the paper's figures 1
+            and 4.
     """
 
     strip: int = 0
@@ -125,3 +139,4 @@ class Drawing:
     angles: tuple[Angle, ...] = ()
     waist: Waist | None = None
     lengths: tuple[Length, ...] = ()
+    spots: tuple[Spot, ...] = ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.systems.rigid_chain import Body, Chain, Joint, Shape
 
+MOST_JOINTS = 8  # that move on the way to the tip
 EXACT = 1e-10  # entries of rotations this near to 0 and ±1 are set to them: files round angles
 
 
@@ -99,6 +100,11 @@ class Group:
             inertia=self.inertia,
             shapes=tuple(self.shapes),
         )
+
+
+def many_joints(names: Sequence[str]) -> Message:
+    """The reason why a file is refused in which these joints move on the way to the tip."""
+    return Message("robot_file.joints", {"most": MOST_JOINTS, "names": ", ".join(names)})
 
 
 def turn(axis: Array, angle: float) -> Array:

@@ -12,13 +12,23 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import FileChain, Group, Options, Place, aligned, exact
+from onpath.models.systems.file_chain import (
+    MOST_JOINTS,
+    FileChain,
+    Group,
+    Options,
+    Place,
+    aligned,
+    exact,
+    many_joints,
+)
 from onpath.models.systems.file_chain import turn as turned
-from onpath.models.systems.rigid_chain import Chain, Joint
-from onpath.models.systems.xml_elements import Element, Fault, shown
+from onpath.models.systems.rigid_chain import Chain, Joint, Shape
+from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, Fault, shown
 
-MOST_JOINTS = 8
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
+SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms
+HIDDEN = 3  # group of geoms, from which on MuJoCo's viewer shows none
 REFUSED = ("include", "plugin", "extension")  # which would read other files, or run code
 
 
@@ -39,6 +49,7 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
     for element in _all(root):
         if element.tag in REFUSED:
             raise Fault(element, Message("robot_file.refused", {"element": element.tag}))
+        _check_numbers(element)
     try:
         mujoco: Any = import_module("mujoco")
     except ImportError:
@@ -46,7 +57,7 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
     try:
         model = mujoco.MjModel.from_xml_path(str(file))
     except (ValueError, RuntimeError) as error:
-        reason = shown(str(error).splitlines()[0]) if str(error) else type(error).__name__
+        reason = shown(" ".join(str(error).split()), 200) or type(error).__name__
         raise CodedError("robot_file.mjcf", file=file.name, reason=reason) from None
     return _Model(model, root, options).read()
 
@@ -59,6 +70,18 @@ def _all(root: Element) -> Iterator[Element]:
         waiting += element.children
 
 
+def _check_numbers(element: Element) -> None:
+    """Refuse numbers that MuJoCo would take, but with which no robot can be simulated."""
+    for field, value in element.values.items():
+        try:
+            numbers = [float(word) for word in value.split()]
+        except ValueError:  # a name, or wrong: then MuJoCo refuses it
+            continue
+        if not all(abs(number) <= LARGEST_NUMBER for number in numbers):
+            reason = Message("robot_file.large", {"field": field, "value": shown(value)})
+            raise Fault(element, reason)
+
+
 class _Model:
     """A model of MuJoCo.
 
@@ -68,6 +91,7 @@ class _Model:
 
     def __init__(self, model: Any, root: Element, options: Options) -> None:
         self._model, self._root, self._options = model, root, options
+        self._way = set[int]()  # bodies from the world to the tip
         self._joints = {model.joint(i).name or f"joint{i}": i for i in range(model.njnt)}
         for name in (*options.lock, *options.pose):
             if name not in self._joints:
@@ -78,19 +102,22 @@ class _Model:
         """The chain, its home and remarks."""
         model = self._model
         tip, place = self._tip()
-        way, body = set[int](), tip
+        body = tip
         while body:
-            way.add(body)
+            self._way.add(body)
             body = int(model.body_parentid[body])
         groups, frames = [Group("world")], [(0, Place())]
         for body in range(1, model.nbody):
             number, before = frames[int(model.body_parentid[body])]
             here = before @ _place(model.body_pos[body], model.body_quat[body])
-            number, here = self._joined(body, body in way, number, here, groups)
+            number, here = self._joined(body, body in self._way, number, here, groups)
             frames.append((number, here))
             inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
             inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
             groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
+        for geom in range(model.ngeom):
+            number, here = frames[int(model.geom_bodyid[geom])]
+            groups[number].shapes += self._shapes(geom, here)
         number, here = frames[tip]
         if number == 0:
             raise Fault(self._root, Message("robot_file.still_tip"))
@@ -99,6 +126,7 @@ class _Model:
             bodies=tuple(group.body() for group in groups[1:]),
             tip=here.translation,
             facing=here.rotation[:, 2],
+            base=tuple(groups[0].shapes),
         )
         return FileChain(chain=chain, home=self._home(), remarks=tuple(self._remarks()))
 
@@ -113,7 +141,8 @@ class _Model:
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
                 if on_way:
-                    raise Fault(self._root, Message("robot_file.free", {"type": shown(name)}))
+                    reason = Message("robot_file.free", {"type": shown(name)})
+                    raise Fault(self._element(name), reason)
                 continue
             anchor = Place(translation=np.array(model.jnt_pos[i]))
             back = Place(translation=-anchor.translation)
@@ -124,9 +153,19 @@ class _Model:
             frame = Place(aligned(axis))
             groups.append(Group(model.body(body).name, self._joint(i, name), here @ anchor @ frame))
             if len(groups) - 1 > MOST_JOINTS:
-                raise Fault(self._root, Message("robot_file.joints", {"most": MOST_JOINTS}))
+                raise Fault(self._element(name), many_joints(self._moving_names()))
             number, here = len(groups) - 1, Place(frame.rotation.T) @ back
         return number, here
+
+    def _element(self, joint: str) -> Element:
+        """The element of a joint; that of the whole file if it has no name."""
+        named = (each for each in _all(self._root) if each.tag in ("joint", "freejoint"))
+        return next((each for each in named if each.values.get("name") == joint), self._root)
+
+    def _moving_names(self) -> list[str]:
+        """The joints on the way to the tip that are not locked."""
+        on_way = {n: int(self._model.jnt_bodyid[i]) in self._way for n, i in self._joints.items()}
+        return [name for name, on in on_way.items() if on and name not in self._options.lock]
 
     def _joint(self, i: int, name: str) -> Joint:
         model = self._model
@@ -134,14 +173,24 @@ class _Model:
         low, high = -math.inf, math.inf
         if model.jnt_limited[i]:
             low, high = (float(end) - reference for end in model.jnt_range[i])
+        written = [float(end) for end in model.jnt_range[i]]
+        if written[0] > written[1]:  # MuJoCo takes them for no limits
+            low, high = (f"{end:g}" for end in written)
+            reason = Message("robot_file.limits", {"low": low, "high": high})
+            raise Fault(self._element(name), reason)
+        damping = float(np.ravel(model.dof_damping[dof])[0])
+        armature = float(model.dof_armature[dof])
+        for field, value in {"damping": damping, "armature": armature}.items():
+            if value < 0:
+                raise Fault(self._element(name), Message("robot_file.negative", {"field": field}))
         return Joint(
             name=name,
             slides=int(model.jnt_type[i]) == SLIDE,
             low=low,
             high=high,
             effort=self._effort(i),
-            damping=float(np.ravel(model.dof_damping[dof])[0]),
-            armature=float(model.dof_armature[dof]) + self._options.armature,
+            damping=damping,
+            armature=armature + self._options.armature,
         )
 
     def _effort(self, i: int) -> float:
@@ -161,6 +210,41 @@ class _Model:
         options, at = self._options, int(self._model.jnt_qposadr[i])
         reference = float(self._model.qpos0[at])
         return options.lock.get(name, options.pose.get(name, reference)) - reference
+
+    def _shapes(self, geom: int, body: Place) -> Iterator[Shape]:
+        """What is drawn of a geom: nothing of planes, height fields and what is invisible."""
+        model, kind = self._model, int(self._model.geom_type[geom])
+        if model.geom_group[geom] >= HIDDEN or not model.geom_rgba[geom][3]:
+            return
+        a, b, c = (float(x) for x in model.geom_size[geom])
+        sizes = {
+            SPHERE: ("sphere", (a, a, a)),
+            ELLIPSOID: ("sphere", (a, b, c)),
+            CAPSULE: ("capsule", (a, a, 2 * b)),
+            CYLINDER: ("cylinder", (a, a, 2 * b)),
+            BOX: ("box", (2 * a, 2 * b, 2 * c)),
+            MESH: ("mesh", (1.0, 1.0, 1.0)),
+        }
+        if kind not in sizes:
+            return
+        name, size = sizes[kind]
+        here = body @ _place(model.geom_pos[geom], model.geom_quat[geom])
+        yield Shape(
+            kind=name,
+            file="",
+            size=size,
+            rotation=here.rotation,
+            translation=here.translation,
+            triangles=self._triangles(int(model.geom_dataid[geom])) if kind == MESH else None,
+        )
+
+    def _triangles(self, mesh: int) -> tuple[Array, np.ndarray]:
+        """Vertices and triangles of a mesh, in the frame that MuJoCo has given it."""
+        model = self._model
+        first, count = int(model.mesh_vertadr[mesh]), int(model.mesh_vertnum[mesh])
+        face, faces = int(model.mesh_faceadr[mesh]), int(model.mesh_facenum[mesh])
+        vertices = np.array(model.mesh_vert[first : first + count], dtype=float)
+        return vertices, np.array(model.mesh_face[face : face + faces])
 
     def _home(self) -> dict[str, float]:
         """Coordinates of the joints in the keyframe."""

@@ -9,8 +9,8 @@ the body's frame: its mass m, the first moment m c, and the inertia
 
 Recursions over the bodies give M(q) and c(q, v):
 
-- the Newton-Euler equations, from the base to the end for motions, and back for forces; gravity is
-  an acceleration g of the base, upward;
+- the Newton-Euler equations, from the base to the end for motions, and back for forces; weights are
+  those of bodies that the base accelerates upward by g;
 - composite bodies, from the end to the base: M_ij is the generalized force at joint j for a unit
   acceleration of joint i, which moves all bodies beyond it as one.
 
@@ -27,6 +27,7 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Point
+from onpath.models.systems.system import GRAVITY
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,11 +57,12 @@ class Shape:
     """What a file draws for a body: a mesh, or a simple solid about its own origin.
 
     Attributes:
-        kind: "mesh", "box", "sphere" or "cylinder", whose axis is z.
-        file: absolute path of a mesh.
-        size: edges of a box; radius, radius and length of a cylinder; radius of a sphere, thrice;
-            scale of a mesh along its axes.
+        kind: "mesh", "box", "sphere", "cylinder" or "capsule", whose axis is z.
+        file: absolute path of a mesh; empty if its triangles are given.
+        size: edges of a box; radius, radius and length of a cylinder, and of the cylinder of a
+            capsule; radii of a sphere or ellipsoid; scale of a mesh along its axes.
         rotation, translation: of the shape in its body's frame, (3, 3) and (3,), [m].
+        triangles: vertices of a mesh, (k, 3), [m], and of each triangle the numbers of its three.
     """
 
     kind: str
@@ -68,6 +70,7 @@ class Shape:
     size: tuple[float, float, float]
     rotation: Array
     translation: Array
+    triangles: tuple[Array, np.ndarray] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -254,10 +257,10 @@ class Inertia:
         return Inertia(self.mass, moment + self.mass * step, ca.tril2symm(ca.tril(inertia)))
 
 
-def chain_inertias(chain: Chain, payload: ca.SX) -> list[Inertia]:
-    """The sums of mass of each body, with a payload at the end-point, [kg]."""
+def chain_inertias(chain: Chain, factor: ca.SX, payload: ca.SX) -> list[Inertia]:
+    """The sums of mass of each body times a factor, with a payload at the end-point, [kg]."""
     bodies = [
-        Inertia(ca.SX(body.mass), ca.SX(_sparse(body.moment)), ca.SX(_sparse(body.inertia)))
+        Inertia(factor * body.mass, factor * _sparse(body.moment), factor * _sparse(body.inertia))
         for body in chain.bodies
     ]
     tip = _sparse(chain.tip)
@@ -266,8 +269,8 @@ def chain_inertias(chain: Chain, payload: ca.SX) -> list[Inertia]:
     return bodies
 
 
-def mass_matrix(chain: Chain, frames: ChainFrames, inertias: list[Inertia]) -> ca.SX:
-    """M(q) by composite bodies, with the armatures on its diagonal, (n, n)."""
+def mass_matrix(chain: Chain, frames: ChainFrames, inertias: list[Inertia], factor: ca.SX) -> ca.SX:
+    """M(q) by composite bodies, with the armatures times a factor on its diagonal, (n, n)."""
     n = chain.n
     mass = ca.SX(ca.DM.zeros(n, n))
     beyond: Inertia | None = None
@@ -278,7 +281,7 @@ def mass_matrix(chain: Chain, frames: ChainFrames, inertias: list[Inertia]) -> c
             force, torque = here.mass * AXIS, ca.cross(here.moment, ca.SX(AXIS))
         else:
             force, torque = ca.cross(ca.SX(AXIS), here.moment), here.inertia[:, 2]
-        mass[i, i] = (force if joint.slides else torque)[2] + joint.armature
+        mass[i, i] = (force if joint.slides else torque)[2] + factor * joint.armature
         for j in reversed(range(i)):
             force = frames.turns[j + 1] @ force
             torque = frames.turns[j + 1] @ torque + ca.cross(frames.steps[j + 1], force)
@@ -288,30 +291,32 @@ def mass_matrix(chain: Chain, frames: ChainFrames, inertias: list[Inertia]) -> c
 
 
 def bias_forces(
-    chain: Chain, frames: ChainFrames, inertias: list[Inertia], v: ca.SX, gravity: ca.SX
+    chain: Chain, frames: ChainFrames, inertias: list[Inertia], weights: list[Inertia], v: ca.SX
 ) -> ca.SX:
     """Coriolis, centrifugal and gravity forces c(q, v) by Newton and Euler, (n, 1).
 
     Args:
-        gravity: g, (1, 1), [m/s²].
+        inertias: sums of mass that resist acceleration.
+        weights: sums of mass that gravity pulls; the same ones, unless a model has an error.
     """
-    turning = spinning = ca.SX(3, 1)
-    moving = ca.SX(AXIS) * gravity
+    moving = turning = spinning = ca.SX(3, 1)
+    upward = ca.SX(AXIS) * GRAVITY
     forces, torques = list[ca.SX](), list[ca.SX]()
     for i, rate in enumerate(ca.vertsplit(v)):
         back, step = frames.turns[i].T, frames.steps[i]
         moving = back @ (
             moving + ca.cross(spinning, step) + ca.cross(turning, ca.cross(turning, step))
         )
-        turning, spinning = back @ turning, back @ spinning
+        turning, spinning, upward = back @ turning, back @ spinning, back @ upward
         if chain.joints[i].slides:
             moving = moving + 2 * ca.cross(turning, AXIS * rate)
         else:
             spinning = spinning + ca.cross(turning, AXIS * rate)
             turning = turning + AXIS * rate
-        body = inertias[i]
+        body, weight = inertias[i], weights[i]
         forces.append(
             body.mass * moving
+            + weight.mass * upward
             + ca.cross(spinning, body.moment)
             + ca.cross(turning, ca.cross(turning, body.moment))
         )
@@ -319,6 +324,7 @@ def bias_forces(
             body.inertia @ spinning
             + ca.cross(turning, body.inertia @ turning)
             + ca.cross(body.moment, moving)
+            + ca.cross(weight.moment, upward)
         )
     result = ca.SX(chain.n, 1)
     for i in reversed(range(chain.n)):
@@ -332,12 +338,12 @@ def bias_forces(
     return ca.densify(result)
 
 
-def height_of_mass(frames: ChainFrames, inertias: list[Inertia]) -> ca.SX:
-    """Σ m z over the bodies, (1, 1), [kg m]; times g, it is the potential energy."""
+def potential_energy(frames: ChainFrames, weights: list[Inertia]) -> ca.SX:
+    """V(q) = g Σ m z over the bodies, (1, 1), [J]."""
     total = ca.SX(0)
-    for body, rotation, origin in zip(inertias, frames.rotations, frames.origins, strict=True):
+    for body, rotation, origin in zip(weights, frames.rotations, frames.origins, strict=True):
         total += body.mass * origin[2] + rotation[2, :] @ body.moment
-    return total
+    return GRAVITY * total
 
 
 def solved(matrix: ca.SX, rhs: ca.SX) -> ca.SX:

@@ -12,6 +12,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 
+from onpath.assets import asset_path
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
 from onpath.models.systems.chain_robot import (
@@ -75,6 +76,22 @@ def read_robot(file: Path, options: Options) -> RobotFile:
     said = (sorted(options.lock.items()), sorted(options.pose.items()), options.armature)
     digest = hashlib.sha256(data + repr((options.tip, *said)).encode()).hexdigest()[:8]
     return _made(file, f"{stem}_{digest}", read.chain, {**read.home, **options.pose}, read.remarks)
+
+
+def own_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> RobotEntry:
+    """A robot from a file of this package, whose tests check what `read_robot` checks.
+
+    Args:
+        name: of the URDF file in `assets/robots`, in the catalogue, and of the picture in `assets`.
+        label, text: see `RobotEntry`.
+        pose: at home, for all joints, [rad] or [m].
+    """
+    file = asset_path(f"robots/{name}.urdf")
+    chain = read_urdf(file, root_of(file_bytes(file)), Options()).chain
+    home = tuple(pose[joint.name] for joint in chain.joints)
+    axes = output_axes(chain)
+    source = ChainSource(name=name, label=label, text=text, chain=chain, home=home, axes=axes)
+    return replace(chain_entry(source), picture=f"{name}.png")
 
 
 def _check(options: Options) -> None:
@@ -158,8 +175,8 @@ def _substeps(source: ChainSource) -> int:
     numbers = np.array([1.0, 0.0, 0.0] + [0.0] * (system.parameters.numel() - 3))
     found = Rows([system.q, system.parameters], ca.vec(system.mass))(q, numbers)
     masses = found.reshape(-1, chain.n, chain.n)
-    least = np.linalg.eigvalsh(masses)
-    if not (least[:, 0] > 1e-9 * least[:, -1]).all():
+    least = np.linalg.eigvalsh(np.nan_to_num(masses))
+    if not (np.isfinite(masses).all() and (least[:, 0] > 1e-9 * least[:, -1]).all()):
         raise CodedError("robot_file.massless", joint=_light(chain, masses))
     damping = np.array([joint.damping for joint in chain.joints])
 

@@ -16,12 +16,21 @@ import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError, Message
-from onpath.models.systems.file_chain import FileChain, Group, Options, Place, aligned, exact, turn
+from onpath.models.systems.file_chain import (
+    MOST_JOINTS,
+    FileChain,
+    Group,
+    Options,
+    Place,
+    aligned,
+    exact,
+    many_joints,
+    turn,
+)
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.xml_elements import Element, Fault, shown
 
 MOST_LINKS = 64
-MOST_JOINTS = 8  # that move on the way to the tip
 MESHES = (".stl", ".obj", ".dae")
 LARGEST_MESH = 20_000_000  # [B]
 TURNING, SLIDING, STILL = ("revolute", "continuous"), ("prismatic",), ("fixed",)
@@ -147,7 +156,7 @@ class _Tree:
                 frame = Place(aligned(_axis(joint)))
                 groups.append(Group(child, moving, origin @ frame))
                 if len(groups) - 1 > MOST_JOINTS:
-                    raise Fault(joint, Message("robot_file.joints", {"most": MOST_JOINTS}))
+                    raise Fault(joint, many_joints(self._moving_names()))
                 waiting.append((child, len(groups) - 1, Place(frame.rotation.T)))
         return Chain(
             bodies=tuple(group.body() for group in groups[1:]),
@@ -155,6 +164,12 @@ class _Tree:
             facing=tip.rotation[:, 2],
             base=tuple(groups[0].shapes),
         )
+
+    def _moving_names(self) -> list[str]:
+        """The joints on the way to the tip that are not fixed or locked, as in the file."""
+        way = [joint for name, joint in self._joints.items() if name in self._way]
+        moving = [joint.name() for joint in way if joint.text("type") not in STILL]
+        return [name for name in moving if name not in self._options.lock]
 
     def _moving(self, joint: Element) -> Joint | None:
         """The joint if it is on the way to the tip and moves; None if it is locked."""

@@ -16,7 +16,7 @@ MOST_ELEMENTS = 20_000
 DEEPEST = 30  # elements within each other
 LARGEST_NUMBER = 1e9  # [SI]
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
-_NAME = re.compile(r"[A-Za-z0-9_.-]{1,64}")
+_NAME = re.compile(r"[A-Za-z0-9_.-]{1,128}")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,10 +128,10 @@ class Fault(Exception):
         )
 
 
-def shown(text: str) -> str:
-    """A text of a file as it may appear in a message."""
-    plain = "".join(c if c.isprintable() else "?" for c in text[:40])
-    return plain + ("…" if len(text) > 40 else "")
+def shown(text: str, most: int = 40) -> str:
+    """A text of a file as it may appear in a message, cut after `most` characters."""
+    plain = "".join(c if c.isprintable() else "?" for c in text[:most])
+    return plain + ("…" if len(text) > most else "")
 
 
 def file_bytes(file: Path) -> bytes:

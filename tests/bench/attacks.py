@@ -21,9 +21,9 @@ from websockets.exceptions import WebSocketException
 from websockets.frames import Opcode
 from websockets.typing import Subprotocol
 
-from onpath.app.page.panels.robot_panel import label_of
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.message_filter import Limits
+from onpath.lessons.labels import robot_label
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
@@ -238,7 +238,7 @@ def pressing(*presses: tuple[str, Any]) -> Misuse:
     return lambda tab: press(tab, *presses)
 
 
-ROBOT_LABELS = [label_of(entry, Words()) for entry in ROBOTS.values()]
+ROBOT_LABELS = [robot_label(name, Words()) for name in ROBOTS]
 FILES = ("CSV", "Picture", "Record of my", "Recording")
 ATTACKS: dict[str, Attack] = {
     "recordings": tabs(12, pressing(("Recording", True))),  # D1

@@ -20,7 +20,7 @@ import numpy as np
 from onpath.app.common.chromium import find_browser
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
-from onpath.models.closed_loop.loops import InterpretedLoop, Loop
+from onpath.models.closed_loop.loops import InterpretedLoop, Loop, ManyLoop
 from onpath.models.closed_loop.simulation import (
     FREE,
     first_state,
@@ -28,7 +28,11 @@ from onpath.models.closed_loop.simulation import (
     kind_of,
     settings_vector,
 )
-from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.closed_loop.translated_loop import (
+    most_lanes,
+    translate_batch,
+    translate_loop,
+)
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
@@ -105,7 +109,9 @@ def _yardstick(folder: Path, repeats: int) -> None:
     settings = settings_vector(robot, kernel, parameters, curve, FREE)
     call = [state] * robots, [settings] * robots, [curve.table()] * robots, TICKS
     known = {lanes: reference_loop(kernel, folder, lanes) for lanes in LANES}
-    loops: dict[str, Loop] = {"compiled": translate_loop(kernel)}
+    loops: dict[str, ManyLoop] = {"compiled": translate_loop(kernel)}
+    own = [lanes for lanes in LANES if 1 < lanes <= most_lanes()]
+    loops |= {f"a batch, {lanes} at a time": translate_batch(kernel, lanes) for lanes in own}
     loops |= {f"C, {n} at a time": loop for n, loop in known.items() if loop is not None}
     calls = {name: partial(loop.run_many, *call) for name, loop in loops.items()}
     times = {name: each / robots for name, each in _per_tick(calls, repeats).items()}

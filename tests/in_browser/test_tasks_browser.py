@@ -141,5 +141,5 @@ def test_a_curve_is_drawn_on_the_board(browser: Browser, server: LabServer, touc
     """In a tab of its own: a prediction counts as skipped once a later step has been opened."""
     with opened(browser, server, touch) as hands:
         go_to(hands.tab, "01-path-or-timetable", 1)
-        hands.tab.page.get_by_text("Draw with the mouse or a finger").wait_for()
+        hands.tab.page.get_by_text("Draw on the board with the mouse or a finger").wait_for()
         sketch(hands)

@@ -29,6 +29,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from tests.support.cases import some
 from tests.support.scalar_operations import PAIRS, applied, logging_kernel
+from tests.support.suitable_laws import laws_for
 from tests.support.wasm_runs import rows_in_browser
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ TICKS, CLOSE = 1000, 1e-12
 TYPED = "across = -K1*xi - K2*tanh(dxi); along = min(-K5*(dtheta - speed), 3)"
 CASES = [
     *((robot, law, {}) for robot in ROBOTS for law in NAMES),
-    *(("five_bar", law, {}) for law in LAWS if law not in NAMES),
+    *(("five_bar", law, {}) for law in laws_for() if law not in NAMES),
     ("five_bar", TYPED, {}),
     ("flexible", "path_following", {"law": "composite", "modes": 2}),
     ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 1.0}),

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 from uuid import uuid4
 
 import numpy as np
-from playwright.sync_api import BrowserContext, Locator, Page
+from playwright.sync_api import BrowserContext, ConsoleMessage, Locator, Page
 from viser import ClientHandle
 from viser import _messages as wire
 
@@ -116,8 +116,14 @@ class Tab:
         self.page: Page = context.new_page()
         self.errors: list[str] = []
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.on("console", self._heard)
         address = f"{site or server.address}{path}?{COARSE if draws else COARSER}"
         self._join(lambda: self.page.goto(address))
+
+    def _heard(self, message: ConsoleMessage) -> None:
+        """Note what WebGL refuses to draw; the browser reports it as a warning."""
+        if "GL_INVALID" in message.text:
+            self.errors.append(message.text)
 
     def reload(self) -> None:
         """Reload the page, as F5 does."""

@@ -15,7 +15,7 @@ from playwright.sync_api import Locator
 
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.session import Session
-from onpath.app.page.panels.widgets import label_of
+from onpath.lessons.labels import parameter_label
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT
@@ -69,7 +69,7 @@ class Hands:
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
         """Whether the lab's parameter with a label is near a value."""
         own = self.session.parameters
-        known = {label_of(ENGLISH, name, spec): name for name, spec in specs(own).items()}
+        known = {parameter_label(name, spec, ENGLISH): name for name, spec in specs(own).items()}
         name = known[min((full for full in known if full.startswith(label)), key=len)]
         return abs(value_of(own, name) - value) <= near + 1e-9
 

@@ -12,7 +12,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
-from onpath.models.closed_loop.loops import Loop
+from onpath.models.closed_loop.loops import ManyLoop
 from onpath.models.closed_loop.obstacles import DIRECTIONS, Wall, brake_in
 from onpath.models.closed_loop.simulation import (
     FREE,
@@ -22,7 +22,7 @@ from onpath.models.closed_loop.simulation import (
     pushed,
     settings_vector,
 )
-from onpath.models.closed_loop.translated_loop import translate_loop
+from onpath.models.closed_loop.translated_loop import fastest_batch
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
@@ -65,8 +65,8 @@ class Result:
 
 
 @lru_cache(maxsize=4)
-def _loop(robot: Robot, kind: Kind) -> Loop:
-    return translate_loop(build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip))
+def _loop(robot: Robot, kind: Kind) -> ManyLoop:
+    return fastest_batch(build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip))
 
 
 def parameters_of(name: str, **changes: float | str) -> Parameters:
@@ -83,7 +83,8 @@ def runs_untouched(
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)
     ticks = round(seconds / time_step(parameters))
-    _, rows = loop.run(first_state(robot, layouts, curve, start), settings, curve.table(), ticks)
+    state = first_state(robot, layouts, curve, start)
+    _, (rows,) = loop.run_many([state], [settings], [curve.table()], ticks)
     return fault_in(robot, layouts.log, law, rows, parameters) is None
 
 
@@ -117,9 +118,11 @@ def troubled(
             fault = fault_in(robot, layouts.log, law, own, parameters)
             if fault is not None:
                 faults[i] = t + fault[0] * dt, str(fault[1])
-                continue
-            y = layouts.log.unpack(own)["y"]
-            distance = float(path_distance(robot.frame, curve, y).max())
+        well = [k for k, i in enumerate(alive) if faults[i] is None]
+        y = rows[well][:, :, layouts.log.slices["y"]].reshape(-1, robot.system.p)
+        distances = path_distance(robot.frame, curve, y).reshape(-1, ticks).max(axis=1)
+        for k, distance in zip(well, distances.tolist(), strict=True):
+            i = alive[k]
             if troubles[i].begin <= t < troubles[i].end:
                 off[i] = max(off[i], distance)
             elif t >= troubles[i].end + BACK:
@@ -132,7 +135,7 @@ def _begin(robot: Robot, curve: Curve, theta: float) -> Array:
     return robot.rest(robot.frame.lift(curve.at(np.array(theta))))
 
 
-def _push(robot: Robot, loop: Loop, trouble: Trouble, state: Array, t: float) -> Push:
+def _push(robot: Robot, loop: ManyLoop, trouble: Trouble, state: Array, t: float) -> Push:
     if not trouble.begin <= t < trouble.end:
         return FREE
     fields = loop.layouts.state.unpack(state)

@@ -13,7 +13,8 @@ from onpath.models.closed_loop.kernel import Kernel, build_kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.translated_loop import translate_loop
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.law import PLAN
+from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import FiveBarLinks
@@ -36,11 +37,8 @@ DEFAULTS: dict[str, Any] = {
     "level_centre": (0, 0),
     "level_weights": (1, 1, 0),
     "level_constant": 0.05**2,
-    "clock_gain": 50,
-    "contour_ratio": 0.1,
-    "field_gain": 10,
-    "field_circulation": 30,
-    "field_energy": 0.2,
+    **{name: gain.default for name, gain in OWN_GAINS.items()},
+    "plan": np.zeros(PLAN),
     "torque_limit": 1e3,
     "coulomb": 0,
     "hold_ticks": 1,

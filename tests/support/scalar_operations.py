@@ -45,5 +45,13 @@ def logging_kernel(rows: Sequence[ca.SX], x: ca.SX) -> Kernel:
     still = ca.Function("bases", [x, settings], [ca.DM.ones(TERMS)])
     log = ca.vertcat(*rows)
     advance = ca.Function("advance", [x, settings, values], [x, log, ca.DM.ones(TERMS)])
-    layouts = Layout((("x", x.numel()),)), Layout((("s", 1),)), Layout((("row", len(rows)),))
-    return Kernel(*layouts, x.numel(), TABLE_SHAPE, still, advance)
+    return Kernel(
+        state=Layout((("x", x.numel()),)),
+        settings=Layout((("s", 1),)),
+        log=Layout((("row", len(rows)),)),
+        changed=x.numel(),
+        table_shape=TABLE_SHAPE,
+        law="",
+        basis=still,
+        advance=advance,
+    )

@@ -95,6 +95,12 @@ class FigureChoice:
         robot, followed = self.machine, raised(curve, self.parameters)
         return robot.rest(robot.frame.lift(followed.at(np.array(0.0))))
 
+    @property
+    def planned(self) -> str:
+        """The law whose plan the settings contain, or any law if none has one."""
+        plans = (law for law in self.every_law if law_named(law).plan is not None)
+        return next(plans, self.laws[0])
+
     def settings(self, law: str, curve: Curve, parameters: Parameters | None = None) -> Array:
         """The settings of a side that nothing obstructs."""
         parameters = parameters or self.parameters
@@ -163,15 +169,21 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
         return None
     if rise_of(parameters) or any(path.dimension == 3 for path in figure.paths.values()):
         return "a space curve cannot be changed in a figure"
-    if parameters.across == LEVEL_SET or parameters.at_limit == "slow_down":
+    planned = law_named(figure.planned).plan is not None
+    if parameters.across == LEVEL_SET or parameters.at_limit == "slow_down" or planned:
         return "the law has been adapted to the path as it is"
     return None
 
 
 def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
-    """The parameter of the wanted motion, and the gains that act in one of the laws."""
+    """The parameter of the wanted motion, and the gains that act in one of the laws.
+
+    The speed of a law with a plan is in its plan, which a page cannot compute.
+    """
     task, unused = ("speed", "K4") if parameters.task == "speed" else ("target", "")
     gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gain_names)
+    if any(law_named(law).plan for law in laws) and task == "speed":
+        return tuple(gain for gain in gains if gain != unused)
     return task, *(gain for gain in gains if gain != unused)
 
 
@@ -182,6 +194,8 @@ def _check(figure: FigureChoice) -> None:
     for law in figure.every_law:
         if not law_named(law).suits(robot.system):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
+    if len({law_named(law).plan for law in figure.every_law} - {None}) > 1:
+        raise ValueError("laws: a figure has room for the plan of one law only")
     for name, curve in figure.paths.items():
         try:
             check_path(robot, raised(curve, figure.parameters))

@@ -19,6 +19,7 @@ from onpath.app.exports.standalone.figure_module import (
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.scene.captions import FULL, OFF, RETURNS
+from onpath.lessons.labels import parameter_help, parameter_label, parameter_unit, path_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -174,7 +175,7 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
     place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
     outline = place(robot.frame.lift(path.at(theta)).T).full()
     return {
-        "label": words.get(f"path.{name}", name),
+        "label": path_label(name, words),
         "kind": kind_name(figure, curve),
         "closed": curve.closed,
         "doubts": [each.reason.code for each in ambiguities(path)],
@@ -182,7 +183,7 @@ def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[s
         "grid": grid_of(robot, path.at(path.sample(GRID))).ravel().tolist(),
         "outline": _rounded(outline.T),
         "states": [figure.start(law, curve).tolist() for law in figure.every_law],
-        "settings": figure.settings(figure.laws[0], curve).tolist(),
+        "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if "drag" in figure.controls else [],
         "fit": fit_name(design),
     }
@@ -192,13 +193,12 @@ def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]
     """A slider: its words, its range, and the index of its number in the settings."""
     spec = specs(type(figure.parameters))[name]
     kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
-    unit = words.get(f"parameter.{name}.unit", spec.unit)
     place = kernel.settings.slices.get(name)
     low_on_grid = spec.step * math.ceil(spec.low / spec.step)  # so that 0 is one of the steps
     return {
-        "label": words.get(f"parameter.{name}.label", spec.label),
-        "unit": unit,
-        "help": words.get(f"parameter.{name}.help", spec.help),
+        "label": parameter_label(name, spec, words),
+        "unit": parameter_unit(name, spec, words),
+        "help": parameter_help(name, spec, words),
         "low": low_on_grid if spec.low < 0 else spec.low,
         "high": spec.high,
         "step": spec.step,

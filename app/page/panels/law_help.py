@@ -14,7 +14,7 @@ from onpath.models.control.laws.registry import LAWS
 
 
 def law_help(laws: Iterable[str], spatial: bool, own_first: bool, words: Words) -> str:
-    """What each law does, what it is good at, where it fails and where it comes from.
+    """What each law does, its strength and weakness, what its authors would say, and its source.
 
     Args:
         laws: names in the registry.
@@ -27,6 +27,7 @@ def law_help(laws: Iterable[str], spatial: bool, own_first: bool, words: Words) 
             law_text(name, words),
             words.get(f"law.{name}.good", LAWS[name].good),
             words.get(f"law.{name}.limits", LAWS[name].limits),
+            words.get(f"law.{name}.objection", LAWS[name].objection),
             words("laws.source", source=LAWS[name].source),
         )
         for name in laws

@@ -16,13 +16,12 @@ from onpath.app.page.panels.widgets import (
     ParameterWidgets,
     Post,
     add_buttons,
-    help_of,
-    label_of,
     note,
     on_press,
     on_user_update,
     refused,
 )
+from onpath.lessons.labels import parameter_heading, parameter_help, path_label
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
 from onpath.models.control.settable import specs
@@ -39,7 +38,7 @@ class PathChoice:
     """Selects the preset path and, for robots that follow space curves, how far it rises."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        self._shown = {name: words.get(f"path.{name}", name) for name in presets()}
+        self._shown = {name: path_label(name, words) for name in presets()}
         if isinstance(robot_of(first).frame, SlantedPlane):
             self._shown["circle"] = words("design.slanted_circle")
         self._custom = words("design.own")
@@ -129,12 +128,12 @@ class PathPanel:
         for name in ("b", "d", "centre"):
             spec = known[name]
             box = gui.add_number(
-                label_of(words, name, spec) + (f" [{spec.unit}]" if spec.unit else ""),
+                parameter_heading(name, spec, words),
                 float(first.parameters[name]),
                 min=spec.low,
                 max=spec.high,
                 step=spec.step,
-                hint=help_of(words, name, spec),
+                hint=parameter_help(name, spec, words),
             )
             on_user_update(box, lambda value, name=name: post(c.SetParameter(name, value)))
             self._plane[name] = box

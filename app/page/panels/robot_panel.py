@@ -12,8 +12,9 @@ from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, on_press
+from onpath.lessons.labels import robot_label
 from onpath.lessons.words import Words
-from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.catalogue import ROBOTS
 
 
 class RobotPanel:
@@ -27,7 +28,7 @@ class RobotPanel:
             self._words("robots.button"),
             icon=viser.Icon.ROBOT,
             color="gray",
-            hint=self._words("robots.hint", robot=label_of(self._chosen, self._words)),
+            hint=self._words("robots.hint", robot=robot_label(self._chosen.name, self._words)),
         )
         on_menu_press(button, self._open)
 
@@ -35,7 +36,7 @@ class RobotPanel:
         words = self._words
         with dialog(self._gui, words, words("robots.choose")) as close:
             for entry in ROBOTS.values():
-                label = label_of(entry, words)
+                label = robot_label(entry.name, words)
                 text = words.get(f"machine.{entry.name}.text", entry.text)
                 self._gui.add_html(_card(picture_of(entry), label, text))
                 now = entry is self._chosen
@@ -50,11 +51,6 @@ class RobotPanel:
     def _choose(self, name: str, close: Callable[[], None]) -> None:
         close()
         self._post(ChooseRobot(name))
-
-
-def label_of(entry: RobotEntry, words: Words) -> str:
-    """Displayed name of a robot."""
-    return words.get(f"machine.{entry.name}.label", entry.label)
 
 
 def _card(picture: str, label: str, text: str) -> str:

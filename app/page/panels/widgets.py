@@ -14,11 +14,11 @@ from typing_extensions import override
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, SetParameter
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
+from onpath.lessons.labels import option_label, parameter_heading, parameter_help, parameter_label
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.parameter_specs import Spec
 
 Post = Callable[[Command], None]
 Option = TypeVar("Option")
@@ -114,21 +114,6 @@ def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
         handle.value = shown
 
 
-def label_of(words: Words, name: str, spec: Spec) -> str:
-    """Displayed label of a parameter."""
-    return words.get(f"parameter.{name}.label", spec.label)
-
-
-def help_of(words: Words, name: str, spec: Spec) -> str:
-    """Help text of a parameter."""
-    return words.get(f"parameter.{name}.help", spec.help)
-
-
-def option_of(words: Words, name: str, option: Any) -> str:
-    """Displayed name of one of a parameter's options."""
-    return words.get(f"parameter.{name}.option.{option}", str(option).replace("_", " "))
-
-
 class ParameterWidgets:
     """Widgets for parameters that post changes and follow the lab's values.
 
@@ -173,22 +158,21 @@ class ParameterWidgets:
 
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
-        options = {option_of(words, name, option): option for option in spec.options}
-        label, hint = label_of(words, name, spec), help_of(words, name, spec)
+        options = {option_label(name, option, words): option for option in spec.options}
+        label, hint = parameter_label(name, spec, words), parameter_help(name, spec, words)
         return add_menu(
             gui, label, options, lambda new: self._change(name, new), shown=shown, hint=hint
         )
 
     def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
-        unit = f" [{words.get(f'parameter.{name}.unit', spec.unit)}]" if spec.unit else ""
         handle = gui.add_slider(
-            label_of(words, name, spec) + unit,
+            parameter_heading(name, spec, words),
             min=spec.low,
             max=spec.high,
             step=spec.step,
             initial_value=shown,
-            hint=help_of(words, name, spec),
+            hint=parameter_help(name, spec, words),
         )
         on_user_update(handle, lambda new: self._change(name, new))
         return handle
@@ -197,7 +181,7 @@ class ParameterWidgets:
         """Value for the widget: the option's name, or a number rounded to the step or finer."""
         spec, value = self._specs[name], parameters[name]
         if spec.options:
-            return option_of(self._words, name, value)
+            return option_label(name, value, self._words)
         return round(float(value), _digits(spec.step))
 
 
@@ -237,7 +221,9 @@ class SwitchedParameter(ParameterWidgets):
         self._name, self._on = name, spec.on
         on = first.parameters[name] != 0
         self._switch = gui.add_checkbox(
-            label_of(words, name, spec), initial_value=on, hint=help_of(words, name, spec)
+            parameter_label(name, spec, words),
+            initial_value=on,
+            hint=parameter_help(name, spec, words),
         )
         super().__init__(gui, words, post, names=[name], first=first)
         self._slider = self._handles[name]

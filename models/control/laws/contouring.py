@@ -173,4 +173,6 @@ LAW = Law(
     good="It is on time and yields along the curve while it is stiff across it, as long as its"
     " error is small.",
     limits="Held back for long it goes far off: its axes are those of a point that has run away.",
+    objection="Its authors mean it for errors that are small against the radius of"
+    " curvature, and would choose the ratio for the machine.",
 )

@@ -35,4 +35,6 @@ LAW = Law(
     good="It takes up the wanted speed sooner than all others that have no timetable.",
     limits="Held back, it still asks for the acceleration of a speed that it does not have, and"
     " leaves the curve.",
+    objection="Its authors would let a planner choose the speed along the path, which is"
+    " given here.",
 )

@@ -9,21 +9,27 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import casadi as ca
 
+from onpath.models.arrays import Array
 from onpath.models.control.place import Place
 from onpath.models.control.poles import Channel
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields
+from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import PlaneCoordinates
 from onpath.models.paths.projection import LocalCurve
 from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import MechanicalSystem
 
 ZERO, ONE = ca.SX(0), ca.SX(1)
+
+PLAN = 40
+"""The most numbers of a plan."""
 
 Memory = tuple[tuple[str, int], ...]
 """Names and sizes of the fields that a law keeps from tick to tick, the same for all robots."""
@@ -129,6 +135,7 @@ class Clock:
             times this.
         ahead: time by which the controller looks ahead, [s].
         memory: the law's own memory, as its last evaluation left it.
+        plan: the numbers of `Law.plan`, (PLAN, 1); 0 where there are none.
     """
 
     theta: ca.SX
@@ -138,6 +145,7 @@ class Clock:
     interval: ca.SX
     ahead: ca.SX
     memory: Fields
+    plan: ca.SX
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,6 +243,7 @@ class Law:
         source: where it comes from.
         good: its strength, in a sentence that a run confirms.
         limits: its weakness, in a sentence that a run confirms.
+        objection: what its authors would object to here, in a sentence.
         command: the law.
         reference: clock -> parameter θ of a further point at which the law needs the path; None if
             it needs the closest point only.
@@ -243,6 +252,8 @@ class Law:
         own_gains: its other gains.
         by_clock: whether its reference point runs by the clock, whatever the robot does.
         memory: what it keeps from tick to tick; all of it is 0 at the start.
+        plan: (robot, parameters, curve) -> at most `PLAN` numbers, computed whenever one of these
+            changes, which may take some 50 ms; None if it needs none.
         square: whether it needs as many motors and outputs as coordinates, n = m = p.
         commands_acceleration: whether it commands y'' rather than torques.
         pace: what determines its speed along the path: "wanted", the wanted speed; "energy", its
@@ -252,7 +263,14 @@ class Law:
             None if that motion has no poles either.
         motors: number of motors that it is made for; None: any.
         spatial: whether it is made for outputs in space, p = 3.
+        robots: names of the systems that it is made for; none: any.
+        stabilizes: whether it also controls coordinates that have no motor, so that nothing can be
+            foreseen of them by the zero dynamics.
         always_integrates: whether it uses the integral even if K3 = 0.
+        origin: file and line of a law of one's own, see `python_law`; None for others. A number of
+            its command that is not finite stops the run, and the message names them.
+        called: makes, for each run, the function that is called between ticks and whose results are
+            the law's memory; None for a law that is compiled.
     """
 
     name: str
@@ -266,6 +284,7 @@ class Law:
     own_gains: tuple[OwnGain, ...] = ()
     by_clock: bool = False
     memory: Memory = ()
+    plan: Callable[[Robot, Parameters, Curve], Array] | None = None
     square: bool = False
     commands_acceleration: bool = True
     pace: Literal["wanted", "energy", "free", "none"] = "wanted"
@@ -273,9 +292,14 @@ class Law:
     channels: Callable[[Parameters, Place], tuple[Channel, Channel]] | None = None
     motors: int | None = None
     spatial: bool = False
+    robots: tuple[str, ...] = ()
+    stabilizes: bool = False
     always_integrates: bool = False
     good: str = ""
     limits: str = ""
+    origin: tuple[str, int] | None = None
+    called: Callable[[], Callable[..., Any]] | None = None
+    objection: str = ""
 
     @property
     def gain_names(self) -> tuple[str, ...]:
@@ -289,6 +313,8 @@ class Law:
 
     def suits(self, system: MechanicalSystem) -> bool:
         """Whether the law can be used with a robot."""
+        if self.robots and system.name not in self.robots:
+            return False
         if (self.spatial and system.p != 3) or self.motors not in (None, system.m):
             return False
         return not self.square or system.n == system.m == system.p

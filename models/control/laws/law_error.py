@@ -13,7 +13,7 @@ from onpath.models.errors import CodedError
 LONGEST = 300  # characters of the error itself
 
 
-def law_error(name: str, error: Exception, function: Callable[..., Any]) -> CodedError:
+def law_error(name: str, error: BaseException, function: Callable[..., Any]) -> CodedError:
     """A message with the law's name, the error, and the line of the law's file that led to it.
 
     Args:
@@ -27,7 +27,7 @@ def law_error(name: str, error: Exception, function: Callable[..., Any]) -> Code
     return error_in(name, error, code.co_filename, code.co_firstlineno)
 
 
-def error_in(name: str, error: Exception, file: str, line: int = 1) -> CodedError:
+def error_in(name: str, error: BaseException, file: str, line: int = 1) -> CodedError:
     """The message of `law_error`, with the last line of a file in the error's traceback.
 
     Args:

@@ -166,4 +166,6 @@ LAW = Law(
     good="Held back and let go, it stays on the curve and goes on at the wanted speed without"
     " haste.",
     limits="Time that is lost stays lost: after the brake it is late by as long as it was held.",
+    objection="Its authors bound neither the integral nor the distance from which (16)"
+    " leads back, as is done here.",
 )

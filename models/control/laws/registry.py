@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from pkgutil import iter_modules
@@ -13,6 +15,7 @@ from onpath.models.control.laws.law_error import error_in
 from onpath.models.control.laws.own import is_text, own_law, tidy
 from onpath.models.control.laws.path_following import LAW as PATH_FOLLOWING
 from onpath.models.control.laws.trajectory_tracking import LAW as TRAJECTORY_TRACKING
+from onpath.models.errors import CodedError
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import checked, unknown_name
 from onpath.models.systems.parameters import declared
@@ -62,6 +65,41 @@ def law_named(name: str) -> Law:
     return LAWS[name]
 
 
+def add_law(law: Law) -> Law:
+    """Add a law of one's own, which its name then finds; a second law of a name gets a number.
+
+    In a lab, call it before the server listens: pages expect that the laws stay the same.
+
+    Returns:
+        The law, with the name that it has got.
+
+    Raises:
+        CodedError: a law of OnPath has this name.
+        ValueError: a gain has the name of another, or a bad one.
+    """
+    base, number = law.name, 1
+    if base in _FOUND or is_text(base):
+        raise CodedError("error.law_same_name", law=base)
+    while (known := LAWS.get(law.name)) is not None:
+        if known == law:
+            return known
+        number += 1
+        law = replace(law, name=f"{base}_{number}")
+    versions = {base, *_versions(base)}
+    others = [each for each in LAWS.values() if each.name not in versions]
+    taken = {gain.name for other in others for gain in other.own_gains}
+    if twice := taken & {gain.name for gain in law.own_gains}:
+        raise ValueError(f"{law.name}: its gain {min(twice)!r} is one of another law, too")
+    OWN_GAINS.update(gains_of([law]))
+    LAWS[law.name] = law
+    return law
+
+
+def _versions(base: str) -> list[str]:
+    """Names of the further laws that have been added under a name."""
+    return [name for name in LAWS if re.fullmatch(re.escape(base) + r"_\d+", name)]
+
+
 def law_name(text: str) -> str:
     """The name of a law that a user wants: one of the registry, or a typed law on one line.
 
@@ -95,6 +133,7 @@ def gains_of(laws: Iterable[Law]) -> dict[str, OwnGain]:
 
 
 LAWS = found_laws()
+_FOUND = frozenset(LAWS)
 NAMES = (TRAJECTORY_TRACKING.name, PATH_FOLLOWING.name)
 """The two laws of a new lab, which the paper's experiments compare."""
 SHARED_GAINS = ("K1", "K2", "K3", "K4", "K5")

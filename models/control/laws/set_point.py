@@ -36,4 +36,5 @@ LAW = Law(
     linear=True,
     good="It reaches the target and stays there, wherever it begins.",
     limits="It leaves the curve on its way, because it takes the straight one.",
+    objection="Nobody proposes it for following a path: it shows what the path adds.",
 )

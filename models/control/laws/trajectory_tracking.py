@@ -50,4 +50,6 @@ LAW = Law(
     linear=True,
     good="It is on time: also after an obstruction it is again where the clock wants it to be.",
     limits="Held back, it does not wait: let go, it leaves the curve to catch up.",
+    objection="Whoever uses it would plan the timetable anew after a release, so that it"
+    " need not catch up.",
 )

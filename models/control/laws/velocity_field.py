@@ -231,4 +231,6 @@ LAW = Law(
     good="Pulled off the curve, it gives the hand less energy than any law that keeps a timetable.",
     limits="It regulates its energy and not its speed: pulled back and let go, it goes on"
     " faster than wanted.",
+    objection="Its authors bound no torque, since in continuous time their flywheel is"
+    " never empty.",
 )

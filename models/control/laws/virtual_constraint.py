@@ -30,6 +30,9 @@ def virtual_constraint(view: View) -> ControlAction:
     are held, it grows with the square of the interval: at 1000 Hz and 0.6 m/s, by 1.4 to 2.1 % in
     20 s on the rigid robots.
 
+    It is no orbital stabilization: no orbit is chosen, and none attracts; see
+    `orbital_stabilization.py`.
+
     Source: virtual holonomic constraints, as in Mettin et al. [7] and Shiriaev et al. [8].
     """
     system, output, q, v = view.system, view.output, view.q, view.v
@@ -74,9 +77,9 @@ def wire_channels(parameters: Parameters, place: Place) -> tuple[Channel, Channe
 
 LAW = Law(
     name="virtual_constraint",
-    label="Virtual constraint",
-    text="Holds the end-point on the curve and leaves it alone along it, like a bead on a wire.",
-    source="Mettin et al. [7], Shiriaev, Perram and Canudas-de Wit [8]",
+    label="Bead on a wire",
+    text="Holds the end-point on the curve by a virtual constraint, and leaves it alone along it.",
+    source="after virtual constraints, Mettin et al. [7], Shiriaev, Perram and Canudas-de Wit [8]",
     command=virtual_constraint,
     aim="theta",
     square=True,
@@ -84,4 +87,6 @@ LAW = Law(
     channels=wire_channels,
     good="It keeps to the curve and leaves the pace to whoever pushes it along.",
     limits="It does not travel by itself: at rest it stays where it is.",
+    objection="Its authors stabilize orbits of robots with fewer motors than joints, which"
+    " a bead on a wire is not.",
 )

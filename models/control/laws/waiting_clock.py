@@ -29,7 +29,9 @@ def waiting_clock(view: View) -> ControlAction:
     K3 integrates the part of e across the path: along the path the clock gives way. The clock runs
     at the rate found by the previous evaluation of the law. μ is `clock_gain`.
 
-    Source: the gradient update law of maneuvering, Skjetne, Fossen and Kokotović, reference [6].
+    It is a simplification of maneuvering; see `maneuvering.py` for what differs.
+
+    Source: after the gradient update law of Skjetne, Fossen and Kokotović, reference [6].
     """
     reference, frame = view.reference, view.frame
     assert reference is not None
@@ -57,7 +59,7 @@ LAW = Law(
     name="waiting_clock",
     label="Waiting clock",
     text="Tracks a point whose clock slows down when the robot falls behind.",
-    source="Skjetne, Fossen and Kokotović, Robust output maneuvering, reference [6]",
+    source="after Skjetne, Fossen and Kokotović, Robust output maneuvering, reference [6]",
     command=waiting_clock,
     reference=waiting_ahead,
     own_gains=(
@@ -74,4 +76,6 @@ LAW = Law(
     good="Held back and let go, it stays as close to the curve as path following.",
     limits="A hand that pulls it away disturbs its clock as well: afterwards it first rushes to"
     " find it again.",
+    objection="The Lyapunov function of its authors also has the velocity in it, as that of"
+    " maneuvering here.",
 )

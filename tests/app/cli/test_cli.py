@@ -20,12 +20,13 @@ from onpath.app.notebook.path_files import path_from
 from onpath.app.notebook.simulate import simulate
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
-from onpath.models.control.laws.registry import LAWS, NAMES
+from onpath.models.control.laws.registry import NAMES
 from onpath.models.control.settable import specs
 from onpath.models.path_files.placing import RADIUS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.checkout import ROOT
 from tests.support.csv_columns import read_csv
+from tests.support.suitable_laws import laws_for
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
 
@@ -66,7 +67,7 @@ def test_one_controller_alone_gives_the_same_numbers_as_beside_another(
 
 
 def test_laws_are_chosen_by_name_in_the_order_given(capsys: pytest.CaptureFixture[str]) -> None:
-    chosen = {"all": list(LAWS), ",".join(reversed(NAMES)): list(reversed(NAMES))}
+    chosen = {"all": laws_for(), ",".join(reversed(NAMES)): list(reversed(NAMES))}
     for text, names in chosen.items():
         assert run_command([*SHORT, "--json", "--law", text]) == 0
         result = json.loads(capsys.readouterr().out)
@@ -124,9 +125,9 @@ def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_
     assert run_command([*SHORT, "--json", "--path", f"@{file} nearest"]) == 0
     said = capsys.readouterr()
     assert "follow the nearest path" in said.err and json.loads(said.out)["laws"]
-    file.write_text("G0 X0 Y0\nG1 X30\nM5\n", "utf-8")
+    file.write_text("G0 X0 Y0\nG1 X30\nG41\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
-    assert f"--path @{file}: line 3, column 1: 'M5' is not read" in capsys.readouterr().err
+    assert f"--path @{file}: line 3, column 1: 'G41' is not read" in capsys.readouterr().err
 
 
 def test_cut_corners_are_told(capsys: pytest.CaptureFixture[str]) -> None:

@@ -15,6 +15,7 @@ import pytest
 import onpath
 from onpath.app.cli.main import run_command
 from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.assets import asset_path
 from onpath.lessons.words import ENGLISH, Words
@@ -208,3 +209,16 @@ def test_sliders_are_those_of_what_acts(
     laws: tuple[str, ...], task: str, expected: list[str]
 ) -> None:
     assert list(chosen("five_bar", laws, CURVES, {"task": task}).sliders) == expected
+
+
+def test_a_figure_has_the_plan_of_its_laws_and_lets_nothing_change_it() -> None:
+    laws, curve = ("trajectory_tracking", "time_optimal_following"), CURVES["circle"]
+    values = {"torque_limit": 0.5}
+    figure = chosen("five_bar", laws, {"circle": curve}, values)
+    assert "drag" not in figure.controls and not {"speed", "torque_limit"} & {*figure.sliders}
+    shown = np.array(figure_data(figure, ENGLISH)["paths"][0]["settings"])
+    assert np.array_equal(shown, figure.settings("time_optimal_following", curve))
+    assert not np.array_equal(shown, figure.settings("trajectory_tracking", curve))
+    for unwanted in ({"controls": ["drag"]}, {"sliders": ["torque_limit"]}, {"sliders": ["speed"]}):
+        with pytest.raises(ValueError, match=r"drag|cannot be changed"):
+            chosen("five_bar", laws, {"circle": curve}, values, **unwanted)  # type: ignore[arg-type]

@@ -24,10 +24,11 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.systems.robots import Robot
 from tests.support.lab import FRAME, assert_sound, do, new_lab, run, states
+from tests.support.suitable_laws import laws_for
 
 WITH_MEMORY = next(name for name, law in LAWS.items() if law.memory)
 ONLY_SQUARE = next(name for name, law in LAWS.items() if law.square)
-OTHERS = [name for name in LAWS if name not in DEFAULT_LAWS.values()]
+OTHERS = [name for name in laws_for() if name not in DEFAULT_LAWS.values()]
 
 
 def change(lab: Lab, side: str, law: str) -> None:
@@ -35,7 +36,7 @@ def change(lab: Lab, side: str, law: str) -> None:
     lab.session.change_law(side, law)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", laws_for())
 @pytest.mark.parametrize("side", SIDES)
 def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
     lab = new_lab(0.5)
@@ -202,7 +203,7 @@ def test_going_on_from_before_a_change_and_undoing_that() -> None:
 def test_the_marker_is_what_the_law_aims_at() -> None:
     lab = new_lab(0.4)
     session = lab.session
-    for law in LAWS:
+    for law in laws_for():
         change(lab, RIGHT, law)
         run(lab, 0.2)
         own = session.runs[RIGHT].shown()[LAWS[law].aim]

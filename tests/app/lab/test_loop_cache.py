@@ -26,11 +26,11 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
 from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.control import speed_limit
-from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.lab import FRAME, do, finish, run, states
 from tests.support.lab import store as store_of_other_tests
+from tests.support.suitable_laws import laws_for
 from tests.support.waiting import wait_for
 
 PATIENCE = 60.0  # [s]
@@ -174,7 +174,7 @@ def some_kinds(most: int) -> list[Kind]:
     flags = ("closed", "level_set", "encoder", "free", "delay", "stiction", "noise")
     every = (
         Kind(law, **dict(zip(flags, chosen, strict=True)))
-        for law in LAWS
+        for law in laws_for()
         for chosen in product((False, True), repeat=len(flags))
     )
     return list(islice(every, most))

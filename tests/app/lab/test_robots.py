@@ -171,7 +171,7 @@ def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
         low, high = (np.array(corner) for corner in (stage.low, stage.high))
         assert (places >= low - 1e-9)[:, [0, 2]].all() and (places <= high + 1e-9)[:, [0, 2]].all()
     view = robot_views(session.robot, session.editor.curve, session.instant())[FOLLOWER]
-    assert view.bars[..., 2].min() > stage.floor
+    assert view.bars[..., 2].min() >= stage.floor  # a base may stand on it
     assert stage.title[2] > view.bars[..., 2].max()
 
 

@@ -11,7 +11,7 @@ from onpath.assets import asset_path
 
 EXAMPLES = {
     "robot_from_file": ("7 joints, from seven_axes.urdf.", "to 100 %"),
-    "posture": ("'posture_stiffness': 0", "mm off"),
+    "posture": ("100 1/s²", "0 1/s²", "mm off"),
 }
 
 

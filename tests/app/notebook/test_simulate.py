@@ -195,7 +195,7 @@ def test_an_invalid_path_is_refused() -> None:
         (lambda: onpath.simulate(path=np.eye(2)), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
         (lambda: onpath.simulate(path=[(0, 1)]), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
         (lambda: onpath.figure("a.html", paths=[[(0, 1)]]), "paths: onpath.through"),  # type: ignore[list-item]
-        (lambda: onpath.simulate(law=lambda view: view), "but not a function"),  # type: ignore[arg-type]
+        (lambda: onpath.simulate(law=3), "but nothing of type int"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)):
             make()
@@ -259,7 +259,7 @@ def test_a_law_that_fails_at_once_is_not_the_best_one() -> None:
         assert runs[law].max_distance == runs[law].distance.max()
 
 
-DOCUMENTED = ("simulate", "figure", "path_files")
+DOCUMENTED = ("simulate", "figure", "identify", "path_files")
 
 
 @pytest.mark.parametrize("module", ["", *(f".app.notebook.{name}" for name in DOCUMENTED)])

@@ -20,12 +20,16 @@ from jinja2 import Environment, nodes
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.page.panels.keys import KEYS, help_text
-from onpath.app.page.panels.robot_panel import label_of as title_of
-from onpath.app.page.panels.widgets import help_of, label_of, option_of
 from onpath.app.page.plots import MORE
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.assets.messages import catalogue, identifier, languages
+from onpath.lessons.labels import (
+    option_label,
+    parameter_help,
+    parameter_label,
+    robot_label,
+)
 from onpath.lessons.record import PLOTS
 from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
@@ -76,7 +80,7 @@ KEYS_MADE = (
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
-    "standalone.hint_",
+    *("standalone.hint_", "arena."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
@@ -268,7 +272,7 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
     assert [name for name in presets() if f"path.{name}" not in known] == []
     laws = [f"law.{name}" for name in LAWS if f"law.{name}.label" in known]
     assert {f"law.{name}" for name in DEFAULT_LAWS.values()} <= {*laws}
-    parts = ("text", "good", "limits")
+    parts = ("text", "good", "limits", "objection")
     assert [law for law in laws for part in parts if f"{law}.{part}" not in known] == []
     own = [
         gain.name for law in LAWS.values() if f"law.{law.name}" in laws for gain in law.own_gains
@@ -286,10 +290,10 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
 @pytest.mark.parametrize("words", [Words(language) for language in languages()])
 def test_every_robot_has_labels_in_every_language(words: Words) -> None:
     for entry in ROBOTS.values():
-        assert title_of(entry, words)
+        assert robot_label(entry.name, words)
         for name, spec in specs(entry.parameters).items():
-            assert label_of(words, name, spec) and help_of(words, name, spec)
-            shown = [option_of(words, name, option) for option in spec.options]
+            assert parameter_label(name, spec, words) and parameter_help(name, spec, words)
+            shown = [option_label(name, option, words) for option in spec.options]
             assert len(set(shown)) == len(shown)
 
 
@@ -324,13 +328,13 @@ def crane(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[RobotEntr
 def test_a_new_robot_speaks_english_until_it_is_translated(crane: RobotEntry) -> None:
     for language in languages():
         words, known = Words(language), specs(crane.parameters)
-        assert title_of(crane, words) == "Crane"
-        assert label_of(words, "rope", known["rope"]) == "Rope"
-        assert help_of(words, "hook", known["hook"]) == "which hook"
-        assert option_of(words, "hook", "heavy") == "heavy"
+        assert robot_label("crane", words) == "Crane"
+        assert parameter_label("rope", known["rope"], words) == "Rope"
+        assert parameter_help("hook", known["hook"], words) == "which hook"
+        assert option_label("hook", "heavy", words) == "heavy"
         test_every_robot_has_labels_in_every_language(words)
         if language in TRANSLATED:
-            assert label_of(words, "K1", known["K1"]) != known["K1"].label  # as every robot
+            assert parameter_label("K1", known["K1"], words) != known["K1"].label  # as every robot
             test_what_stands_in_models_is_translated(words)
             test_no_language_translates_anything_that_does_not_exist(language)
 
@@ -344,7 +348,7 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
         for name, spec in specs(kind).items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
-    parts = ("label", "text", "good", "limits")
+    parts = ("label", "text", "good", "limits", "objection")
     there_are |= {f"law.{name}.{part}" for name in LAWS for part in parts} | {"law.own.label"}
     there_are |= {f"law.own.{value.names[0]}" for value in (*MEANINGS, *SPACE_MEANINGS)}
     only_here = messages(language).keys() - messages("en").keys()
@@ -552,7 +556,11 @@ def test_a_german_lab_speaks_german() -> None:
 
 def test_a_parameter_without_words_has_those_of_its_declaration() -> None:
     spec = specs(FiveBarParameters)["K1"]
-    assert label_of(ENGLISH, "K1", spec) == spec.label != label_of(Words("de"), "K1", spec)
+    assert (
+        parameter_label("K1", spec, ENGLISH)
+        == spec.label
+        != parameter_label("K1", spec, Words("de"))
+    )
 
 
 def test_plots_call_eta_what_the_paper_does() -> None:

@@ -132,3 +132,49 @@ def test_kept_shapes_are_drawn(tmp_path: Path) -> None:
     shapes, _ = read_shapes(chain)
     keep_shapes(chain, shapes)
     assert body_meshes(chain).moving[0] is shapes[1]
+
+
+MJCF = """<mujoco><asset><mesh name="wedge" file="wedge.stl"/></asset><worldbody>
+<geom type="plane" size="1 1 1"/><geom type="box" size=".1 .1 .05" pos="0 0 .05"/>
+<body name="one" pos="0 0 .2"><joint name="j1" axis="0 1 0"/>
+ <geom type="mesh" mesh="wedge" pos=".1 0 0" euler="0 0 30"/>
+ <geom type="sphere" size=".5" group="3"/><geom type="sphere" size=".5" rgba="0 0 0 0"/>
+ <body name="two" pos=".3 0 0"><joint name="j2" axis="0 1 0"/>
+  <geom type="capsule" fromto="0 0 0 .2 0 0" size=".03"/>
+  <geom type="ellipsoid" size=".02 .03 .05" pos=".2 0 0"/>
+  <site name="tip" pos=".25 0 0"/></body></body></worldbody></mujoco>"""
+
+
+def test_a_robot_from_mjcf_is_drawn_as_mujoco_draws_it(tmp_path: Path) -> None:
+    """Vertices of its mesh are where MuJoCo has them, although it moves the mesh to its centre."""
+    api: Any = pytest.importorskip("mujoco")
+    wedge = np.array([[0, 0, 0], [0.1, 0, 0], [0, 0.05, 0], [0, 0, 0.08]])
+    solid = trimesh.Trimesh(wedge, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    solid.export(tmp_path / "wedge.stl")
+    file = tmp_path / "arm.xml"
+    file.write_text(MJCF)
+    entry = read_robot(file, Options(pose={"j1": -1.2, "j2": 1.5})).entry
+    assert entry.source is not None
+    chain, home = entry.source.chain, np.array(entry.source.home)
+    prepare_shapes(chain)
+    meshes = body_meshes(chain)
+    assert meshes.base.vertices.max(axis=0) == pytest.approx([0.1, 0.1, 0.1])
+    assert meshes.floor == pytest.approx(0.0)
+    q = ca.SX.sym("q", chain.n)
+    frames = chain_frames(chain, q)
+    function = ca.Function("frames", [q], [*frames.rotations, *frames.origins])
+    one, two, origin, other = (x.full() for x in function.call([ca.DM(home)]))
+    data = api.MjData(model := api.MjModel.from_xml_path(str(file)))
+    data.qpos[:] = home
+    api.mj_forward(model, data)
+    about = np.pi / 6  # "euler"
+    turn = np.array([[np.cos(about), -np.sin(about)], [np.sin(about), np.cos(about)]])
+    flat = np.column_stack([wedge[:, :2] @ turn.T + [0.1, 0], wedge[:, 2]])
+    expected = flat @ data.body("one").xmat.reshape(3, 3).T + data.body("one").xpos
+    found = meshes.moving[0].vertices @ one.T + origin[:, 0]
+    nearest = np.linalg.norm(found[:, None] - expected, axis=2)
+    assert nearest.min(axis=0).max() < 1e-6 and nearest.min(axis=1).max() < 1e-6
+    end = meshes.moving[1].vertices @ two.T + other[:, 0] - data.body("two").xpos
+    along = end @ data.body("two").xmat.reshape(3, 3)
+    assert along.min(axis=0) == pytest.approx([-0.03, -0.03, -0.05], abs=2e-3)
+    assert along.max(axis=0) == pytest.approx([0.23, 0.03, 0.05], abs=2e-3)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, cast
+
 import numpy as np
 import pytest
 import trimesh
@@ -9,6 +11,7 @@ import trimesh
 from onpath.app.common import palette
 from onpath.app.scene.ground import DARKEST, KEY_LIGHT, PIXELS, RADIUS, painted_ground, shadow
 from onpath.app.scene.meshes import Mesh
+from onpath.app.scene.stage import _put
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -66,3 +69,19 @@ def test_the_ground_fades_to_the_horizon_and_is_darker_beside_a_base(name: str) 
     assert share.max() == pytest.approx(1.0, abs=0.01)
     assert 1.0 - DARKEST - 0.02 < share.min() < 1.0 - 0.8 * DARKEST
     assert len(png) < 60_000
+
+
+def test_the_ground_goes_under_a_robot_that_stands_at_height_0() -> None:
+    """Also after another robot: a position of 0 must be sent."""
+    sent = list[tuple[float, ...]]()
+
+    class Node:
+        def __setattr__(self, name: str, value: np.ndarray) -> None:
+            assert name == "position"
+            sent.append(tuple(value))
+
+    robot = ROBOTS["seven_axes"]
+    stage = stage_of(robot.make(robot.parameters()))
+    _put(cast("Any", Node()), stage)
+    assert stage.floor == 0 and len(set(sent)) == 2
+    assert sent[-1] == pytest.approx((*stage.origins.mean(0)[:2], 0.0))

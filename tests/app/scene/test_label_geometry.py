@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 
-from onpath.app.scene.label_geometry import SIDES, axes_of, label_function
+from onpath.app.scene.label_geometry import IN_FRONT, SIDES, axes_of, label_function
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.rigid_chain import frame_poses
+from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import Robot, RobotEntry
 from tests.support.drawing import drawn
+from tests.support.some_chains import random_arm
 
 ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
 
@@ -83,13 +89,39 @@ def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> No
     robot = entry.make(entry.parameters())
     names = zip(joint_names(robot), robot.system.coordinate_names, strict=True)
     joints = [short for short, name in names if "rad" in name]
-    if robot.chain is not None:  # drawn by its bodies, which have no labels
+    if robot.chain is not None:  # its axes point anywhere: they have names, and no arcs
         joints = []
     assert sorted(coordinates(robot)) == joints
     each = [labels(robot, q)[1] for q in poses(robot)]
     for length in robot.drawing.lengths:
         sizes = [np.linalg.norm(ends[length.end] - ends[length.begin]) for ends in each]
         assert np.ptp(sizes) < 1e-9
+
+
+@pytest.mark.parametrize("text", ["planar_arm", "seven_axes", "random"])
+def test_the_name_of_every_joint_of_a_chain_stands_before_it(text: str, tmp_path: Path) -> None:
+    """In the random one, two axes meet, and one joint slides."""
+    if text == "random":
+        file = tmp_path / "arm.urdf"
+        file.write_text(random_arm(4), "utf-8")
+        entry = read_robot(file, Options()).entry
+    else:
+        entry = ROBOTS[text]
+    robot = entry.make(entry.parameters())
+    chain = robot.chain
+    assert chain is not None
+    q = robot.rest(robot.frame.lift(np.array([[0.01, 0.02], [-0.02, 0.01]])))
+    symbols = ca.SX.sym("q", chain.n)
+    places = ca.Function("origins", [symbols], [frame_poses(chain, symbols)[0]])
+    for each in q:
+        ends = drawn(robot.skeleton, each, 1.0)[0].reshape(-1, 3)
+        found = label_function(robot, len(ends) // 2)
+        points = np.array(found.function(ends.T, robot.place(robot.endpoint(each)))).T
+        at = dict(zip(found.names, points, strict=False))
+        assert ", ".join(found.names).split(", ") == [f"q{'₁₂₃₄₅₆₇'[i]}" for i in range(chain.n)]
+        for i, origin in enumerate(places(each).full().T):
+            (name,) = (name for name in at if f"q{'₁₂₃₄₅₆₇'[i]}" in name)
+            assert at[name] == pytest.approx(origin + [0, -IN_FRONT * robot.reach, 0], abs=1e-12)
 
 
 @ENTRIES

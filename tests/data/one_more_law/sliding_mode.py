@@ -33,4 +33,5 @@ LAW = Law(
     ),
     good="A constant force of less than its reach does not move it off the curve.",
     limits="With a narrow boundary its torque trembles.",
+    objection="Its authors would choose the reach from a bound of the disturbance.",
 )

@@ -126,7 +126,7 @@ def test_from_anywhere_inside_it_comes_back_by_the_level_set(
     begin = made.rest(made.frame.lift(share * curve.at(np.array(angle))))
     state = pulls.first_state(made, loop.layouts, curve, begin)
     own = pulls.settings_vector(made, loop.layouts, parameters, curve, pulls.FREE)
-    _, rows = loop.run(state, own, curve.table(), 1500)
+    _, (rows,) = loop.run_many([state], [own], [curve.table()], 1500)
     assert fault_in(made, loop.layouts.log, FOLLOWER, rows, parameters) is None
     y = loop.layouts.log.unpack(rows)["y"]
     assert path_distance(made.frame, curve, y)[-1] < NEAR
@@ -144,7 +144,8 @@ def test_no_integral_moves_the_balance_by_more_than_its_bound(law: str) -> None:
     full = False
     for _ in range(20):
         push = pulls.Push(rng.uniform(-0.2, 0.2, 2))
-        state, rows = loop.run(state, pulls.pushed(layouts, own, push), curve.table(), 200)
+        given = [state], [pulls.pushed(layouts, own, push)], [curve.table()]
+        (state,), (rows,) = loop.run_many(*given, 200)
         integral = np.linalg.norm(layouts.state.unpack(state)["integral"])
         assert parameters.K3 * integral <= parameters.K1 * INTEGRAL_REACH * (1 + 1e-9)
         used = layouts.log.unpack(rows)["integral_used"]

@@ -76,7 +76,16 @@ def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
     """Commanded y'' of path following at a speed."""
     zero, none = ca.SX(0), ca.SX.zeros(3)
     task = PathReference(zero, zero, speed, ca.SX(1e3), zero)
-    clock = Clock(zero, task, True, ca.SX(DT), ca.SX(DT), ca.SX(DT / 2), {})
+    clock = Clock(
+        theta=zero,
+        task=task,
+        closed=True,
+        dt=ca.SX(DT),
+        interval=ca.SX(DT),
+        ahead=ca.SX(DT / 2),
+        memory={},
+        plan=none,
+    )
     ellipse = LocalCurve(zero, none, none, none, none)
     view = View(
         system=SYSTEM,

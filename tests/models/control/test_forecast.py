@@ -31,6 +31,7 @@ from onpath.models.systems.rod_gantry import PERCUSSION, ROD, RodGantryParameter
 from onpath.models.systems.rod_gantry import ROBOT as GANTRY
 from onpath.models.systems.zero_dynamics import zero_dynamics
 from tests.support.passive_chain import Shape, entry_of, passive_chain
+from tests.support.suitable_laws import laws_for
 
 FOLLOW = "path_following"
 CRITICAL = zero_dynamics(GANTRY.make(RodGantryParameters()).system)
@@ -119,7 +120,7 @@ def test_a_gantry_without_damping_is_not_foretold_to_fall() -> None:
         assert said(GANTRY, RodGantryParameters(alpha=alpha, pivot=0.0)) is None
 
 
-@pytest.mark.parametrize("law", [name for name, law in LAWS.items() if not law.square])
+@pytest.mark.parametrize("law", [n for n in laws_for(CART.name) if not LAWS[n].stabilizes])
 def test_an_upright_pendulum_falls_and_a_hanging_one_does_not(law: str) -> None:
     for pendulum, code in (("hanging", None), ("upright", "forecast.unstable")):
         own = replace(CartParameters(speed=2.0), pendulum=pendulum)
@@ -130,6 +131,14 @@ def test_an_upright_pendulum_falls_and_a_hanging_one_does_not(law: str) -> None:
         moves = bool(np.ptp(log.fields["theta"]) > 0.5)
         fell = bool(np.abs(log.fields["q"][:, 2]).max() > 1.5)
         assert fell == (pendulum == "upright" and moves)
+
+
+def test_of_a_law_that_stabilizes_the_pendulum_nothing_is_foretold() -> None:
+    (law,) = (name for name in laws_for(CART.name) if LAWS[name].stabilizes)
+    for pendulum in ("hanging", "upright"):
+        own = replace(CartParameters(), pendulum=pendulum)
+        assert said(CART, own, law) is None
+        assert ran(CART, own, law, 3.0).stopped_at is None  # though it starts at a steep place
 
 
 def test_a_pendulum_that_cannot_rest_where_it_starts_is_noticed() -> None:

@@ -125,9 +125,12 @@ def test_grid_ends_where_the_reach_does(name: str) -> None:
     assert (np.isfinite(grid.values) == (robot.margin(grid.centres) > IN_REACH)).all()
 
 
-@EVERY
+@pytest.mark.parametrize("name", [n for n in CASES if ROBOTS[n].source is None])
 def test_towards_the_limit_of_the_reach_it_falls_to_zero_as_the_jacobian_does(name: str) -> None:
-    """On a ray from home to where the margin is 0, wherever the base is."""
+    """On a ray from home to where the margin is 0, wherever the base is.
+
+    The inverse of a chain is iterated, and ends before that.
+    """
     parameters = CASES[name]
     robot = ROBOTS[name].make(parameters)
     seen = 0

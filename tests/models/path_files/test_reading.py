@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from onpath.models.arrays import Array
 from onpath.models.errors import CodedError
 from onpath.models.path_files import svg
+from onpath.models.path_files.gcode import strokes_of_gcode
 from onpath.models.path_files.placing import CORNERED, LARGEST, Placing, least_radius
 from onpath.models.path_files.reading import (
     PathFile,
@@ -49,6 +50,20 @@ G1 X30 Y-20 F300
 G3 X30 Y20 I0 J20
 G1 X-40 Y20
 X-40 Y-20
+"""
+MILL = """T1 M6
+G17 G21 G40 G49 G80 G90 G94 G54
+S12000 M3
+M8
+G0 Z5
+G0 X-40 Y-20
+G4 P0.5
+G1 Z-1 F100
+G1 X30 Y-20 F300
+G3 X30 Y20 I0 J20
+G1 X-40 Y20
+X-40 Y-20
+G0 Z5
 """
 TABLE = "x,y\n0.05,0\n0,0.04\n-0.05,0.01\n0,-0.04\n"
 
@@ -136,7 +151,27 @@ TOOLS = {
     "leading zeros": TOOL.replace("G0 ", "G00 ").replace("G1 ", "G01 ").replace("G3", "G03"),
     "framed": f"%\n{TOOL}%\n",
     "Windows": TOOL.replace("\n", "\r\n"),
+    "a mill's": f"O1000\n{MILL}M5 M9\nM30\nno longer G-code\n",
 }
+
+
+def test_words_without_effect_are_told_once() -> None:
+    found = read(TOOLS["a mill's"], "a.nc")
+    told = [str(remark) for remark in found.remarks if remark.code == "say.gcode_words"]
+    words = "T, M6, G17, G40, G49, G80, G94, G54, S, M3, M8, G4, P, F, M5, M9"
+    assert told == [f"These words of the file have no effect on the path: {words}."]
+    silent = re.sub(" F300", "", TOOL)
+    assert "say.gcode_words" not in [remark.code for remark in read(silent, "a.nc").remarks]
+
+
+def test_a_raised_tool_ends_a_line() -> None:
+    """Both lines are drawn with G1, and so is the way between them, above the plate."""
+    text = "G21\nG0 X0 Y0 Z5\n" + "".join(
+        f"G1 X{x} Y0\nG1 Z-1\nX{x + 30}\nY40\nG1 Z5\n" for x in (0, 100)
+    )
+    for part, x in ((2, 0.0), (4, 0.1)):
+        points = strokes_of_gcode(text)[0][part - 1].points
+        np.testing.assert_allclose(points, [[x, 0], [x + 0.03, 0], [x + 0.03, 0.04]], atol=1e-12)
 
 
 @pytest.mark.parametrize("way", TOOLS)
@@ -286,8 +321,11 @@ REFUSED: dict[str, tuple[str | bytes, str, str]] = {
     "two units": ("x_mm,y_m\n1,2\n", "a.csv", "line 1: x and y have different units"),
     "large": ("50,0\n0,40\n-50,0\n", "a.csv", "reaches 50 m from the origin"),
     "two points": ("0.05,0\n0.05,0\n", "a.csv", "at least 3 points"),
-    "lifted": ("G0 X0 Y0\nG1 Z-1 X3\n", "a.nc", "line 2, column 4: 'Z-1' is not read"),
-    "spindle": ("G21\nM3 S1000\n", "a.nc", "line 2, column 1: 'M3'"),
+    "lifted": ("G0 X0 Y0\nG1 Z-1 X3\n", "a.nc", "line 2: the tool changes its height"),
+    "a helix": ("G0 X0 Y0\nG2 X0 Y0 Z-1 I3\n", "a.nc", "line 2: the tool changes its height"),
+    "a subprogram": ("G21\nM98 P2\n", "a.nc", "line 2, column 1: 'M98'"),
+    "a pause of X seconds": ("G0 X1\nG4 X3\n", "a.nc", "line 2: G4, X contradict"),
+    "another offset": ("G92 X0 Y0\n", "a.nc", "line 1, column 1: 'G92'"),
     "compensated": ("G21\nG41 X3\n", "a.nc", "line 2, column 1: 'G41'"),
     "a bare letter": ("G1 X\n", "a.nc", "line 1, column 4: 'X'"),
     "no motion": ("X3 Y4\n", "a.nc", "line 1: no G0 to G3"),
@@ -372,7 +410,7 @@ FILES = {
 PIECES = st.sampled_from(
     ["\x00", "\n", "\r", ",", ";", "\t", " ", '"', "'", "<", ">", "/", "&", "&a;", "<g>", "x"]
     + ["<!DOCTYPE x>", "nan", "inf", "1e999", "-", "+", ".", "e", "9" * 400, "sep=|", "%", "(", ")"]
-    + ["M", "L 1 1", "A 0 0 0 0 0 1 1", "c", "G2", "G91", "X", "R0", "Z1"]
+    + ["M", "L 1 1", "A 0 0 0 0 0 1 1", "c", "G2", "G91", "X", "R0", "Z1", "M3", "G4", "M30", "O1"]
     + ["é", "\ufeff", "\u2212", "\u0663"]
 )
 

@@ -10,11 +10,11 @@ import pytest
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.simulation import check_level_set
 from onpath.models.closed_loop.trajectory import Trajectory
-from onpath.models.control.laws.registry import LAWS
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.crossing import FOLLOWING, TRACKING, crossing_runs, jumps, planned
 from onpath.models.studies.experiments import Experiment, on_path, run
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.suitable_laws import laws_for
 
 EIGHT = presets()["figure of eight"].curve
 CROSSING = np.pi / 2
@@ -46,7 +46,7 @@ def test_of_three_ways_only_the_global_search_jumps_to_the_other_strand() -> Non
 
 
 def test_without_noise_no_law_stops_and_none_leaves_its_strand_in_passing() -> None:
-    for law in LAWS:
+    for law in laws_for():
         trajectory = run(quiet(duration=3.0), law)
         assert trajectory.stopped_at is None and steps(trajectory).max() < 0.05, law
 

@@ -133,6 +133,8 @@ def test_many_joints_must_be_locked(tmp_path: Path) -> None:
     said = refused(tmp_path, long, Options()).message.arguments
     assert isinstance(reason := said["reason"], Message) and reason.code == "robot_file.joints"
     assert said["element"] == "joint joint9"
+    names = ", ".join(f"joint{i}" for i in range(1, 10))
+    assert f"{names}. Hold some of them with --lock joint=value" in str(reason)
     lock = {f"joint{i}": 0.3 for i in range(4, 10)}
     assert read_robot(tmp_path / "arm.urdf", Options(lock=lock)).circle >= 0.05
 
@@ -226,6 +228,55 @@ def test_a_mangled_file_is_read_or_refused(tmp_path: Path, data: bytes) -> None:
     finally:
         assert tracemalloc.get_traced_memory()[1] < 30e6
         tracemalloc.stop()
+
+
+MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="link1" pos="0 0 0.17">
+<inertial pos="0.075 0 0" mass="0.6" diaginertia="0.004 0.005 0.005"/>
+<joint name="joint1" axis="0 -1 0" range="-3 3" damping="0.02" armature="0.01"/>
+<body name="link2" pos="0.15 0 0"><joint name="joint2" axis="0 -1 0" damping="0.01"/>
+<geom type="capsule" fromto="0 0 0 0.22 0 0" size="0.02"/>
+<site name="tip" pos="0.22 0 0"/></body></body></worldbody></mujoco>
+"""
+STRANGE = {
+    "mass": ('mass="0.6"', 'mass="nan"', "line 2, inertial: mass nan"),
+    "place": ('pos="0.15 0 0"', 'pos="0.15 1e308 0"', "line 4, body link2: pos 0.15 1e308 0"),
+    "damping": ('damping="0.01"', 'damping="-1"', "line 4, joint joint2: damping"),
+    "include": ("<worldbody>", '<include file="a.xml"/><worldbody>', "line 1, include"),
+    "range": ('range="-3 3"', 'range="3 -3"', "line 3, joint joint1: the lower limit 3"),
+    "kind": ('name="joint2"', 'name="joint2" type="ball"', "line 4, joint joint2"),
+}
+
+
+@pytest.mark.parametrize("case", STRANGE)
+def test_what_is_wrong_in_an_mjcf_file_is_named_with_its_line(tmp_path: Path, case: str) -> None:
+    pytest.importorskip("mujoco")
+    old, new, words = STRANGE[case]
+    assert words in str(refused(tmp_path, MJCF.replace(old, new), Options()))
+
+
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=60
+)
+@given(st.data())
+def test_a_mangled_mjcf_file_is_a_robot_or_refused(tmp_path: Path, data: st.DataObject) -> None:
+    """Whatever MuJoCo makes of it: one sentence in both languages, or a robot."""
+    pytest.importorskip("mujoco")
+    text, numbers = MJCF, st.sampled_from(["0", "-1", "nan", "1e308", "1e9", "1e-9", "3", "a"])
+    for _ in range(data.draw(st.integers(1, 3))):
+        found = list(re.finditer(r"-?\d[\d.e-]*(?=[\" ])", text))
+        at = data.draw(st.sampled_from(found)) if found else None
+        if at is not None and data.draw(st.booleans()):
+            text = text[: at.start()] + data.draw(numbers) + text[at.end() :]
+        else:
+            a = data.draw(st.integers(0, len(text)))
+            b = a + data.draw(st.sampled_from([0, 1, 5, 40, 200]))
+            text = text[:a] + data.draw(st.one_of(WORDS, st.just(2 * text[a:b]))) + text[b:]
+    file = tmp_path / "arm.xml"
+    file.write_bytes(text.encode())
+    try:
+        read_robot(file, Options(tip="tip", pose={"joint1": 1.2, "joint2": -1.4}))
+    except CodedError as error:
+        assert all(error.message.text(language).count("\n") == 0 for language in ("en", "de"))
 
 
 NUMBERS = st.sampled_from(["0", "-1", "1e9", "1e-9", "-1e9", "3.14159", "1e-300", "1000"])

@@ -34,6 +34,7 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from onpath.models.systems.system import coriolis
 from tests.support.rig import jacobian
+from tests.support.suitable_laws import laws_for
 
 CIRCLE = circle(0.05)
 PATHS = (CIRCLE, ellipse((0.06, 0.035)))
@@ -113,7 +114,7 @@ def test_every_law_says_what_it_is_and_where_it_comes_from(law: Any) -> None:
 
 
 @pytest.mark.parametrize("curve", PATHS, ids=("circle", "ellipse"))
-@pytest.mark.parametrize("law", [n for n, law in LAWS.items() if law.pace in ("wanted", "energy")])
+@pytest.mark.parametrize("law", [n for n in laws_for() if LAWS[n].pace in ("wanted", "energy")])
 def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
     law: str, curve: Curve
 ) -> None:
@@ -125,7 +126,7 @@ def test_undisturbed_every_law_ends_up_on_the_path_at_the_wanted_speed(
         assert log["theta_rate"].mean() == pytest.approx(side.parameters.speed, rel=5e-3)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", laws_for())
 def test_the_compiled_loop_is_the_interpreted_one_bit_by_bit(law: str) -> None:
     side = Side(law, torque_limit=1.0)
     for push in (FREE, side.brake(), Push(hand=np.array([0.03, 0.02]))):
@@ -196,6 +197,36 @@ def test_a_waiting_clock_does_not_leave_the_path_invariant() -> None:
         distances[law] = float(side.distance(side.run(1.0)).max())
     assert distances["path_following"] < NEAR
     assert distances["waiting_clock"] > 3e-4
+
+
+def test_the_function_of_maneuvering_falls_as_its_authors_say() -> None:
+    """V = P11 |e|² + 2 P12 e · ε + P22 |ε|² and V' <= -K1 K2 |e|² - K2 |ε|², without a force."""
+    k1, k2, speed = 400.0, 40.0, 2 * np.pi
+    for begin in (0.0, 2.0, 4.5):
+        side = moving(Side("maneuvering"), begin, -3.0)
+        side.put(theta_ref=begin + 0.4)
+        log = side.run(0.5)
+        y, theta = log["y"], log["theta_ref"][:, 0]
+        rate = np.gradient(y, 1e-3, axis=0)
+        e = (y - CIRCLE.at(theta))[2:-2]
+        eps = (rate - speed * CIRCLE.at(theta, 1))[2:-2]
+        squares = np.sum(e**2, 1), np.sum(e * eps, 1), np.sum(eps**2, 1)
+        value = (k1 + k2**2 / 2) * squares[0] + k2 * squares[1] + squares[2]
+        loss = k1 * k2 * squares[0] + k2 * squares[2]
+        change = np.gradient(value, 1e-3)
+        assert value[0] > 0.1 and value[-1] < 1e-3 * value[0]
+        assert (change <= -loss + 0.02 * value.max() / 0.05).all()
+
+
+def test_within_its_bound_the_disturbance_observer_is_18_with_other_gains() -> None:
+    """With a payload that no model knows, and no far return: the same motion."""
+    k1, k2, rate = 400.0, 40.0, 20.0
+    gains: dict[str, Any] = {"K1": k1 + rate * k2, "K2": k2 + rate, "K3": rate * k1}
+    one = Side("disturbance_observer", K1=k1, K2=k2, observer_rate=rate, payload=0.1)
+    other = Side("path_following", **gains, payload=0.1)
+    one_log, other_log = (moving(side, 0.0, 2 * np.pi).run(1.0) for side in (one, other))
+    assert np.abs(other_log["xi"]).max() > 5e-5
+    assert np.abs(one_log["xi"] - other_log["xi"]).max() < 0.03 * np.abs(other_log["xi"]).max()
 
 
 def test_the_event_based_reference_is_the_closest_point() -> None:

@@ -1,0 +1,126 @@
+"""Laws as `onpath.simulate` and the command line take them: a name, a text, or one's own Python."""
+
+from __future__ import annotations
+
+import dataclasses
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+from onpath.models.control.laws.law import Law
+from onpath.models.control.laws.python_law import IN_FILE, Now, law_in, python_law
+from onpath.models.control.laws.registry import add_law, law_name, law_named
+from onpath.models.errors import CodedError
+
+LATE = 0.2  # [s] of processor time by which calls may exceed their intervals in all
+
+
+def law_given(law: Any) -> str:
+    """The name of a law, which is added to the laws if it is one's own.
+
+    Never call it with a text from a browser: it runs files.
+
+    Args:
+        law: a name of `onpath.laws()`, a typed law, FILE.py:NAME, or what `python_law` takes.
+
+    Raises:
+        ValueError: there is no such law, or it has an error; the message has file and line.
+    """
+    if not isinstance(law, str):
+        return add_law(_watched(python_law(law))).name
+    if found := IN_FILE.fullmatch(law):
+        name = add_law(_watched(law_in(law))).name
+        _FILES[name] = f"{Path(found['file']).resolve()}:{found['name']}"
+        return name
+    return law_name(law)
+
+
+def compiled_law(law: Any) -> str:
+    """The name of a law, as `law_given`, but none that is a function, called between the ticks.
+
+    Raises:
+        ValueError: it is one, or see `law_given`.
+    """
+    name = law_given(law)
+    if law_named(name).called is not None:
+        raise CodedError("error.law_is_called", law=name)
+    return name
+
+
+_FILES = dict[str, str]()  # by name
+
+
+def laws_of_files() -> list[str]:
+    """The laws that have been added from files, for another process: `add_laws`."""
+    return list(_FILES.values())
+
+
+def as_given(law: str) -> str:
+    """A law as the command line takes it: its name or text, or FILE.py:NAME."""
+    return _FILES.get(law, law)
+
+
+def add_laws(laws: list[str]) -> None:
+    """Add the laws of `laws_of_files` of another process; they get the same names."""
+    for law in laws:
+        law_given(law)
+
+
+def _watched(law: Law) -> Law:
+    return law if law.called is None else dataclasses.replace(law, called=_Watched(law.called))
+
+
+@dataclass(frozen=True, slots=True)
+class _Watched:
+    """`Law.called` of a law whose function is stopped if it takes longer than its interval."""
+
+    make: Callable[[], Callable[[Now], Any]]
+
+    def __call__(self) -> _Watch:
+        return _Watch(self.make())
+
+
+@dataclass(slots=True)
+class _Watch:
+    """A function that is stopped when its calls exceed their intervals by more than `LATE`.
+
+    What counts is the processor time of this thread, so that a busy machine stops no law.
+
+    Attributes:
+        act: the function.
+        late: by how much its calls have exceeded their intervals in all, [s].
+    """
+
+    act: Callable[[Now], Any]
+    late: float = 0.0
+
+    def __call__(self, now: Now) -> Any:
+        """What the function returns.
+
+        Raises:
+            TimeoutError: it has been stopped, in the line that ran then, even in an endless loop.
+        """
+        begin, allowed = time.thread_time(), LATE - self.late + now.interval
+        reason = f"it takes longer than its interval of {1e3 * now.interval:g} ms"
+
+        def watch(_frame: FrameType, _event: str, _argument: Any) -> Any:
+            if time.thread_time() - begin > allowed:
+                raise TimeoutError(reason)
+            return watch
+
+        tracer = sys.gettrace()
+        if tracer is not None:  # a debugger, which takes its time
+            return self.act(now)
+        sys.settrace(watch)
+        try:
+            result = self.act(now)
+        finally:
+            sys.settrace(None)
+        self.late = max(0.0, self.late + time.thread_time() - begin - now.interval)
+        if self.late > LATE:
+            raise TimeoutError(reason)
+        return result

@@ -1,0 +1,277 @@
+"""The results of an arena: a page, the rows of a CSV file, and tables in Markdown."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.app.common.own_laws import as_given
+from onpath.app.common.templates import render
+from onpath.lessons.sides import law_text, law_titles
+from onpath.lessons.words import Words
+from onpath.models.control.laws.registry import law_named
+from onpath.models.errors import Message
+from onpath.models.studies.arena import (
+    LARGER_IS_BETTER,
+    MEASURES,
+    OFF,
+    Cell,
+    Result,
+    Row,
+    Trial,
+    stopped,
+    table,
+)
+from onpath.models.studies.path_text import curve_from_text
+from onpath.models.systems.catalogue import ROBOTS
+
+SHOWN: dict[str, tuple[float, str, int]] = {
+    "force_N": (1.0, "N", 2),
+    "distance_m": (1e3, "mm", 2),
+    "delay_s": (1.0, "s", 2),
+    "energy_J": (1e3, "mJ", 1),
+    "overshoot_m": (1e3, "mm", 2),
+}
+"""Measure -> factor, unit and decimals with which it is shown."""
+WIDTH, HEIGHT, MARGIN = 460, 150, 4  # of the picture over time
+SIDE = 150  # of the picture of the plane
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a page shows.
+
+    Attributes:
+        rows: by robot.
+        results: by robot, of the same trials for all rows.
+        command: which made the page.
+        figures: (robot, law) -> address of its figure, if there is one.
+        planned: number of trials that were planned.
+    """
+
+    rows: Mapping[str, Sequence[Row]]
+    results: Mapping[str, Sequence[Result]]
+    command: str
+    figures: Mapping[tuple[str, str], str]
+    planned: int
+
+
+def arena_page(contents: Contents, words: Words) -> str:
+    """The page, with every run that is behind one of its numbers."""
+    titles = law_titles([law for rows in contents.rows.values() for law, _ in rows], words)
+    robots, runs = list[dict[str, object]](), list[dict[str, object]]()
+    trials = dict[int, Trial]()
+    for robot, results in contents.results.items():
+        shown, marks = table(contents.rows[robot], results), dict[int, str]()
+        lines = list[dict[str, object]]()
+        for row in contents.rows[robot]:
+            cells = [_cell(robot, name, shown[row][name], marks, words) for name in MEASURES]
+            count = sum((each.law, each.remedy) == row for each in results)
+            stops = [i for i, each in enumerate(results) if _stopped_in(each, row)]
+            links = [marks.setdefault(i, f"{robot}-{i}") for i in stops[:3]]
+            told = words("arena.of", stops=len(stops), runs=count)
+            lines.append(
+                {
+                    "law": titles[row[0]],
+                    "own": law_named(row[0]).origin is not None or "=" in row[0],
+                    "limit": words(f"arena.{_limit(row)}"),
+                    "cells": cells,
+                    "stops": told,
+                    "links": links,
+                }
+            )
+        number = len({each.trial.number for each in results})
+        robots.append({"label": _robot(robot, words), "lines": lines, "trials": number})
+        runs += [
+            _run(results[i], mark, titles, contents, words) for i, mark in sorted(marks.items())
+        ]
+        trials |= {each.trial.number: each.trial for each in results}
+    return render(
+        "arena/page.html",
+        words=words,
+        measures=[
+            {
+                "title": f"{words(f'arena.{name}')}  [{SHOWN[name][1]}]",
+                "text": words(f"arena.{name}_text"),
+            }
+            for name in MEASURES
+        ],
+        robots=robots,
+        runs=runs,
+        laws=[
+            {"label": titles[law], "text": law_text(law, words), "source": law_named(law).source}
+            for law in titles
+        ],
+        trials=[_described(trial, words) for trial in trials.values()],
+        done=len(trials),
+        planned=contents.planned,
+        command=contents.command,
+    )
+
+
+def _robot(name: str, words: Words) -> str:
+    return words.get(f"machine.{name}.label", ROBOTS[name].label)
+
+
+def _limit(row: Row) -> str:
+    return {None: "torques", False: "cut", True: "remedy"}[row[1]]
+
+
+def _stopped_in(result: Result, row: Row) -> bool:
+    return (result.law, result.remedy) == row and result.stopped_at_s is not None
+
+
+def _cell(
+    robot: str, name: str, cell: Cell, marks: dict[int, str], words: Words
+) -> dict[str, object]:
+    """A cell, whose run is marked to be shown."""
+    if cell.worst is None or cell.of is None:
+        return {"value": "–", "median": "", "rank": "", "link": ""}
+    return {
+        "value": _number(name, cell.worst, words),
+        "median": "" if cell.median is None else _number(name, cell.median, words),
+        "rank": cell.rank,
+        "link": marks.setdefault(cell.of, f"{robot}-{cell.of}"),
+    }
+
+
+def _number(name: str, value: float, words: Words) -> str:
+    """A number as it is shown; infinity in words."""
+    if math.isinf(value):
+        return words("arena.never" if name in LARGER_IS_BETTER else "arena.not_back")
+    factor, _, decimals = SHOWN[name]
+    return words.written(f"{factor * value + 0.0:.{decimals}f}".replace("-", "−"))
+
+
+def _told(name: str, value: float, words: Words) -> str:
+    """A measure with its name and unit."""
+    unit = "" if math.isinf(value) else f"\N{NO-BREAK SPACE}{SHOWN[name][1]}"
+    return f"{words(f'arena.{name}')}: {_number(name, value, words)}{unit}"
+
+
+def _described(trial: Trial, words: Words) -> dict[str, object]:
+    return {
+        "number": trial.number,
+        "robot": _robot(trial.robot, words),
+        "path": words.get(f"path.{trial.path}", trial.path),
+        "obstruction": words(f"arena.{trial.obstruction}"),
+        "condition": words(f"arena.{trial.condition}"),
+    }
+
+
+def command_of(result: Result) -> str:
+    """The command that repeats a run."""
+    trial = result.trial
+    given = ["onpath", "experiment", "obstruction", "--robot", trial.robot, "--path", trial.path]
+    given += ["--law", as_given(result.law)]
+    for name, value in trial.settings(bool(result.remedy)).items():
+        given += ["--set", f"{name}={value}"]
+    return shlex.join(given)
+
+
+def _run(
+    result: Result, mark: str, titles: Mapping[str, str], contents: Contents, words: Words
+) -> dict[str, object]:
+    """What a page shows of a run."""
+    trial, told = result.trial, result.reason
+    given = {name: getattr(result, name) for name in MEASURES}
+    values = [_told(name, value, words) for name, value in given.items() if value is not None]
+    if result.stopped_at_s is not None:
+        reason = told.text(words.language) if isinstance(told, Message) else told
+        values = [words("arena.stopped", time=f"{result.stopped_at_s:.3f}", reason=reason)]
+    return {
+        "mark": mark,
+        "law": titles[result.law],
+        "limit": words(f"arena.{_limit((result.law, result.remedy))}"),
+        **_described(trial, words),
+        "values": values,
+        "command": command_of(result),
+        "figure": contents.figures.get((trial.robot, result.law), ""),
+        "recorded": law_named(result.law).called is not None,
+        **_pictures(result),
+    }
+
+
+def _pictures(result: Result) -> dict[str, object]:
+    """Coordinates of the pictures of a run: the distance over time, and the path in its plane."""
+    values, trial = dict(result.trial.values), result.trial
+    lasts, shown = values["duration"], result.shown
+    most = max(1.5 * OFF, float(shown[:, 1].max()) if len(shown) else 0.0)
+    t = shown[:, 0] / lasts * WIDTH
+    d = HEIGHT - MARGIN - shown[:, 1] / most * (HEIGHT - 2 * MARGIN)
+    curve = curve_from_text(trial.path).at(np.linspace(-np.pi, np.pi, 121))
+    both = np.concatenate([curve, shown[:, 2:]])
+    low, size = both.min(0), float(np.ptp(both, axis=0).max()) or 1.0
+    scale = (SIDE - 2 * MARGIN) / size
+
+    def placed(points: np.ndarray) -> str:
+        moved = MARGIN + (points - low) * scale
+        return _points(moved[:, 0], SIDE - moved[:, 1])
+
+    acting = [name for name in ("hold", "push", "pull", "wall") if values.get(f"{name}_to")]
+    begin, end = [values[f"{acting[0]}_{at}"] for at in ("from", "to")] if acting else (0.0, 0.0)
+    z = MARGIN + (shown[:, 2:] - low) * scale
+    return {
+        "width": WIDTH,
+        "height": HEIGHT,
+        "side": SIDE,
+        "distance": _points(t, d),
+        "off": f"{HEIGHT - MARGIN - OFF / most * (HEIGHT - 2 * MARGIN):.1f}",
+        "most": f"{1e3 * most:.1f}",
+        "lasts": f"{lasts:g}",
+        "begin": f"{begin / lasts * WIDTH:.1f}",
+        "span": f"{(end - begin) / lasts * WIDTH:.1f}",
+        "path_points": placed(curve),
+        "way": placed(shown[:, 2:]) if len(shown) else "",
+        "xs": ";".join(f"{x:.1f}" for x in z[:, 0]),
+        "ys": ";".join(f"{SIDE - y:.1f}" for y in z[:, 1]),
+    }
+
+
+def _points(x: np.ndarray, y: np.ndarray) -> str:
+    return " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
+
+
+COLUMNS = ("trial", "robot", "path", "obstruction", "condition", "law", "at_limit", *MEASURES)
+
+
+def csv_rows(contents: Contents) -> Iterator[list[object]]:
+    """The header and a row for each run; infinity is written as inf."""
+    yield [*COLUMNS, "stopped_at_s", "reason", "command"]
+    for results in contents.results.values():
+        for each in results:
+            trial = each.trial
+            yield [
+                *(trial.number, trial.robot, trial.path, trial.obstruction, trial.condition),
+                *(each.law, _limit((each.law, each.remedy))),
+                *("" if (x := getattr(each, name)) is None else f"{x:.9g}" for name in MEASURES),
+                "" if each.stopped_at_s is None else f"{each.stopped_at_s:.9g}",
+                *(str(each.reason), command_of(each)),
+            ]
+
+
+def markdown(contents: Contents, words: Words) -> str:
+    """A table for each robot: the worst value and, in parentheses, the rank."""
+    blocks = list[str]()
+    units = [f"{words(f'arena.{name}')} [{SHOWN[name][1]}]" for name in MEASURES]
+    for robot, results in contents.results.items():
+        rows = contents.rows[robot]
+        cells = table(rows, results)
+        number = len({each.trial.number for each in results})
+        lines = [f"{_robot(robot, words)}, {words('arena.trials', count=number)}", ""]
+        lines += ["| " + " | ".join([words("arena.law"), "", *units, words("arena.stops")]) + " |"]
+        lines += ["|" + "---|" * (len(units) + 3)]
+        for row in rows:
+            shown = [_plain(name, cells[row][name], words) for name in MEASURES]
+            law = [f"`{row[0]}`", words(f"arena.{_limit(row)}")]
+            lines.append("| " + " | ".join([*law, *shown, str(stopped(row, results))]) + " |")
+        blocks.append("\n".join(lines))
+    return "\n\n".join(blocks)
+
+
+def _plain(name: str, cell: Cell, words: Words) -> str:
+    return "–" if cell.worst is None else f"{_number(name, cell.worst, words)} ({cell.rank})"

@@ -1,0 +1,121 @@
+"""The result of an identification as text, as data, and as a figure of its residuals."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from onpath.app.exports.figures import ShownFigure
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.studies.linear_model import BaseParameter
+from onpath.models.studies.log_identification import FileEstimate
+
+MUCH = 0.1  # unexplained share of the torque above which the table warns
+
+
+def identification_data(found: FileEstimate) -> dict[str, Any]:
+    """The content of `--json`."""
+    result, motion = found.estimate, found.motion
+    late = result.delay
+    return {
+        "robot": found.robot,
+        "laws": list(found.laws),
+        "seconds": round(found.seconds, 6),
+        "angles": "measured" if found.measured else "true",
+        "parameters": [_entry(each) for each in result.found],
+        "not_excited": list(result.unexcited),
+        "unexplained": float(f"{result.unexplained:.3g}"),
+        "torque_late_s": None if late is None else float(f"{late.value:.3g}"),
+        "torque_late_interval_s": None if late is None else _interval(late),
+        "motion": None
+        if motion is None
+        else {"moving": list(motion.moving), "tells": list(motion.told), "not": list(motion.left)},
+    }
+
+
+def _entry(each: BaseParameter) -> dict[str, Any]:
+    return {
+        "name": each.name,
+        "plus": {name: float(f"{share:.6g}") for name, share in each.others},
+        "value": float(f"{each.value:.9g}"),
+        "standard_error": float(f"{each.error:.3g}"),
+        "interval": _interval(each),
+    }
+
+
+def _interval(each: BaseParameter) -> list[float]:
+    return [float(f"{end:.6g}") for end in (each.low, each.high)]
+
+
+def identification_text(found: FileEstimate) -> str:
+    """The result as text."""
+    result = found.estimate
+    under = f" under {', '.join(found.laws)}" if found.laws else ""
+    angles = "measured" if found.measured else "true"
+    lines = [f"{found.robot}: {found.seconds:.1f} s{under}, from the {angles} angles"]
+    lines += [
+        f"  {each.label():24s} {each.value:12.6g}  ± {each.high - each.value:.2g}"
+        for each in result.found
+    ]
+    if result.delay is None:
+        lines.append("  the motion does not tell whether torques are logged late: taken as in time")
+    else:
+        late = result.delay
+        half = 1e3 * (late.high - late.value)
+        lines.append(f"  {'torques logged late by':24s} {1e3 * late.value:9.3g} ms  ± {half:.2g}")
+    if any(each.others for each in result.found):
+        lines.append("  the motion does not tell the parameters of a sum apart")
+    if result.unexcited:
+        lines.append(f"  not excited: {', '.join(result.unexcited)}")
+    if found.motion:
+        lines.append(f"  {_advice(found)}")
+    lines.append(f"  {100 * result.unexplained:.2g} % of the torque is not explained")
+    lines.append(
+        "  The true value is within ± with a probability of 95 %, judging by what is not"
+        " explained. That leaves out what all rows share: wrong geometry or scale of torques and"
+        " forces, forces that are not in the file, and terms that the model lacks."
+    )
+    if result.unexplained > MUCH:
+        lines.append(
+            f"  so much is not explained that no value above can be trusted: is the robot"
+            f" {found.robot}, and has every column the unit that it is read in?"
+        )
+    return "\n".join(lines)
+
+
+def _advice(found: FileEstimate) -> str:
+    """Which motion would tell what this one does not."""
+    motion = found.motion
+    assert motion is not None
+    moving = " and ".join(motion.moving)
+    rest = " alone" if len(motion.moving) < len(found.coordinates) else " together"
+    left = f"; no motion tells {', '.join(motion.left)} apart" if motion.left else ""
+    return (
+        f"a record in which {moving}{rest} swing about here, slowly and quickly at once, would"
+        f" also tell {', '.join(motion.told)}{left}"
+    )
+
+
+def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> Figure:
+    """Plot the filtered torque of each coordinate and what the model does not explain of it.
+
+    Records follow each other without a gap.
+    """
+    result = found.estimate
+    figure = ShownFigure(figsize=(10, 2.4 * len(found.coordinates)), layout="constrained")
+    axes = figure.subplots(len(found.coordinates), sharex=True, squeeze=False)[:, 0]
+    steps = np.diff(result.times)
+    usual = float(np.median(steps)) if len(steps) else 0.0
+    begin = float(result.times[0])
+    times = begin + np.concatenate([[0.0], np.cumsum(np.where(steps > 0, steps, usual))])
+    for i, (each, name) in enumerate(zip(axes, found.coordinates, strict=True)):
+        each.plot(times, result.torque[:, i], color="#0072b2", label=words("residuals.torque"))
+        each.plot(times, result.residual[:, i], color="#d55e00", label=words("residuals.left"))
+        unit = "N" if name.endswith("_m") else "N m"
+        each.set_ylabel(f"{name.rpartition('_')[0]}  [{unit}]")
+        each.grid(alpha=0.25)
+    axes[0].legend(loc="upper right", frameon=False)
+    axes[-1].set_xlabel("t  [s]")
+    return figure

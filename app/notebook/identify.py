@@ -1,0 +1,109 @@
+"""`onpath.identify`: a robot's parameters from the log of a real arm."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from onpath.app.common.atomic_file import check_plot, whole_file
+from onpath.app.notebook.simulate import entry_named
+from onpath.models.studies.log_identification import FileEstimate, identify_file
+from onpath.models.systems.robots import RobotEntry
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Identification:
+    """What a log tells about a robot; printed, it is a table.
+
+    Attributes:
+        found: the estimates with standard errors, residuals, and a motion that would tell more.
+    """
+
+    found: FileEstimate
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Estimates by name; the name of a sum is such as "a1 + 0.0484 g2" (SI)."""
+        return {each.label(): each.value for each in self.found.estimate.found}
+
+    @property
+    def intervals(self) -> dict[str, tuple[float, float]]:
+        """Intervals that contain the true values with a probability of 95 %."""
+        return {each.label(): (each.low, each.high) for each in self.found.estimate.found}
+
+    @property
+    def delay(self) -> float | None:
+        """By how much the torques are logged late, [s]; None if the motion does not tell it."""
+        late = self.found.estimate.delay
+        return None if late is None else late.value
+
+    def plot(self, file: str | Path | None = None) -> Figure:
+        """Draw the torques, and what the model does not explain of them.
+
+        Args:
+            file: also write the picture to this .png, .svg or .pdf file.
+
+        Raises:
+            ValueError: another kind of file.
+        """
+        from onpath.app.exports.figures import save
+        from onpath.app.exports.identification import residual_figure
+
+        figure = residual_figure(self.found)
+        if file is not None:
+            check_plot(Path(file), "file")
+            with whole_file(Path(file)) as path:
+                save(figure, path)
+        return figure
+
+    def __repr__(self) -> str:
+        from onpath.app.exports.identification import identification_text
+
+        return identification_text(self.found)
+
+
+def identify(
+    file: str | Path,
+    robot: str | RobotEntry = "five_bar",
+    *,
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str | float] | None = None,
+    law: str = "",
+) -> Identification:
+    """Estimate a robot's parameters from the log of a real arm, or a CSV file of OnPath.
+
+    The file is a table with the names of its columns in the first line. Separators, decimal sign
+    and encoding are recognised. Its times may be uneven, and its torques late by an unknown time.
+
+    Args:
+        file: such as "arm.csv".
+        robot: one of `onpath.robots()`, or what `onpath.robot` returns; its geometry has to be
+            that of the arm.
+        columns: names of the log's columns: "t", each coordinate, such as "q1", the torque of each
+            motor, such as "tau1", and perhaps the force on the end-point, "force1" and so on.
+            Those that are not named are called as in files of OnPath: t_s, q1_rad, tau1_Nm,
+            force1_N. A log without forces is one of a free motion.
+        units: of these columns, such as {"q1": "deg", "t": "ms"}, or factors to SI units, such as
+            {"tau1": 0.085} for a current; others are in s, rad or m, N m or N, and N.
+        law: use only the rows of this law, if there is a column `law`.
+
+    Raises:
+        ValueError: the file, a name or a unit is refused; the message names line and column. Or
+            the robot's equations of motion are not linear in its parameters, or the motion is too
+            short.
+        OSError: the file cannot be read.
+
+    >>> import onpath, pathlib, tempfile
+    >>> file = pathlib.Path(tempfile.mkdtemp(), "motion.csv")
+    >>> onpath.simulate(path="clover", speed=4, encoder_counts=20000).to_csv(file)
+    >>> result = onpath.identify(file)
+    >>> low, high = result.intervals["M11"]
+    >>> bool(low < 0.0226 < high), bool(abs(result.delay) < 1e-3)
+    (True, True)
+    """
+    return Identification(identify_file(Path(file), entry_named(robot), law, columns, units))

@@ -1,0 +1,5 @@
+"""What a law of one's own in CasADi is made of: see `python_law` and models/README.md."""
+
+from onpath.models.control.laws.law import own_gain as own_gain
+from onpath.models.control.laws.path_following import followed as followed
+from onpath.models.control.laws.path_following import tangential as tangential

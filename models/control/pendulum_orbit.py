@@ -1,0 +1,135 @@
+"""A periodic motion of a cart with a pendulum, and feedback gains that make it attractive.
+
+    S cos φ x'' + J φ'' + g S sin φ + p φ' = 0,
+
+the pendulum's equation of models/systems/pendulum_on_cart.py, has no motor in it; x'' is the input.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onpath.models.arrays import Array
+from onpath.models.systems.system import GRAVITY
+
+ORDER = 4  # of the trigonometric polynomials of the plan
+STEPS = 128  # of the gains, per period
+FINE = 16  # of the motion, per step
+PERIODS = 12  # of the Riccati equation
+LENGTHS = 2.25  # a / (J / |S|): 1.5 times the length of a rod
+FAR, FAST = 0.01, 0.1  # e [m] and e' [m/s] that count as much as all of the energy
+STRONG = 2.0  # w that counts as much, [m/s²]
+
+
+@dataclass(frozen=True, slots=True)
+class Pendulum:
+    """The numbers S [kg m], J [kg m²] and p [N m s] of its equation, of which S has a sign."""
+
+    moment: float
+    inertia: float
+    friction: float
+
+    @property
+    def reach(self) -> float:
+        """a of the constraint x = X(φ) = a sin φ, [m]."""
+        return LENGTHS * self.inertia / abs(self.moment)
+
+    @property
+    def rate(self) -> float:
+        """ω0 of small motions with the constraint, [rad/s]."""
+        still = self.inertia + self.moment * self.reach
+        return float(np.sqrt(GRAVITY * self.moment / still))
+
+    def slope(self, state: Array) -> Array:
+        """(φ', φ'') with the constraint and without friction, for (φ, φ')."""
+        phi, rate = state
+        inertia = self.inertia + self.moment * self.reach * np.cos(phi) ** 2
+        half = -self.moment * self.reach * np.cos(phi) * np.sin(phi)
+        return np.array([rate, -(half * rate**2 + GRAVITY * self.moment * np.sin(phi)) / inertia])
+
+
+def orbit_plan(pendulum: Pendulum, swing: float) -> Array:
+    """Coefficients of k1, k2, k3 and e_r over the phase ψ, four times 2 ORDER + 1 numbers.
+
+    With x = a sin φ + e and α(φ) = J + S a cos² φ, the pendulum's equation is
+
+        α φ'' + α'(φ) φ'² / 2 + g S sin φ + p φ' + S cos φ e'' = 0,
+
+    so that E = ½ α φ'² + g S (1 - cos φ) obeys E' = -p φ'² - S cos φ φ' e''. With
+
+        e'' = w - p φ' / (S cos φ)
+
+    friction drops out, E' = -S cos φ φ' w, and e moves periodically while w = 0, as e_r: e_r' =
+    -(p / S) artanh(sin φ). Transverse to the orbit with the energy E* of the amplitude `swing` are
+
+        I = E - E*,   e - e_r,   e' - e_r'.
+
+    Linearized about the orbit they obey I' = b(t) w and e'' = w, b = -S cos φ φ'. The feedback
+    w = -k(t) · (I, e - e_r, e' - e_r') is that of the periodic Riccati equation, solved backwards
+    in time from 0. The phase is ψ = atan2(-φ' / ω0, φ).
+
+    Args:
+        swing: amplitude of φ, [rad].
+    """
+    phi, rate, step = _motion(pendulum, swing)
+    moment, friction = pendulum.moment, pendulum.friction
+    drive = -moment * np.cos(phi) * rate
+    energy = abs(GRAVITY * moment * (1 - np.cos(swing)))
+    gains = _periodic_gains(drive, step, energy)
+    slope = -friction / moment * np.arctanh(np.sin(phi))
+    drift = np.cumsum(slope + np.roll(slope, 1)) * step / 2
+    psi = np.arctan2(-rate / pendulum.rate, phi)
+    harmonics = np.outer(psi, np.arange(1, ORDER + 1))
+    functions = np.column_stack([np.ones(STEPS), np.cos(harmonics), np.sin(harmonics)])
+    wanted = np.column_stack([gains, drift - drift.mean()])
+    return np.asarray(np.linalg.lstsq(functions, wanted, rcond=None)[0], dtype=float).T.ravel()
+
+
+def _motion(pendulum: Pendulum, swing: float) -> tuple[Array, Array, float]:
+    """φ and φ' at `STEPS` instants of a period, and the time between them, [s]."""
+    step, state, time = 2 * np.pi / pendulum.rate / 4 / 400, np.array([swing, 0.0]), 0.0
+    while True:
+        later = _stepped(pendulum, state, step)
+        if later[0] <= 0:
+            break
+        state, time = later, time + step
+    period = 4 * (time + step * state[0] / (state[0] - later[0]))
+    state, found = np.array([swing, 0.0]), list[Array]()
+    for _ in range(STEPS):
+        found.append(state)
+        for _ in range(FINE):
+            state = _stepped(pendulum, state, period / STEPS / FINE)
+    return *np.array(found).T, period / STEPS
+
+
+def _stepped(pendulum: Pendulum, state: Array, h: float) -> Array:
+    """A step of the classical Runge-Kutta method."""
+    one = pendulum.slope(state)
+    two = pendulum.slope(state + h / 2 * one)
+    three = pendulum.slope(state + h / 2 * two)
+    four = pendulum.slope(state + h * three)
+    return state + h / 6 * (one + 2 * two + 2 * three + four)
+
+
+def _periodic_gains(drive: Array, step: float, energy: float) -> Array:
+    """k at each instant, (STEPS, 3), for w that is held over a step; from a sum of squares.
+
+    Each of I / E*, e / `FAR`, e' / `FAST` and w / `STRONG` counts by its square.
+    """
+    weights = np.diag(np.array([energy, FAR, FAST]) ** -2.0) * step
+    effort, found = STRONG**-2.0 * step, np.zeros((STEPS, 3))
+    moved = np.eye(3)
+    moved[1, 2] = step
+    value = np.zeros((3, 3))
+    for _ in range(PERIODS):
+        for i in reversed(range(STEPS)):
+            middle = (drive[i] + drive[(i + 1) % STEPS]) / 2
+            held = np.array([middle * step, step**2 / 2, step])
+            pull = held @ value
+            found[i] = pull @ moved / (effort + pull @ held)
+            left = moved - np.outer(held, found[i])
+            value = weights + moved.T @ value @ left
+            value = (value + value.T) / 2
+    return found

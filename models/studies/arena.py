@@ -1,0 +1,401 @@
+"""An arena: the same trials for all laws, with the same model, motors, limits and random numbers.
+
+Every law enters twice where it can: with torques that are cut at the limit, and with the remedy
+across_first, which is not part of any law. A trial has a robot, a path, an obstruction and a
+condition, and is an `Experiment`: `onpath experiment` repeats it.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import NDArray
+
+from onpath.models.arrays import Array
+from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.loops import Loop
+from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.control.laws.registry import LAWS, law_named
+from onpath.models.control.settable import specs
+from onpath.models.errors import Message, message_of
+from onpath.models.studies.experiments import Experiment, experiments, run
+from onpath.models.studies.path_text import curve_from_text
+from onpath.models.systems.catalogue import ROBOTS
+
+ROBOT_NAMES = ("five_bar", "two_link_arm")
+PATHS = ("circle", "ellipse", "rounded square")
+CONDITIONS = ("exact", "payload", "noise", "slow")
+OBSTRUCTIONS = ("pull", "brake", "hand", "wall", "weak")
+OFF = 0.005  # [m] from which on a robot counts as off its path
+RESERVE = 1.5  # torque limit over the largest torque of undisturbed path following
+WEAK = 0.6  # and of weak motors, over that limit: 0.9 times what path following needs
+LASTS, RATE = 5.0, 2.0  # [s], [N/s] of a pull
+ACTS, AFTER = 1.0, 2.0  # [s] of the other obstructions, and after them
+EVERY = 20  # [ms] for which a run that is shown has a point
+MOST_LOOPS = 16
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """What happens to every law.
+
+    Attributes:
+        number: in the order of the trials.
+        robot, path, obstruction, condition: their names.
+        values: parameters and schedule by name, as for `onpath experiment --set`.
+        released: time at which the obstruction ends, [s]; None if it lasts.
+    """
+
+    number: int
+    robot: str
+    path: str
+    obstruction: str
+    condition: str
+    values: tuple[tuple[str, float], ...]
+    released: float | None
+
+    def settings(self, remedy: bool) -> dict[str, Any]:
+        """The values, with what happens at the torque limit."""
+        return {**dict(self.values), "at_limit": "across_first" if remedy else "cut"}
+
+    def experiment(self, remedy: bool) -> Experiment:
+        """The experiment of a trial."""
+        plain = experiments(self.robot)["obstruction"]
+        moved = plain.along(curve_from_text(self.path), self.path)
+        return moved.with_values(self.settings(remedy))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Result:
+    """One law in one trial; numbers that the trial does not give are None.
+
+    Attributes:
+        law: name of the law.
+        remedy: whether across_first acts at the torque limit; None for a law that commands torques.
+        trial: the trial.
+        force_N: force of the hand, pulling across, at which the robot is first 5 mm off its path;
+            infinity if it never is.
+        distance_m: largest distance to the path.
+        delay_s: by how much it is late at the end, at the wanted speed; negative: early.
+        energy_J: largest work of the end-point on the hand, brake or wall.
+        overshoot_m: how far it leaves its path again after the release, from the moment at which
+            it is within 5 mm and comes no nearer; infinity if it does not come back.
+        stopped_at_s: time at which the run was stopped as diverged, or None.
+        reason: why.
+        shown: (t [s], distance [m], z1, z2 [m]) where it is farthest off in each 20 ms, (k, 4).
+    """
+
+    law: str
+    remedy: bool | None
+    trial: Trial
+    force_N: float | None = None
+    distance_m: float | None = None
+    delay_s: float | None = None
+    energy_J: float | None = None
+    overshoot_m: float | None = None
+    stopped_at_s: float | None = None
+    reason: str | Message = ""
+    shown: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 4)))
+
+
+STEPS = {
+    "force_N": 0.01,
+    "distance_m": 1e-5,
+    "delay_s": 0.01,
+    "energy_J": 1e-4,
+    "overshoot_m": 1e-5,
+}
+"""Measure -> smallest difference that counts, with which it is shown."""
+MEASURES = tuple(STEPS)
+LARGER_IS_BETTER = ("force_N",)
+Row = tuple[str, "bool | None"]
+"""A row of the table: a law, and whether the remedy acts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A measure of a row.
+
+    Attributes:
+        worst: its worst value over the runs that were not stopped, None if there is none.
+        median: its median over them.
+        rank: place among the rows of the robot, from 1; equal values share one. Rows with a run
+            that was stopped come after all others.
+        of: number of the worst run in the results.
+    """
+
+    worst: float | None
+    median: float | None
+    rank: int
+    of: int | None
+
+
+def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]]:
+    """The trials of each round: every obstruction of every robot once.
+
+    The first round is on the circle with an exact model; path and condition of the others are
+    drawn, and place and direction of all obstructions. What is drawn for a robot does not depend on
+    the other robots, nor on the number of rounds.
+
+    Args:
+        seed: 0 or more.
+
+    Raises:
+        ValueError: a robot that has no circle to follow.
+    """
+    found, number = list[list[Trial]](), 0
+    for round_number in range(rounds):
+        trials = list[Trial]()
+        for robot in robots:
+            for which, obstruction in enumerate(OBSTRUCTIONS):
+                numbers = [seed, crc32(robot.encode()), round_number, which]
+                draw, number = np.random.default_rng(numbers), number + 1
+                trials.append(_trial(number, robot, obstruction, draw, plain=round_number == 0))
+        found.append(trials)
+    return found
+
+
+def _trial(
+    number: int, robot: str, obstruction: str, draw: np.random.Generator, plain: bool
+) -> Trial:
+    """A trial that is drawn; a plain one is on the circle, with an exact model."""
+    possible = _possible(robot, obstruction)
+    path = PATHS[0 if plain else int(draw.integers(len(PATHS)))]
+    condition = "exact" if plain else possible[int(draw.integers(len(possible)))]
+    given, released = _drawn(robot, path, obstruction, condition, draw)
+    return Trial(
+        number=number,
+        robot=robot,
+        path=path,
+        obstruction=obstruction,
+        condition=condition,
+        values=tuple(given.items()),
+        released=released,
+    )
+
+
+def _possible(robot: str, obstruction: str) -> list[str]:
+    """The conditions; no payload under a pull, since it may hold a robot off its path by itself."""
+    loaded = "payload" in specs(ROBOTS[robot].parameters) and obstruction != "pull"
+    return [each for each in CONDITIONS if loaded or each != "payload"]
+
+
+def _drawn(
+    robot: str, path: str, obstruction: str, condition: str, draw: np.random.Generator
+) -> tuple[dict[str, float], float | None]:
+    """The values of a trial, and when its obstruction ends."""
+    curve, speed = curve_from_text(path), ROBOTS[robot].parameters().speed
+    begin = float(np.round(draw.uniform(0.5, 1.5), 3))
+    sign, angle = float(draw.choice((-1, 1))), float(draw.uniform(-np.pi, np.pi))
+    reach, noise = float(draw.uniform(0.02, 0.04)), float(draw.integers(10_000))
+    end, share = begin + ACTS, WEAK if obstruction == "weak" else 1.0
+    theta = speed * begin
+    place, first = curve.at(np.array(theta)), curve.at(np.array(theta + 0.2), 1)
+    hand = place + reach * np.array([np.cos(angle), np.sin(angle)])
+    wall = curve.at(np.array(theta + 0.2))
+    acting: dict[str, dict[str, float]] = {
+        "pull": {"pull_from": 0.5, "pull_to": 0.5 + LASTS, "pull_rate": sign * RATE},
+        "brake": {"hold_from": begin, "hold_to": end},
+        "hand": {"push_from": begin, "push_to": end, "push_z1": hand[0], "push_z2": hand[1]},
+        "wall": {"wall_from": begin, "wall_to": end, "wall_z1": wall[0], "wall_z2": wall[1]}
+        | {"wall_angle": float(np.arctan2(-first[1], -first[0]))},
+        "weak": {},
+    }
+    under: dict[str, dict[str, float]] = {
+        "exact": {},
+        "payload": {"payload": _on(robot, "payload")},
+        "noise": {"sensor_noise": 1e-4, "encoder_counts": 4000.0, "seed": noise},
+        "slow": {"control_rate": 100.0},
+    }
+    lasts = 0.5 + LASTS if obstruction == "pull" else end + AFTER
+    values = {"hold_from": 0.0, "hold_to": 0.0, "duration": lasts, **acting[obstruction]}
+    values |= {"start_along": float(speed * np.linalg.norm(curve.at(np.array(0.0), 1)))}
+    values |= {"torque_limit": share * _limit(robot, path), **under[condition]}
+    released = end if obstruction in ("brake", "hand", "wall") else None
+    short = {name: float(f"{value:.4g}") for name, value in values.items()}
+    return {n: int(x) if x.is_integer() else x for n, x in short.items()}, released
+
+
+def _on(robot: str, name: str) -> float:
+    return float(specs(ROBOTS[robot].parameters)[name].on or 0.0)
+
+
+@lru_cache(maxsize=64)
+def _limit(robot: str, path: str) -> float:
+    """The torque limit of a robot on a path: `RESERVE` times what path following needs there."""
+    plain = experiments(robot)["obstruction"].along(curve_from_text(path), path)
+    free = plain.with_values({"hold_from": 0, "hold_to": 0, "duration": 2, "ramp": 10})
+    (moved,) = run_all([free], "path_following")
+    strength = np.array(plain.robot().system.strength)
+    least = float((np.abs(moved.fields["u"]) / strength).max())
+    return min(RESERVE * least, specs(plain.parameters)["torque_limit"].high)
+
+
+def entrants(robot: str, asked: Sequence[str] = (), only: bool = False) -> list[Row]:
+    """The rows of a robot: the laws asked for first, then those of OnPath that go along a path.
+
+    Args:
+        only: whether the laws asked for are all.
+    """
+    machine = ROBOTS[robot].make(ROBOTS[robot].parameters())
+    composite = getattr(ROBOTS[robot].parameters(), "law", "") == "composite"
+    rows = list[Row]()
+    for name in dict.fromkeys([*asked, *(() if only else LAWS)]):
+        law = law_named(name)
+        if law.origin is not None and name not in asked:
+            continue
+        if not (law.travels and law.suits(machine.system)):
+            continue
+        if law.commands_acceleration:
+            rows += [(name, False), (name, True)]
+        elif not composite:
+            rows.append((name, None))
+    return rows
+
+
+def run_all(wanted: Sequence[Experiment], law: str) -> Iterator[Trajectory]:
+    """Run experiments under a law, one after the other.
+
+    Raises:
+        ValueError: see `experiments.run`.
+    """
+    for each in wanted:
+        yield run(each, law, _loop)
+
+
+_LOOPS = dict[int, tuple[Kernel, Loop]]()
+
+
+def _loop(kernel: Kernel) -> Loop:
+    """The fastest loop of a kernel; the last ones are kept."""
+    from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
+
+    if id(kernel) not in _LOOPS:
+        if len(_LOOPS) >= MOST_LOOPS:
+            del _LOOPS[next(iter(_LOOPS))]
+        _LOOPS[id(kernel)] = kernel, fastest_loop(kernel)
+    return _LOOPS[id(kernel)][1]
+
+
+def results_of(row: Row, trials: Sequence[Trial]) -> list[Result]:
+    """What becomes of a row in some trials. An error of the law is a stop at the start."""
+    law, remedy = row
+    found = list[Result]()
+    for trial in trials:
+        experiment = trial.experiment(bool(remedy))
+        try:
+            (moved,) = run_all([experiment], law)
+        except ValueError as error:
+            told = message_of(error)
+            found.append(Result(law, remedy, trial, stopped_at_s=0.0, reason=told))
+            continue
+        found.append(measured(law, remedy, trial, experiment, moved))
+    return found
+
+
+def measured(
+    law: str, remedy: bool | None, trial: Trial, experiment: Experiment, moved: Trajectory
+) -> Result:
+    """The measures of a run."""
+    z = experiment.robot().frame.planar(moved.fields["y"])
+    rows = np.column_stack([moved.t, moved.distance, z])
+    shown = rows[[part[rows[part, 1].argmax()] for part in _parts(len(rows))]]
+    result = Result(law=law, remedy=remedy, trial=trial, shown=shown)
+    distance, force, y = moved.distance, moved.fields["force"], moved.fields["y"]
+    off = distance > OFF
+    if trial.obstruction == "pull" and off.any():  # what a stronger pull does is not asked
+        return dataclasses.replace(result, force_N=float(np.linalg.norm(force[off.argmax()])))
+    if moved.stopped_at is not None:
+        return dataclasses.replace(result, stopped_at_s=moved.stopped_at, reason=moved.reason)
+    if trial.obstruction == "pull":
+        return dataclasses.replace(result, force_N=np.inf)
+    steps = np.diff(y, axis=0, append=y[-1:])
+    given = -np.cumsum((force * steps).sum(1))
+    speed, theta = experiment.parameters.speed, moved.fields["theta"][:, 0]
+    delay = float(moved.t[-1] - (theta[-1] - theta[0]) / speed)
+    released = trial.released
+    return dataclasses.replace(
+        result,
+        distance_m=float(distance.max()),
+        delay_s=delay,
+        energy_J=None if released is None else max(float(given.max()), 0.0),
+        overshoot_m=None if released is None else _overshoot(distance[moved.t >= released]),
+    )
+
+
+def _parts(count: int) -> list[NDArray[np.int_]]:
+    """Consecutive rows, at most `EVERY` in each part."""
+    rows = np.arange(count)
+    return [rows[begin : begin + EVERY] for begin in range(0, count, EVERY)]
+
+
+def _overshoot(distance: Array) -> float:
+    """The largest distance from the first least one within `OFF` on; infinity if there is none."""
+    back = (distance <= OFF) & (np.diff(distance, append=np.inf) >= 0)
+    return float(distance[back.argmax() :].max()) if back.any() else np.inf
+
+
+def table(rows: Sequence[Row], results: Sequence[Result]) -> dict[Row, dict[str, Cell]]:
+    """The cells of the rows of one robot.
+
+    Args:
+        results: of all rows in the same trials.
+    """
+    stops = {row: stopped(row, results) > 0 for row in rows}
+    cells: dict[Row, dict[str, Cell]] = {row: {} for row in rows}
+    for name in MEASURES:
+        worst = {row: _worst(row, name, results) for row in rows}
+        keys = {row: (stops[row], *_badness(name, worst[row][0])) for row in rows}
+        order = sorted(keys.values())
+        for row in rows:
+            value, median, of = worst[row]
+            cells[row][name] = Cell(value, median, order.index(keys[row]) + 1, of)
+    return cells
+
+
+def _badness(name: str, value: float | None) -> tuple[bool, float]:
+    """What a measure is ranked by, the best first: a lacking value comes last."""
+    if value is None:
+        return True, 0.0
+    steps = abs(value) if math.isinf(value) else float(round(abs(value) / STEPS[name]))
+    return False, -steps if name in LARGER_IS_BETTER else steps
+
+
+def complete(
+    rows: Mapping[str, Sequence[Row]], results: Sequence[Result]
+) -> dict[str, list[Result]]:
+    """The results by robot, of the trials through which all of its rows have gone."""
+    found = dict[str, list[Result]]()
+    for robot, wanted in rows.items():
+        own = [each for each in results if each.trial.robot == robot]
+        count = Counter(each.trial.number for each in own)
+        kept = [each for each in own if count[each.trial.number] == len(wanted)]
+        if kept:
+            found[robot] = sorted(kept, key=lambda each: each.trial.number)
+    return found
+
+
+def stopped(row: Row, results: Sequence[Result]) -> int:
+    """How many runs of a row were stopped."""
+    return sum(each.stopped_at_s is not None for each in results if (each.law, each.remedy) == row)
+
+
+def _worst(
+    row: Row, name: str, results: Sequence[Result]
+) -> tuple[float | None, float | None, int | None]:
+    """The worst value of a measure in a row, its median, and the number of the worst result."""
+    runs = [(i, each) for i, each in enumerate(results) if (each.law, each.remedy) == row]
+    values = [(getattr(each, name), i) for i, each in runs if getattr(each, name) is not None]
+    if not values:
+        return None, None, None
+    size: Callable[[tuple[float, int]], float] = lambda pair: abs(pair[0])  # noqa: E731
+    value, of = (min if name in LARGER_IS_BETTER else max)(values, key=size)
+    return value, float(np.median([each for each, _ in values])), of

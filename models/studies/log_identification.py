@@ -1,0 +1,85 @@
+"""Identification of a robot from a file: a record of OnPath, or a log of a real arm."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from onpath.models.errors import CodedError
+from onpath.models.studies.linear_model import Estimate, estimate, linear_model
+from onpath.models.studies.record_file import log_columns, read_records
+from onpath.models.studies.telling_motion import TellingMotion, telling_motion
+from onpath.models.systems.parameter_specs import unknown_name
+from onpath.models.systems.robots import RobotEntry
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FileEstimate:
+    """What a file tells about a robot.
+
+    Attributes:
+        robot: its name.
+        coordinates: names of its coordinates.
+        laws: whose rows were used; empty if the file has no laws.
+        seconds: of motion.
+        measured: whether the angles are sensor readings.
+        estimate: of the parameters and the delay.
+        motion: a motion that would tell what the file does not, or None.
+    """
+
+    robot: str
+    coordinates: tuple[str, ...]
+    laws: tuple[str, ...]
+    seconds: float
+    measured: bool
+    estimate: Estimate
+    motion: TellingMotion | None
+
+
+def identify_file(
+    path: Path,
+    entry: RobotEntry,
+    law: str = "",
+    columns: Mapping[str, str] | None = None,
+    units: Mapping[str, str | float] | None = None,
+) -> FileEstimate:
+    """Estimate a robot's parameters.
+
+    Args:
+        entry: the robot; of its parameters, only those on which h and B depend are used.
+        law: use only the rows of this law; "": all.
+        columns, units: see `log_columns`; without either it is a file of OnPath.
+
+    Raises:
+        ValueError: the robot is not suitable, the file is refused, or it tells too little.
+        OSError: the file cannot be read.
+    """
+    robot = entry.make(entry.parameters())
+    linear_model(robot.system)  # refuse an unsuitable robot before reading
+    is_log = bool(columns or units)
+    log = log_columns(robot, columns or {}, units or {}) if is_log else None
+    try:
+        records = read_records(path, robot, log)
+    except CodedError as error:
+        raise CodedError("error.in_file", file=str(path), reason=error.message) from None
+    known = list(dict.fromkeys(name for name, _ in records))
+    if law and known == [""]:
+        raise CodedError("error.record_without_laws", law=law, file=str(path))
+    laws = [name for name in known if law in ("", name)]
+    if not laws:
+        raise unknown_name(law, known, "law")
+    used = [each for name, each in records if name in laws]
+    plant = robot.plant(entry.parameters())
+    result = estimate(robot.system, used, plant)
+    sums = (name for each in result.found for name, _ in each.others)
+    names = (*(each.name for each in result.found), *sums, *result.unexcited)
+    return FileEstimate(
+        robot=entry.name,
+        coordinates=tuple(robot.system.coordinate_names),
+        laws=tuple(name for name in laws if name),
+        seconds=sum(len(each.q) * each.dt for each in used),
+        measured=all(each.measured for each in used),
+        estimate=result,
+        motion=telling_motion(robot.system, used, plant, names),
+    )

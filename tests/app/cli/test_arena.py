@@ -1,0 +1,133 @@
+"""`onpath arena`: a page, a CSV and figures, with laws of one's own, also if it is interrupted."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onpath.app.cli.main import run_command
+from onpath.app.exports.arena_work import Processes
+from onpath.lessons.words import Words
+from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS
+from tests.support.catalogues import COMPLETE
+from tests.support.checkout import ROOT
+
+EXAMPLES = ROOT / "assets" / "examples"
+LAWS = [f"{EXAMPLES / 'own_function.py'}:Patient", f"{EXAMPLES / 'own_law.py'}:SlidingMode"]
+BROKEN = """
+import os
+def raising(now):
+    return (1 / 0 if now.t > 0.3 else 0), 0
+def dying(now):
+    os._exit(7)
+"""
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> list[str]:
+    return ["--html", str(tmp_path / "a.html"), "--csv", str(tmp_path / "a.csv"), "--processes=1"]
+
+
+def test_an_arena_of_laws_of_ones_own(files: list[str], tmp_path: Path, capsys: Any) -> None:
+    broken = tmp_path / "broken.py"
+    broken.write_text(BROKEN)
+    laws = [*LAWS, "path_following", f"{broken}:raising", f"{broken}:dying"]
+    given = ["arena", "--only", *laws, "--robot", "five_bar", "--rounds", "1", *files]
+    assert run_command(given) == 0
+    told = capsys.readouterr().out
+    page = (tmp_path / "a.html").read_text("utf-8")
+    assert "broken.py, line 4" in page and "has died" in page  # and nothing else has stopped
+    rows = list(csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8", newline="")))
+    assert len(rows) == 5 * 2 * 5
+    stopped = {row["law"] for row in rows if row["stopped_at_s"]}
+    assert stopped == {"raising", "dying"} and "`Patient`" in told
+    marks, links = re.findall(r' id="([^"]+)"', page), re.findall(r'href="#([^"]+)"', page)
+    assert links and set(links) <= set(marks) and len(marks) == len(set(marks))
+    figures = set(re.findall(r'href="(a-figures/[^"]+)"', page))
+    assert figures and all((tmp_path / figure).stat().st_size > 1e5 for figure in figures)
+    assert not any("Patient" in figure for figure in figures)  # it is shown as recorded
+    assert "<animate " in page and "<script" not in page
+    assert all(abs(float(x)) < 1e4 for x in re.findall(r'points="([-\d.]+),', page))
+
+
+def test_the_command_behind_a_number_gives_that_number(
+    files: list[str], tmp_path: Path, capsys: Any
+) -> None:
+    import shlex
+
+    given = ["arena", LAWS[1], "--only", "--robot=five_bar", "--rounds=1", "--no-figures", *files]
+    assert run_command(given) == 0
+    rows = list(csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8", newline="")))
+    (row,) = [r for r in rows if r["obstruction"] == "wall" and r["at_limit"] == "cut"]
+    capsys.readouterr()
+    assert run_command(shlex.split(row["command"])[1:]) == 0
+    (shown,) = re.findall(r"max distance +([\d.]+) mm", capsys.readouterr().out)
+    assert float(shown) == pytest.approx(1e3 * float(row["distance_m"]), abs=0.01)
+
+
+def test_an_interrupted_arena_has_what_all_laws_have_finished(
+    files: list[str], tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    each, rounds = Processes.each, 0
+
+    def interrupted(self: Processes, *arguments: Any) -> Iterator[Any]:
+        nonlocal rounds
+        rounds += 1
+        for result in each(self, *arguments):
+            yield result
+            if rounds == 2:
+                raise KeyboardInterrupt
+
+    monkeypatch.setattr(Processes, "each", interrupted)
+    given = ["arena", LAWS[1], "path_following", "--only", "--robot=five_bar", *files]
+    assert run_command(given) == 130
+    shown = capsys.readouterr()
+    assert "interrupted" in shown.err and "5 trials" in shown.out
+    assert "5 trials of 15" in (tmp_path / "a.html").read_text("utf-8")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--robot", "five_bat"], "did you mean five_bar"),
+        (["--rounds", "0"], "too small"),
+        (["--only"], "give laws"),
+        (["set_point"], "does not suit five_bar, or is not for motion"),
+        (["--language", "xx"], "there are de, en"),
+        (["nothing.py:Law"], "there is no file"),
+    ],
+)
+def test_an_impossible_option_is_refused(options: list[str], words: str, capsys: Any) -> None:
+    assert run_command(["arena", *options]) == 2
+    assert words in capsys.readouterr().err
+
+
+def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
+    given = ["arena", "path_following", "--only", "--robot=five_bar", "--rounds=1", "--no-figures"]
+    assert run_command([*given, "--language", "de", *files]) == 0
+    page = (tmp_path / "a.html").read_text("utf-8")
+    assert "Bahnfolgeregelung" in page and re.search(r">\d+,\d\d</a>", page)
+
+
+@pytest.mark.parametrize("language", COMPLETE)
+def test_everything_that_the_page_names_has_words(language: str) -> None:
+    words = Words(language)
+    for name in (*OBSTRUCTIONS, *CONDITIONS, *MEASURES, "cut", "remedy", "torques"):
+        assert words(f"arena.{name}")
+    for name in (*MEASURES, "stops"):
+        assert words(f"arena.{name}_text")
+
+
+@pytest.mark.thorough
+def test_the_table_of_our_laws_is_what_the_arena_gives(
+    files: list[str], tmp_path: Path, capsys: Any
+) -> None:
+    assert run_command(["arena", "--no-figures", *files]) == 0
+    text = (ROOT / "models" / "studies" / "README.md").read_text("utf-8")
+    shown = text.partition("<!-- made by `onpath arena` -->")[2].partition("<!-- end -->")[0]
+    assert shown.strip() == capsys.readouterr().out.strip()

@@ -1,0 +1,257 @@
+"""A log of a real arm: any names, units and locale, uneven times, torques late by nobody knows."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import onpath
+from onpath.app.cli.main import run_command
+from onpath.models.errors import CodedError
+from onpath.models.studies.linear_model import dependent_names, estimate
+from onpath.models.studies.record_file import log_columns, quantities, read_records
+from onpath.models.systems.catalogue import ROBOTS
+from tests.support.arm_logs import COLUMNS, DRY, UNITS, Logger, motion_of, write_log
+
+QUANTITIES = {"t": "t_s", "q1": "q1_rad", "q2": "q2_rad", "tau1": "tau1_Nm", "tau2": "tau2_Nm"}
+OPTIONS = [f"--column={name}={column}" for name, column in COLUMNS.items()]
+OPTIONS += [f"--unit={name}={unit}" for name, unit in UNITS.items()]
+
+
+def truth(robot: str, plant: np.ndarray) -> dict[str, float]:
+    entry = ROBOTS[robot]
+    system = entry.make(entry.parameters()).system
+    known = dict(zip(system.parameter_names, plant.tolist(), strict=True))
+    return known | {f"c{i + 1}": DRY for i in range(system.m)}
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    motion, _ = motion_of("five_bar")
+    path = tmp_path / "arm.csv"
+    write_log(path, *Logger().rows(motion, seed=1))
+    return path
+
+
+def test_a_log_in_other_units_and_another_locale_gives_the_arm(log: Path) -> None:
+    result = onpath.identify(log, columns=COLUMNS, units=UNITS)
+    true = truth("five_bar", motion_of("five_bar")[1])
+    assert set(result.values) >= {"M11", "M22", "b1", "b2", "c1", "c2"}
+    for name, value in result.values.items():
+        assert value == pytest.approx(true[name], rel=0.05, abs=3e-3), name
+    assert result.delay == pytest.approx(Logger.late, abs=5e-4)
+    assert result.found.measured and result.found.laws == ()
+
+
+def test_the_command_says_the_same_as_python_and_draws(
+    log: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    picture = tmp_path / "residuals.svg"
+    assert run_command(["identify", str(log), *OPTIONS, "--json", "--plot", str(picture)]) == 0
+    data = json.loads(capsys.readouterr().out)
+    result = onpath.identify(log, columns=COLUMNS, units=UNITS)
+    told = {each["name"]: tuple(each["interval"]) for each in data["parameters"]}
+    assert told.keys() == result.intervals.keys()
+    for name, interval in result.intervals.items():
+        assert told[name] == pytest.approx(interval, rel=1e-5, abs=1e-9)
+    assert data["torque_late_s"] == pytest.approx(result.delay, rel=1e-2)
+    assert picture.read_text("utf-8").startswith("<?xml")
+    assert run_command(["identify", str(log), *OPTIONS]) == 0
+    assert capsys.readouterr().out.strip() == repr(result)
+
+
+def test_residuals_are_small_where_the_model_is_right(log: Path) -> None:
+    found = onpath.identify(log, columns=COLUMNS, units=UNITS).found.estimate
+    assert found.torque.shape == found.residual.shape == (len(found.times), 2)
+    share = np.linalg.norm(found.residual) / np.linalg.norm(found.torque)
+    assert share == pytest.approx(found.unexplained)
+    assert share < 0.05
+
+
+def test_uneven_times_give_what_even_ones_give() -> None:
+    """Without noise, only the interpolation is left."""
+    entry = ROBOTS["five_bar"]
+    motion, plant = motion_of("five_bar")
+    true = truth("five_bar", plant)
+    for seed, uneven in enumerate((0.0, 0.5, 0.99)):
+        exact = Logger(uneven=uneven, angle_noise=0, torque_noise=0)
+        values = found_in(exact.rows(motion, seed), entry.name, plant)
+        for name, (value, _, _) in values.items():
+            true_value = exact.late if name == "delay" else true[name]
+            assert value == pytest.approx(true_value, rel=5e-3, abs=5e-4), (uneven, name)
+
+
+def found_in(
+    rows: tuple[np.ndarray, np.ndarray, np.ndarray], robot: str, plant: np.ndarray
+) -> dict[str, tuple[float, float, float]]:
+    """Estimates with their intervals, of a log that went through a file."""
+    from tempfile import TemporaryDirectory
+
+    entry = ROBOTS[robot]
+    made = entry.make(entry.parameters())
+    t, q, u = rows
+    names = [name for name in quantities(made) if not name.startswith("force")]
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "log.csv")
+        table = np.column_stack([t, q, u])
+        np.savetxt(path, table, "%.9g", ",", header=",".join(names), comments="")
+        records = [
+            each
+            for _, each in read_records(path, made, log_columns(made, {n: n for n in names}, {}))
+        ]
+    result = estimate(made.system, records, plant)
+    assert result.delay is not None and not any(each.others for each in result.found)
+    return {each.name: (each.value, each.low, each.high) for each in (*result.found, result.delay)}
+
+
+LOGGERS = (
+    Logger(rate=1000, uneven=0.0, late=0.004),
+    Logger(rate=500, uneven=0.6, late=-0.013, angle_noise=5e-4, torque_noise=0.02, counts=4000),
+    Logger(rate=100, uneven=0.6, late=0.023, torque_noise=0.02),
+    Logger(rate=200, uneven=0.3, late=0.007, angle_noise=1e-3, torque_noise=0.05),
+)
+
+
+def covered(robot: str, logger: Logger, seeds: range) -> list[bool]:
+    """Whether each interval of each log contains the truth."""
+    motion, plant = motion_of(robot)
+    true = truth(robot, plant) | {"delay": logger.late}
+    return [
+        low <= true[name] <= high
+        for seed in seeds
+        for name, (_, low, high) in found_in(logger.rows(motion, seed), robot, plant).items()
+    ]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
+def test_of_200_logs_as_many_intervals_contain_the_truth_as_they_say(robot: str) -> None:
+    each = [covered(robot, logger, range(50)) for logger in LOGGERS]
+    assert 0.90 <= np.mean(np.concatenate(each)) <= 0.99
+    assert all(np.mean(of_logger) > 0.85 for of_logger in each)
+
+
+def test_of_a_few_logs_most_intervals_contain_the_truth() -> None:
+    logger = LOGGERS[1]
+    assert np.mean(covered("five_bar", logger, range(4))) > 0.8
+
+
+def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
+    """One joint swings in a single wave, and the other rests."""
+    t = np.arange(0, 6, 2e-3)
+    q1 = np.pi / 2 + 0.011 * np.sin(2 * np.pi * t)
+    q = np.column_stack([q1, np.full(len(t), np.pi)])
+    u = np.column_stack([0.1 * np.cos(q1) + 0.02 * np.gradient(np.gradient(q1, t), t), 0 * t])
+    path = tmp_path / "poor.csv"
+    write_log(path, t, q, u)
+    result = onpath.identify(path, columns=COLUMNS, units=UNITS)
+    found, motion = result.found.estimate, result.found.motion
+    assert found.unexcited or any(each.others for each in found.found)
+    assert motion is not None and not motion.left
+    assert "q2" in motion.moving and {"M22", "b2"} <= {*motion.told}
+    assert f"would also tell {', '.join(motion.told)}" in repr(result)
+
+
+def test_a_rich_log_needs_no_other_motion(log: Path) -> None:
+    assert onpath.identify(log, columns=COLUMNS, units=UNITS).found.motion is None
+    entry = ROBOTS["five_bar"]
+    made = entry.make(entry.parameters())
+    records = [each for _, each in read_records(log, made, log_columns(made, COLUMNS, UNITS))]
+    assert dependent_names(made.system, records, motion_of("five_bar")[1], ("M11", "M22")) == ()
+
+
+def lines(rows: int = 3000) -> list[list[str]]:
+    t = 2e-3 * np.arange(rows)
+    q = 0.5 * np.column_stack([np.sin(5 * t), np.sin(4 * t)])
+    body = np.column_stack([t, q, np.cos(5 * t), np.cos(4 * t)])
+    return [list(QUANTITIES), *([f"{x:.9g}" for x in row] for row in body)]
+
+
+def changed(row: int, column: int, text: str) -> str:
+    table = lines()
+    table[row][column] = text
+    return "\n".join(map(",".join, table))
+
+
+def without(first: int, last: int) -> str:
+    table = lines()
+    return "\n".join(map(",".join, table[:first] + table[last:]))
+
+
+HOSTILE = {
+    "an infinite angle": (changed(40, 1, "1e999"), "line 41, column q1"),
+    "a huge angle": (changed(40, 2, "1e8"), "line 41, column q2"),
+    "a huge torque": (changed(40, 3, "-9e8"), "line 41, column tau1"),
+    "not a number": (changed(7, 4, "nan"), "line 8, column tau2"),
+    "a formula": (changed(7, 4, "=1+1"), "line 8, column tau2"),
+    "a comma in a number": (changed(7, 4, '"0,5"'), "line 8, column tau2"),
+    "time goes back": (changed(100, 0, "0.1"), "line 101, column t"),
+    "time stands still": (changed(100, 0, lines()[99][0]), "line 101, column t"),
+    "an endless time": (changed(100, 0, "1e19"), "line 101, column t"),
+    "a time from another world": (changed(100, 0, "1e21"), "line 101, column t"),
+    "a gap": (without(500, 600), "line 501, column t"),
+    "too slow": ("\n".join(map(",".join, [lines()[0], *lines()[1::10]])), "column t"),
+    "one row": ("\n".join(map(",".join, lines()[:2])), "line 2"),
+    "too short": ("\n".join(map(",".join, lines(30))), ""),
+    "a cell less": (changed(9, 4, "").rstrip(",").replace(",\n", "\n"), "line 10"),
+    "a column twice": (changed(0, 2, "q1"), "line 1"),
+    "a column less": (changed(0, 2, "other"), "line 1: there is no column q2"),
+    "nothing": ("", "line 1"),
+    "only names": (",".join(QUANTITIES), "line 1"),
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_log_is_refused_in_one_line_with_its_place(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, place = HOSTILE[name]
+    path = tmp_path / "log.csv"
+    path.write_text(text)
+    options = [f"--column={each}={each}" for each in QUANTITIES]
+    assert run_command(["identify", str(path), *options]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith("onpath: ") and said.err.count("\n") == 1
+    assert place in said.err and len(said.err) < 300
+
+
+@pytest.mark.parametrize(
+    ("columns", "units", "said"),
+    [
+        ({"q3": "x"}, {}, "q2, q1"),
+        ({"t": "t"}, {"q9": "deg"}, "q2, q1"),
+        ({}, {"q1": "degrees"}, "deg"),
+        ({}, {"tau1": "A"}, "unit of tau1"),
+        ({}, {"tau1": 0}, "must not be 0"),
+        ({}, {"tau1": float("nan")}, "must not be 0"),
+        ({"force1": "F"}, {}, "there is no column F"),
+        ({"t": "Time"}, {}, "there is no column Time"),
+    ],
+)
+def test_wrong_names_and_units_are_refused(
+    columns: dict[str, str], units: dict[str, str | float], said: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "log.csv"
+    path.write_text("\n".join(map(",".join, lines())))
+    named = {name: name for name in QUANTITIES} | columns
+    with pytest.raises(CodedError, match=said):
+        onpath.identify(path, columns=named, units=units)
+
+
+def test_forces_count_if_the_log_has_them(tmp_path: Path) -> None:
+    """J^T F of a force that balances the motors' torques leaves nothing to explain."""
+    path, table = tmp_path / "log.csv", lines()
+    table[0] += ["Fx", "Fz"]
+    for row in table[1:]:
+        row += ["0.5", "-0.25"]
+    path.write_text("\n".join(map(",".join, table)))
+    made = ROBOTS["five_bar"].make(ROBOTS["five_bar"].parameters())
+    names = {name: name for name in QUANTITIES}
+    columns = log_columns(made, names | {"force1": "Fx", "force2": "Fz"}, {})
+    ((_, record),) = read_records(path, made, columns)
+    assert np.array_equal(record.force, np.tile([0.5, -0.25], (3000, 1)))
+    ((_, record),) = read_records(path, made, log_columns(made, names, {}))
+    assert not record.force.any()
