@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
+from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.paths.curves import HARMONICS, Curve, fourier
 from onpath.models.systems.five_bar import five_bar, load_links
 from tests.support.rig import Rig
@@ -20,6 +21,16 @@ settings.register_profile("fuzz", deadline=None, print_blob=True)
 settings.load_profile("laws")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
 # when a shell has started the tests in the background
+
+
+@pytest.fixture(autouse=True)
+def only_our_laws() -> Iterator[None]:
+    """Remove the laws that a test has added: tests over all laws mean OnPath's own."""
+    laws, gains = dict(LAWS), dict(OWN_GAINS)
+    yield
+    for known, before in ((LAWS, laws), (OWN_GAINS, gains)):
+        for name in known.keys() - before.keys():
+            del known[name]  # type: ignore[attr-defined]
 
 
 @pytest.fixture(scope="session")
