@@ -364,6 +364,7 @@ def test_a_file_that_cannot_be_written_is_named_as_it_was_typed(
     assert name in told and "tmpq3x" not in told and "Read-only" in told
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("arguments", [["lessons", "names"], ["figure", "2"]])
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii", ""])
 def test_output_is_printed_whatever_the_encoding_of_the_machine(

@@ -49,6 +49,7 @@ print("new:", *sorted(set(sys.modules) - known))
 """
 
 
+@pytest.mark.thorough
 def test_a_board_to_sketch_on_imports_nothing_after_the_start() -> None:
     """All labs would wait for the imports."""
     run = subprocess.run([sys.executable, "-c", SKETCH], capture_output=True, text=True)

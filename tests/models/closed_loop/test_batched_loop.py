@@ -43,6 +43,7 @@ if not WIDTHS:
     pytest.skip("this processor has no vectors", allow_module_level=True)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("lanes", WIDTHS)
 @pytest.mark.parametrize("name", TRANSLATED)
 def test_every_operation_in_lanes_is_that_on_numbers(name: str, lanes: int) -> None:
@@ -95,6 +96,7 @@ def test_a_batch_of_any_size_does_what_each_robot_does(count: int, lanes: int) -
         assert np.abs(found - wanted).max() < 1e-10
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_batch_of_any_robot_does_what_each_does(robot: str) -> None:
     kernel, given = some_robots(ROBOTS[robot], "path_following", 5)

@@ -181,6 +181,7 @@ def shapes(draw: st.DrawFn) -> Shape:
     )
 
 
+@pytest.mark.thorough
 @settings(deadline=None, max_examples=30)
 @given(shapes(), st.sampled_from(CHAIN_LAWS))
 def test_a_chain_with_passive_joints_runs_or_is_refused_in_words(shape: Shape, law: str) -> None:

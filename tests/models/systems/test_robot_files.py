@@ -126,6 +126,7 @@ def test_equations_are_those_of_mujoco(arm: Arm) -> None:
         assert np.abs(robot.endpoint(q) - robot.unplace(tip)).max() < 1e-9
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", ["path_following", "trajectory_tracking"])
 def test_a_closed_loop_runs_as_with_mujoco_as_the_plant(arm: Arm, law: str) -> None:
     """The joints agree to 1e-8 rad over 2 s; the tip starts on the path at rest.
@@ -151,6 +152,7 @@ def test_a_closed_loop_runs_as_with_mujoco_as_the_plant(arm: Arm, law: str) -> N
     assert worst < 1e-8
 
 
+@pytest.mark.thorough
 def test_compiled_and_interpreted_loops_agree_bit_by_bit(arm: Arm) -> None:
     parameters = with_values(arm.entry.parameters(), {"torque_limit": 30.0, "coulomb": 0.1})
     robot, curve = arm.entry.make(parameters), circle(RADIUS)
