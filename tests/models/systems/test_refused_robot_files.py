@@ -237,6 +237,7 @@ MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="link1" pos="0
 <geom type="capsule" fromto="0 0 0 0.22 0 0" size="0.02"/>
 <site name="tip" pos="0.22 0 0"/></body></body></worldbody></mujoco>
 """
+TWICE = '<joint name="again" axis="0 -1 0"/><joint name="joint2"'
 STRANGE = {
     "mass": ('mass="0.6"', 'mass="nan"', "line 2, inertial: mass nan"),
     "place": ('pos="0.15 0 0"', 'pos="0.15 1e308 0"', "line 4, body link2: pos 0.15 1e308 0"),
@@ -252,6 +253,21 @@ def test_what_is_wrong_in_an_mjcf_file_is_named_with_its_line(tmp_path: Path, ca
     pytest.importorskip("mujoco")
     old, new, words = STRANGE[case]
     assert words in str(refused(tmp_path, MJCF.replace(old, new), Options()))
+
+
+def test_warnings_of_mujoco_are_remarks_and_no_file_in_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two joints about one axis have a singular mass matrix; a mass is then added to one."""
+    pytest.importorskip("mujoco")
+    monkeypatch.chdir(tmp_path)
+    again = MJCF.replace('<joint name="joint2"', TWICE)
+    file = tmp_path / "arm.xml"
+    file.write_text(again)
+    options = Options(armature=0.01, pose={"joint1": 1.2, "again": 0.0, "joint2": -1.4})
+    codes = [remark.code for remark in read_robot(file, options).remarks]
+    assert codes == ["robot_file.mujoco_warns"]
+    assert [each.name for each in tmp_path.iterdir()] == ["arm.xml"]
 
 
 @settings(
