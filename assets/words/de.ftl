@@ -1673,6 +1673,7 @@ site-control-path = die Wahl der Bahn
 ## Roboter aus Dateien
 
 robot_file-at = { $file }, Zeile { $line }, { $element }: { $reason }
+robot_file-at_line = { $file }, Zeile { $line }: { $reason }
 robot_file-absent = { $file }: Diese Datei gibt es nicht
 robot_file-unreadable = { $file } lässt sich nicht lesen: { $reason }
 robot_file-size = { $file } ist größer als { $most }

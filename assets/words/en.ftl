@@ -1314,6 +1314,7 @@ site-control-path = the choice of the path
 ## Robots from files
 
 robot_file-at = { $file }, line { $line }, { $element }: { $reason }
+robot_file-at_line = { $file }, line { $line }: { $reason }
 robot_file-absent = { $file }: there is no such file
 robot_file-unreadable = { $file } cannot be read: { $reason }
 robot_file-size = { $file } is larger than { $most }

@@ -55,7 +55,6 @@ def added(text: str) -> str:
 MASS = '<mass value="0.6"/>'
 CASES = {
     "doctype": ('<!DOCTYPE robot [<!ENTITY a "b">]>\n' + ARM.split("\n", 1)[1], 1, "!DOCTYPE"),
-    "xml": (ARM.replace("</robot>", "<link"), 12, ""),
     "root": ("<sdf/>", 1, "sdf"),
     "xacro": (changed(MASS, '<mass value="${m}"/>'), 5, "mass"),
     "without": (changed(MASS, "<mass/>"), 5, "mass"),
@@ -125,7 +124,10 @@ def test_files_that_are_none_or_too_large_are_refused(tmp_path: Path) -> None:
     assert code_of(caught.value) == "absent"
     assert code_of(refused(tmp_path, b" " * 1_000_001)) == "size"
     for data in (b"", b"\x00\xff", b"<?xml version='1.0' encoding='klingon'?><robot/>"):
-        assert refused(tmp_path, data).message.code == "robot_file.at"
+        error = refused(tmp_path, data)
+        assert error.message.code == "robot_file.at_line"
+        assert str(error).startswith("arm.urdf, line 1: this is not XML: ")
+    assert refused(tmp_path, ARM.replace("</robot>", "<link")).message.arguments["line"] == 12
 
 
 def test_many_joints_must_be_locked(tmp_path: Path) -> None:
