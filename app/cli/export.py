@@ -55,14 +55,15 @@ class ExportFigure:
         from onpath.models.control.sides import DEFAULT_LAWS
 
         given = assignments(self.set)
-        entry = entry_named(self.robot)
+        robot = self.file_options.name_of(self.robot)
+        entry = entry_named(robot)
         machine = entry.make(with_values(entry.parameters(), given))
         parameters = {"output" if name == "law" else name: given[name] for name in given}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             written = figure(
                 self.file,
-                robot=self.file_options.name_of(self.robot),
+                robot=robot,
                 laws=self.law or tuple(DEFAULT_LAWS.values()),
                 paths={path_name(each): read_path(each, machine) for each in self.path} or PATHS,
                 sliders=self.slider or None,

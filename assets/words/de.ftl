@@ -1673,6 +1673,7 @@ site-control-path = die Wahl der Bahn
 ## Roboter aus Dateien
 
 robot_file-at = { $file }, Zeile { $line }, { $element }: { $reason }
+robot_file-at_line = { $file }, Zeile { $line }: { $reason }
 robot_file-absent = { $file }: Diese Datei gibt es nicht
 robot_file-unreadable = { $file } lässt sich nicht lesen: { $reason }
 robot_file-size = { $file } ist größer als { $most }
@@ -1723,6 +1724,7 @@ robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Tr�
 robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
 robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen

@@ -1314,6 +1314,7 @@ site-control-path = the choice of the path
 ## Robots from files
 
 robot_file-at = { $file }, line { $line }, { $element }: { $reason }
+robot_file-at_line = { $file }, line { $line }: { $reason }
 robot_file-absent = { $file }: there is no such file
 robot_file-unreadable = { $file } cannot be read: { $reason }
 robot_file-size = { $file } is larger than { $most }
@@ -1364,6 +1365,7 @@ robot_file-massless = what the joint { $joint } moves has no mass or inertia: ad
 robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² are enough, --armature { $armature }
 robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
+robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
 robot_file-still = the joint { $joint } has no travel between its limits, and stays still

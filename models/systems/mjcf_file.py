@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -54,12 +55,23 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
         mujoco: Any = import_module("mujoco")
     except ImportError:
         raise CodedError("robot_file.mujoco") from None
+    warned, before = list[str](), mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(warned.append)  # else they go to a file in the current folder
     try:
         model = mujoco.MjModel.from_xml_path(str(file))
     except (ValueError, RuntimeError) as error:
-        reason = shown(" ".join(str(error).split()), 200) or type(error).__name__
+        reason = _one_line(str(error)) or type(error).__name__
         raise CodedError("robot_file.mjcf", file=file.name, reason=reason) from None
-    return _Model(model, root, options).read()
+    finally:
+        mujoco.set_mju_user_warning(before)
+    read = _Model(model, root, options).read()
+    told = [Message("robot_file.mujoco_warns", {"reason": _one_line(each)}) for each in warned]
+    return replace(read, remarks=(*read.remarks, *told))
+
+
+def _one_line(text: str) -> str:
+    """What MuJoCo says, as it may appear in a message."""
+    return shown(" ".join(text.split()), 200)
 
 
 def _all(root: Element) -> Iterator[Element]:

@@ -124,7 +124,9 @@ def _made(
     if circle < LEAST_CIRCLE:
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
-    return RobotFile(entry=chain_entry(source), circle=circle, remarks=remarks)
+    text = f"{source.text} Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
+    entry = chain_entry(replace(source, text=text))
+    return RobotFile(entry=entry, circle=circle, remarks=remarks)
 
 
 def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> Array:
