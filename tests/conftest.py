@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 from collections.abc import Callable, Iterator
+from functools import _lru_cache_wrapper
 
 import numpy as np
 import pytest
 from hypothesis import settings
 
-from onpath.models.control.laws.registry import LAWS
+from onpath.models.control.laws.registry import LAWS, OWN_GAINS
 from onpath.models.paths.curves import HARMONICS, Curve, fourier
 from onpath.models.systems.five_bar import five_bar, load_links
 from tests.support.rig import Rig
@@ -23,13 +25,22 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from
 # when a shell has started the tests in the background
 
 
-@pytest.fixture(autouse=True)
+@pytest.fixture(scope="module", autouse=True)
 def only_our_laws() -> Iterator[None]:
-    """Remove the laws that a test has added: tests over all laws mean OnPath's own."""
-    before = set(LAWS)
+    """Remove the laws that a file of tests has added: tests over all laws mean OnPath's own.
+
+    Every loop has all gains in its settings, so those that have been built meanwhile go, too.
+    """
+    laws, gains = set(LAWS), set(OWN_GAINS)
     yield
-    for name in LAWS.keys() - before:
-        del LAWS[name]  # its gains stay, since loops of other laws may have been built with them
+    if laws == LAWS.keys():
+        return
+    for known, before in ((LAWS, laws), (OWN_GAINS, gains)):
+        for name in known.keys() - before:
+            known.pop(name)
+    for each in gc.get_objects():
+        if isinstance(each, _lru_cache_wrapper) and str(each.__module__).startswith("onpath."):
+            each.cache_clear()
 
 
 @pytest.fixture(scope="session")
