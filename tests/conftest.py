@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 import signal
 from collections.abc import Callable, Iterator
 from functools import _lru_cache_wrapper
@@ -25,11 +26,15 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from
 # when a shell has started the tests in the background
 
 
+KEEPS_LOOPS = re.compile(r"onpath\.(app|lessons|models\.(closed_loop|control|studies))\.")
+
+
 @pytest.fixture(scope="module", autouse=True)
 def only_our_laws() -> Iterator[None]:
     """Remove the laws that a file of tests has added: tests over all laws mean OnPath's own.
 
-    Every loop has all gains in its settings, so those that have been built meanwhile go, too.
+    Every loop has all gains in its settings, so those that have been built meanwhile go, too, and
+    everything else that is kept but the robots.
     """
     laws, gains = set(LAWS), set(OWN_GAINS)
     yield
@@ -39,7 +44,7 @@ def only_our_laws() -> Iterator[None]:
         for name in known.keys() - before:
             known.pop(name)
     for each in gc.get_objects():
-        if isinstance(each, _lru_cache_wrapper) and str(each.__module__).startswith("onpath."):
+        if isinstance(each, _lru_cache_wrapper) and KEEPS_LOOPS.match(str(each.__module__)):
             each.cache_clear()
 
 
