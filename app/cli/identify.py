@@ -38,7 +38,7 @@ class IdentifyCommand:
 
     def run(self) -> None:
         """Read, estimate, draw and print."""
-        from onpath.app.cli.experiment import assignments
+        from onpath.app.cli.assignments import assignments
         from onpath.app.common.atomic_file import check_plot, whole_file
         from onpath.app.exports.figures import save
         from onpath.app.exports.identification import (

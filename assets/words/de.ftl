@@ -1697,7 +1697,7 @@ robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
 robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
-robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
+robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze kann nicht simuliert werden: Machen Sie es in der Datei fest
 robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
 robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
 robot_file-mass = die Masse { $value } ist negativ

@@ -2,7 +2,7 @@
 
     S cos φ x'' + J φ'' + g S sin φ + p φ' = 0,
 
-the pendulum's equation of models/systems/pendulum_on_cart.py, has no motor in it; x'' is the input.
+the pendulum's equation of models/systems/cart_pendulum.py, has no motor in it; x'' is the input.
 """
 
 from __future__ import annotations

@@ -22,8 +22,8 @@ from onpath.models.systems.file_chain import (
     aligned,
     exact,
     many_joints,
+    turn,
 )
-from onpath.models.systems.file_chain import turn as turned
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, Fault, shown
 
@@ -153,7 +153,9 @@ class _Model:
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
                 if on_way:
-                    reason = Message("robot_file.free", {"type": shown(name)})
+                    reason = Message(
+                        "robot_file.free", {"type": "free" if kind == FREE else "ball"}
+                    )
                     raise Fault(self._element(name), reason)
                 continue
             anchor = Place(translation=np.array(model.jnt_pos[i]))
@@ -305,8 +307,8 @@ def _place(position: Any, quaternion: Any) -> Place:
     sine = float(np.linalg.norm(vector))
     if sine == 0:
         return Place(translation=np.array(position))
-    return Place(exact(turned(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
+    return Place(exact(turn(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
 
 
 def _moved(kind: int, axis: Array, value: float) -> Place:
-    return Place(translation=value * axis) if kind == SLIDE else Place(turned(axis, value))
+    return Place(translation=value * axis) if kind == SLIDE else Place(turn(axis, value))

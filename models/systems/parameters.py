@@ -178,18 +178,6 @@ def look_ahead_time(parameters: Parameters) -> float:
     return time_step(parameters) / 2
 
 
-def path_rise() -> float:
-    """A dataclass field for the rise of the path of a robot that takes space curves, [m]."""
-    return number(
-        0.0,
-        "m",
-        (-0.05, 0.05, 0.001),
-        "the path rises and falls by this, twice around: a saddle",
-        group="path",
-        label="Rise of the path",
-    )
-
-
 def rise_of(parameters: Parameters) -> float:
     """The rise of the path among a robot's parameters, [m]; 0 if it has none."""
     return getattr(parameters, "rise", 0.0)

@@ -1,4 +1,4 @@
-"""Reads small XML files that a stranger has written, with the line of each element."""
+"""Reads small XML files from untrusted sources, with the line of each element."""
 
 from __future__ import annotations
 

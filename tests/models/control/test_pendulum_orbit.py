@@ -12,7 +12,7 @@ import onpath
 from onpath.models.arrays import Array
 from onpath.models.control.laws.law import PLAN
 from onpath.models.control.pendulum_orbit import ORDER, Pendulum, orbit_plan
-from onpath.models.systems.pendulum_on_cart import LENGTH
+from onpath.models.systems.cart_pendulum import LENGTH
 from onpath.models.systems.system import GRAVITY
 
 MASS, SIDES = 0.1, {"hanging": 1.0, "upright": -1.0}
