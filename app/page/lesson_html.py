@@ -46,9 +46,9 @@ def heading(lesson: Lesson, step: Step, run: LessonState) -> str:
 def aims(lesson: Lesson, words: Words) -> str:
     """Prerequisites and goals for the first page; empty if the lesson states none."""
     front = lesson.front
-    return (
-        render("lesson/aims.html", front=front, words=words) if front.needs or front.goals else ""
-    )
+    if not front.needs and not front.goals:
+        return ""
+    return render("lesson/aims.html", needs=front.needs, goals=front.goals, words=words)
 
 
 def text(content: str) -> str:

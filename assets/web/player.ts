@@ -82,7 +82,7 @@ export class Player {
     private go(by: number): void {
         const found = this.prediction(this.index)
         if (by > 0 && found && this.waits(found)) {
-            elementOf(found).dispatchEvent(new Event("skip"))
+            this.forms.get(found.step)!.skip()
             if (this.page.steps[this.index]!.kind === "run") return
         }
         void this.open(this.index + by, true)
@@ -189,7 +189,6 @@ export class Player {
         if (!board) return
         if (WIDE.matches) this.section.querySelector(".beneath")!.append(board)
         else elementOf(this.prediction(this.index)!).querySelector(".committing")!.before(board)
-        dispatchEvent(new Event("resize"))
     }
 
     private play(): void {

@@ -9,7 +9,7 @@ from typing import Any
 from onpath.app.common.templates import environment, json_block
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
-from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.exports.standalone.page_style import page_style
 from onpath.app.steps.step_html import live
 from onpath.lessons.minutes import lesson_minutes
@@ -28,10 +28,10 @@ MESSAGES = (
     *("lesson.not_quite", "lesson.committed", "lesson.skipped", "site.draw_first"),
     *("lesson.drawn", "lesson.passed", "lesson.predict_before", "lesson.finish"),
     *("lesson.next", "lesson.no_number", "lesson.skip", "answer.check", "answer.keep"),
-    *("report.right", "report.chosen", "site.forgotten", "site.forget_sure", "site.read_done"),
+    *("report.right", "site.forgotten", "site.forget_sure", "site.read_done"),
     *("site.no_progress", "site.not_kept", "site.link_only_lab", "report.not_happened"),
     *("lesson.read", "site.again", "site.skipped", "site.no_platform", "site.no_room"),
-    *("site.to_robots", "site.to_text", "site.skip_short", "site.review", "site.symbols", *PARTS),
+    *("site.to_robots", "site.to_text", "site.skip_short", "site.review", "site.symbols", *CHART),
 )
 
 
@@ -142,7 +142,6 @@ def _page(
 def _messages(words: Words) -> dict[str, str]:
     """The messages of a page's script; it fills in the {names} in them."""
     messages = {key: words(key) for key in MESSAGES}
-    messages["lesson.passed_best"] = words("lesson.passed_best", best="{best}", unit="{unit}")
     messages["lesson.step"] = words("lesson.step", step="{step}", steps="{steps}")
     messages["chart.point"] = words("chart.point", time="{time}")
     messages["site.done"] = words("site.done", done="{done}", all="{all}", tasks="{tasks}")
