@@ -115,6 +115,13 @@ def pivot_damping(default: float) -> Any:
     return number(default, "N m s", bounds, text, group="robot", label="Pivot damping")
 
 
+def velocity_filter(default: float) -> Any:
+    """A dataclass field for the filter that gives velocities from measured angles, [s]."""
+    text = "time constant of the velocity filter behind them; no effect without steps or noise"
+    bounds = (0.0005, 0.05, 0.0005)
+    return number(default, "s", bounds, text, group="realism", label="Velocity filter")
+
+
 def path_rise() -> Any:
     """A dataclass field for the rise of the path of a robot that takes space curves, [m]."""
     text, bounds = "the path rises and falls by this, twice around: a saddle", (-0.05, 0.05, 0.001)
