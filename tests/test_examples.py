@@ -16,6 +16,7 @@ FOLDER = ROOT / "assets" / "examples"
 EXAMPLES = sorted(FOLDER.glob("*.py"))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
 def test_an_example_runs_and_prints_its_result(file: Path, tmp_path: Path) -> None:
     done = subprocess.run(

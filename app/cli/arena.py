@@ -30,25 +30,25 @@ class ArenaCommand:
     """Run all control laws, and yours, through the same trials; write a page and a CSV file.
 
     The first round has every obstruction once, on the circle with an exact model. Further rounds
-    draw path and condition. The page is written after each round, and when you press Ctrl-C.
+    have random paths and conditions. The page is written after each round and on Ctrl-C.
     """
 
     law: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
-    """Laws of yours, as my_law.py:Name, or typed: "across = …; along = …"."""
+    """Your laws, as my_law.py:Name, or typed: "across = …; along = …"."""
     robot: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Name of a robot; repeat for more. By default the five-bar and the two-link arm."""
     only: bool = False
-    """Compare the laws given alone, which may be names, not also those of OnPath."""
+    """Compare only the laws given, which may also be names of OnPath's laws."""
     rounds: int = 3
     """Number of rounds."""
     seed: int = 1
-    """Chooses the random numbers: the same seed, the same trials."""
+    """Seed of the random numbers: the same seed gives the same trials."""
     processes: int = 0
     """Number of processes; 0: one for each processor."""
     html: Path = Path("arena.html")
     """The page. Its live figures are in a folder beside it, NAME-figures."""
     csv: Path = Path("arena.csv")
-    """All runs, one a line."""
+    """All runs, one per line."""
     figures: bool = True
     """Write a live figure of each law on each robot, unless a law is a Python function."""
     language: str = "en"
@@ -62,7 +62,7 @@ class ArenaCommand:
 
         began, rows = time.monotonic(), self._rows()
         trials, words = trials_of(tuple(rows), self.rounds, self.seed), Words(self.language)
-        shown = _Shown(self, rows, planned=sum(map(len, trials)), words=words)
+        shown = _Report(self, rows, planned=sum(map(len, trials)), words=words)
         processes = Processes(self.processes or os.cpu_count() or 1)
         try:
             for number, each in enumerate(trials):
@@ -119,8 +119,8 @@ class ArenaCommand:
         return rows
 
 
-class _Shown:
-    """What has been found so far, and how it is written."""
+class _Report:
+    """The results so far, and the files that they are written to."""
 
     def __init__(
         self, command: ArenaCommand, rows: dict[str, list[Row]], planned: int, words: Words

@@ -52,7 +52,7 @@ class CompareCommand:
 
     def run(self) -> None:
         """Simulate, then write and print the requested output."""
-        from onpath.app.cli.experiment import assignments
+        from onpath.app.cli.assignments import assignments
         from onpath.models.studies.comparison import as_data
         from onpath.models.studies.experiments import forecast_text, on_path, path_remark
         from onpath.models.studies.unused import unused_text
@@ -88,22 +88,17 @@ class CompareCommand:
         print(json.dumps(data, indent=2) if self.json else table(results))
 
     def _contest(self) -> Contest:
-        from onpath.app.cli.experiment import assignments
+        from onpath.app.cli.assignments import assignments
         from onpath.app.cli.path_option import read_path
         from onpath.models.control.settable import with_values
         from onpath.models.paths.curves import circle
         from onpath.models.studies.comparison import Contest
         from onpath.models.studies.experiments import check_path
-        from onpath.models.systems.catalogue import ROBOTS
-        from onpath.models.systems.parameter_specs import unknown_name
         from onpath.models.systems.parameters import rise_of
 
-        robot = self.file_options.name_of(self.robot)
-        if robot not in ROBOTS:
-            raise unknown_name(robot, list(ROBOTS), "robot")
+        entry = self.file_options.entry_of(self.robot)
         if not 0.005 <= self.radius <= 0.12:
             raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
-        entry = ROBOTS[robot]
         parameters = with_values(entry.parameters(), assignments(self.set))
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from onpath.app.cli.assignments import assignments
 from onpath.app.cli.path_option import read_path
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
@@ -127,14 +128,12 @@ class ZeroDynamicsCommand:
 
     def _of_robot(self) -> None:
         from onpath.app.exports.zero_dynamics import robot_json, robot_study, robot_table
-        from onpath.models.systems.catalogue import ROBOTS
-        from onpath.models.systems.parameter_specs import unknown_name
+        from onpath.models.systems.catalogue import robot_named
 
-        if self.robot not in ROBOTS:
-            raise unknown_name(self.robot, list(ROBOTS), "robot")
+        entry = robot_named(self.robot)
         if self.plot:
             raise ValueError("--plot: only the zero dynamics of the flexible robot are drawn")
-        result = robot_study(ROBOTS[self.robot], assignments(self.set), self.at)
+        result = robot_study(entry, assignments(self.set), self.at)
         if isinstance(result, str):
             print(json.dumps({"robot": self.robot, "exponents_1_s": []}) if self.json else result)
         else:
@@ -166,21 +165,6 @@ def laws_named(text: str, robot: Robot) -> list[str]:
         if name not in LAWS:
             raise unknown_name(name, [*LAWS, "all", "both"], "law")
     return names
-
-
-def assignments(pairs: tuple[str, ...], option: str = "--set") -> dict[str, str]:
-    """The values of --set, or another option that may be repeated, by name.
-
-    Raises:
-        ValueError: one of them is not of the form name=value.
-    """
-    values: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        if not equals or not name or not value:
-            raise ValueError(f"{option} {pair}: expected name=value")
-        values[name.strip()] = value.strip()
-    return values
 
 
 def _table(result: dict, reasons: dict[str, str]) -> str:

@@ -10,7 +10,7 @@ from typing import Annotated
 
 import tyro
 
-from onpath.app.cli.experiment import assignments
+from onpath.app.cli.assignments import assignments
 from onpath.app.cli.export_lesson import ExportLesson
 from onpath.app.cli.export_site import ExportSite
 from onpath.app.cli.path_option import path_name, read_path
@@ -50,21 +50,20 @@ class ExportFigure:
     def run(self) -> None:
         """Write the page, and print its size."""
         from onpath.app.notebook.figure import PATHS, figure
-        from onpath.app.notebook.simulate import entry_named
         from onpath.models.control.settable import with_values
         from onpath.models.control.sides import DEFAULT_LAWS
 
         given = assignments(self.set)
-        entry = entry_named(self.robot)
-        machine = entry.make(with_values(entry.parameters(), given))
+        entry = self.file_options.entry_of(self.robot)
+        robot = entry.make(with_values(entry.parameters(), given))
         parameters = {"output" if name == "law" else name: given[name] for name in given}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             written = figure(
                 self.file,
-                robot=self.file_options.name_of(self.robot),
+                robot=entry,
                 laws=self.law or tuple(DEFAULT_LAWS.values()),
-                paths={path_name(each): read_path(each, machine) for each in self.path} or PATHS,
+                paths={path_name(each): read_path(each, robot) for each in self.path} or PATHS,
                 sliders=self.slider or None,
                 controls=self.control or None,
                 choices=self.choice,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import tyro
 
-from onpath.app.cli.experiment import assignments
+from onpath.app.cli.assignments import assignments
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.exports.summary_text import finite, summary_lines
@@ -86,13 +86,9 @@ class FigureCommand:
     def _rank(self) -> dict[str, Any]:
         from onpath.app.exports.rank_figure import draw_rank_figure, rank_summary
         from onpath.models.control.settable import changed
-        from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-        from onpath.models.systems.parameter_specs import unknown_name
+        from onpath.models.systems.catalogue import FIVE_BAR
 
-        name = self.file_options.name_of(self.robot) or FIVE_BAR.name
-        if name not in ROBOTS:
-            raise unknown_name(name, list(ROBOTS), what="robot")
-        entry = ROBOTS[name]
+        entry = self.file_options.entry_of(self.robot or FIVE_BAR.name)
         parameters = entry.parameters()
         for key, value in assignments(self.set).items():
             parameters = changed(parameters, key, value)

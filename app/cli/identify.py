@@ -24,7 +24,7 @@ class IdentifyCommand:
     """Name of the robot, or its URDF or MJCF file."""
     file_options: FileOptions = NO_OPTIONS
     column: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Of a real arm's log, the name of a column, as q1="Joint 1"; repeat for t, q1, q2, tau1, tau2
+    """Name of a column of a real arm's log, as q1="Joint 1"; repeat for t, q1, q2, tau1, tau2
     and, if the log has them, forces at the end-point (force1, force2). Times may be uneven."""
     unit: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
@@ -32,14 +32,13 @@ class IdentifyCommand:
     law: str = ""
     """Use only the rows of this control law; all by default."""
     plot: Path | None = None
-    """Draw the torques and what the model does not explain of them to this .png, .svg or .pdf
-    file."""
+    """Draw the torques and their residuals to this .png, .svg or .pdf file."""
     json: bool = False
     """Print the result as JSON."""
 
     def run(self) -> None:
         """Read, estimate, draw and print."""
-        from onpath.app.cli.experiment import assignments
+        from onpath.app.cli.assignments import assignments
         from onpath.app.common.atomic_file import check_plot, whole_file
         from onpath.app.exports.figures import save
         from onpath.app.exports.identification import (

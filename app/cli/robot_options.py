@@ -6,9 +6,14 @@ import sys
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
+
+from onpath.app.cli.assignments import assignments
+
+if TYPE_CHECKING:
+    from onpath.models.systems.robots import RobotEntry
 
 SUFFIXES = (".urdf", ".xml", ".mjcf")
 
@@ -31,8 +36,18 @@ class RobotOptions:
     package: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
     """For a robot's file: the folder of a package with meshes, as NAME=FOLDER; repeat for more."""
 
+    def entry_of(self, robot: str) -> RobotEntry:
+        """The robot of this name, or one from a file, which is added to the catalogue.
+
+        Raises:
+            ValueError: see `name_of`, or there is no such robot.
+        """
+        from onpath.models.systems.catalogue import robot_named
+
+        return robot_named(self.name_of(robot))
+
     def name_of(self, robot: str) -> str:
-        """The name of a robot in the catalogue, to which a file is added.
+        """The name of a robot in the catalogue: the one given, or that of a file, which is added.
 
         What has been left out of the file is printed to stderr.
 
@@ -72,7 +87,7 @@ def is_file(robot: str) -> bool:
 
 def _numbers(option: str, pairs: tuple[str, ...]) -> dict[str, float]:
     numbers = dict[str, float]()
-    for name, text in _pairs(option, pairs, "joint=value").items():
+    for name, text in assignments(pairs, option, "joint=value").items():
         try:
             numbers[name] = float(text)
         except ValueError:
@@ -81,18 +96,8 @@ def _numbers(option: str, pairs: tuple[str, ...]) -> dict[str, float]:
 
 
 def _folders(pairs: tuple[str, ...]) -> dict[str, Path]:
-    folders = {n: Path(text) for n, text in _pairs("--package", pairs, "NAME=FOLDER").items()}
+    folders = {n: Path(text) for n, text in assignments(pairs, "--package", "NAME=FOLDER").items()}
     for name, folder in folders.items():
         if not folder.is_dir():
             raise ValueError(f"--package {name}={folder}: there is no such folder")
     return folders
-
-
-def _pairs(option: str, pairs: tuple[str, ...], form: str) -> dict[str, str]:
-    values = dict[str, str]()
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        if not equals or not name or not value:
-            raise ValueError(f"{option} {pair}: expected {form}")
-        values[name.strip()] = value.strip()
-    return values

@@ -19,7 +19,7 @@ from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 if TYPE_CHECKING:
     from onpath.app.classroom.classroom import Classroom
     from onpath.models.paths.path_design import PathDesign
-    from onpath.models.systems.catalogue import RobotEntry
+    from onpath.models.systems.robots import RobotEntry
 
 SHORTEST_HANG = 1.0  # [s]
 
@@ -104,13 +104,9 @@ class Serve:
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
-        from onpath.models.systems.catalogue import ROBOTS
-        from onpath.models.systems.parameter_specs import unknown_name
 
-        robot = self.file_options.name_of(self.robot)
-        if robot not in ROBOTS:
-            raise unknown_name(robot, list(ROBOTS), "robot")
-        law = self._law(ROBOTS[robot])
+        entry = self.file_options.entry_of(self.robot)
+        law = self._law(entry)
         keys = given_keys()
         classrooms = open_classes(keys) if self.classroom else []
         try:
@@ -119,7 +115,7 @@ class Serve:
                 self.port,
                 self.lessons,
                 database_url(self.database),
-                robot=ROBOTS[robot],
+                robot=entry,
                 open_browser=self.open and self.socket is None,
                 classrooms=classrooms,
                 ready=partial(print_classes, classrooms, key_is_known=bool(keys)),
@@ -127,7 +123,7 @@ class Serve:
                 retention=Retention(self.keep_days, self.most_labs),
                 hang_seconds=self.hang_seconds,
                 privacy_url=self.privacy_url,
-                path=self._path(ROBOTS[robot]),
+                path=self._path(entry),
                 law=law,
                 course_url=self.course_url,
                 allowed_origins=self.origin,
@@ -140,10 +136,10 @@ class Serve:
         return None
 
     def _law(self, entry: RobotEntry) -> str:
-        """The first of the laws of the user's own, all of which are added; "" if there are none.
+        """Add the user's own laws, and return the name of the first; "" if there are none.
 
         Raises:
-            ValueError: one has an error, as far as a loop of this robot shows it.
+            ValueError: one of them has an error that a loop of this robot shows.
         """
         from onpath.app.common.own_laws import compiled_law
         from onpath.models.closed_loop.simulation import kernel_of, kind_of
@@ -188,7 +184,7 @@ def _is_web_address(text: str) -> bool:
 
 
 def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: bool) -> None:
-    """Print the address of each class, in a terminal as a QR code, too, and its code.
+    """Print the address and code of each class, and in a terminal a QR code of the address.
 
     Args:
         site: the address at which other devices open the lab.
@@ -205,7 +201,7 @@ def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: b
         print(f"class:         {address}     class code {room.code.upper()}{of}")
         if is_local(site):
             print("               Only this computer can open it: --host 0.0.0.0 lets others in.")
-        elif len(classrooms) == 1 and _is_terminal(code := qr_text(address)):
+        elif len(classrooms) == 1 and _can_show(code := qr_text(address)):
             print(code)
         if not key_is_known:
             key = shown(room.key)
@@ -213,8 +209,8 @@ def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: b
     sys.stdout.flush()
 
 
-def _is_terminal(text: str) -> bool:
-    """Whether a text can be shown in a terminal."""
+def _can_show(text: str) -> bool:
+    """Whether the output is a terminal that can show a text."""
     try:
         text.encode(sys.stdout.encoding or "ascii")
     except UnicodeEncodeError:

@@ -1,4 +1,4 @@
-"""Laws as `onpath.simulate` and the command line take them: a name, a text, or one's own Python."""
+"""Laws as Python and the command line accept them: a name, a text, or code of the user's own."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ def law_given(law: Any) -> str:
 
 
 def compiled_law(law: Any) -> str:
-    """The name of a law, as `law_given`, but none that is a function, called between the ticks.
+    """The name of a law, as `law_given` returns it, unless the law is a Python function.
 
     Raises:
-        ValueError: it is one, or see `law_given`.
+        ValueError: it is a function; or see `law_given`.
     """
     name = law_given(law)
     if law_named(name).called is not None:
@@ -99,10 +99,11 @@ class _Watch:
     late: float = 0.0
 
     def __call__(self, now: Now) -> Any:
-        """What the function returns.
+        """Call the function.
 
         Raises:
-            TimeoutError: it has been stopped, in the line that ran then, even in an endless loop.
+            TimeoutError: it took too long. It is stopped in the line that is running, even in an
+                endless loop.
         """
         begin, allowed = time.thread_time(), LATE - self.late + now.interval
         reason = f"it takes longer than its interval of {1e3 * now.interval:g} ms"

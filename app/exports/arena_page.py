@@ -11,6 +11,7 @@ import numpy as np
 
 from onpath.app.common.own_laws import as_given
 from onpath.app.common.templates import render
+from onpath.lessons.labels import path_label, robot_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
@@ -27,7 +28,6 @@ from onpath.models.studies.arena import (
     table,
 )
 from onpath.models.studies.path_text import curve_from_text
-from onpath.models.systems.catalogue import ROBOTS
 
 SHOWN: dict[str, tuple[float, str, int]] = {
     "force_N": (1.0, "N", 2),
@@ -85,7 +85,7 @@ def arena_page(contents: Contents, words: Words) -> str:
                 }
             )
         number = len({each.trial.number for each in results})
-        robots.append({"label": _robot(robot, words), "lines": lines, "trials": number})
+        robots.append({"label": robot_label(robot, words), "lines": lines, "trials": number})
         runs += [
             _run(results[i], mark, titles, contents, words) for i, mark in sorted(marks.items())
         ]
@@ -111,10 +111,6 @@ def arena_page(contents: Contents, words: Words) -> str:
         planned=contents.planned,
         command=contents.command,
     )
-
-
-def _robot(name: str, words: Words) -> str:
-    return words.get(f"machine.{name}.label", ROBOTS[name].label)
 
 
 def _limit(row: Row) -> str:
@@ -156,8 +152,8 @@ def _told(name: str, value: float, words: Words) -> str:
 def _described(trial: Trial, words: Words) -> dict[str, object]:
     return {
         "number": trial.number,
-        "robot": _robot(trial.robot, words),
-        "path": words.get(f"path.{trial.path}", trial.path),
+        "robot": robot_label(trial.robot, words),
+        "path": path_label(trial.path, words),
         "obstruction": words(f"arena.{trial.obstruction}"),
         "condition": words(f"arena.{trial.condition}"),
     }
@@ -262,7 +258,7 @@ def markdown(contents: Contents, words: Words) -> str:
         rows = contents.rows[robot]
         cells = table(rows, results)
         number = len({each.trial.number for each in results})
-        lines = [f"{_robot(robot, words)}, {words('arena.trials', count=number)}", ""]
+        lines = [f"{robot_label(robot, words)}, {words('arena.trials', count=number)}", ""]
         lines += ["| " + " | ".join([words("arena.law"), "", *units, words("arena.stops")]) + " |"]
         lines += ["|" + "---|" * (len(units) + 3)]
         for row in rows:

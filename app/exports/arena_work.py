@@ -1,4 +1,4 @@
-"""What the processes of an arena do: simulate, and write figures."""
+"""The work of an arena's processes: simulating, and writing figures."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Job:
     trials: tuple[Trial, ...]
 
     def failed(self, reason: str) -> list[Result]:
-        """The results if no run has ended: all are stopped."""
+        """The results if the process has failed: all runs are stopped."""
         return [
             Result(law, remedy, trial, stopped_at_s=0.0, reason=reason)
             for law, remedy in self.rows
@@ -46,7 +46,7 @@ class FigureJob:
 
 
 class Processes:
-    """Several processes that do jobs at the same time.
+    """Several processes that work in parallel.
 
     Args:
         count: how many.
@@ -56,7 +56,7 @@ class Processes:
         self._all = [ExportProcess() for _ in range(count)]
 
     def each(self, work: Callable[[Any], Any], jobs: Sequence[Any]) -> Iterator[Any]:
-        """The results of `work(job)` for all jobs, as they come; begins with the first jobs.
+        """The results of `work(job)` for all jobs, in the order in which they are finished.
 
         Raises:
             ExportError: a job has failed.

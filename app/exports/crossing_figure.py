@@ -62,8 +62,8 @@ def _draw_plane(axes: Axes, experiment: Experiment, run: Trajectory) -> None:
     axes.plot(*path.T, color="0.8", linewidth=5)
     axes.plot(*z.T, color=of_law(run.controller).hex, linewidth=1.6)
     axes.plot(*z[-1], "s", color=of_law(run.controller).hex, markersize=7)
-    where = z[np.isin(run.t, jumps(run))]
-    axes.plot(*where.T, "x", color=WARNING.hex, markersize=9, markeredgewidth=2)
+    jumped = z[np.isin(run.t, jumps(run))]
+    axes.plot(*jumped.T, "x", color=WARNING.hex, markersize=9, markeredgewidth=2)
     axes.set_aspect("equal")
     axes.set_xlabel("$z_1$  [mm]")
 

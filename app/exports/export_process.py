@@ -22,6 +22,10 @@ class ExportError(Exception):
     """A file could not be created."""
 
 
+class ExportDied(ExportError):
+    """The process died, or took too long and was killed."""
+
+
 class ExportStopped(ExportError):
     """The process was stopped while a call was running or waiting for its turn."""
 
@@ -56,7 +60,8 @@ class ExportProcess:
             work: a module-level function whose arguments and result can be pickled.
 
         Raises:
-            ExportError: the call failed, timed out, or its process died.
+            ExportError: the call failed, or its time was over before its turn.
+            ExportDied: it took too long, or its process died.
             ExportStopped: `stop` was called in the meantime.
         """
         stops = self._stops
@@ -70,7 +75,7 @@ class ExportProcess:
             limit = threading.Timer(seconds, process.kill)
             limit.start()
             try:
-                for add, added in self._added:  # what the process does not find in our folders
+                for add, added in self._added:  # the new process finds only our own
                     _ask(process, add, (added,))
                 self._added = []
                 succeeded, result = _ask(process, work, arguments)
@@ -79,7 +84,7 @@ class ExportProcess:
                 if self._stops != stops:
                     raise ExportStopped("stopped") from error
                 reason = "the export process has died, or has been ended after its time"
-                raise ExportError(f"{reason}: {process.returncode}") from error
+                raise ExportDied(f"{reason}: {process.returncode}") from error
             finally:
                 limit.cancel()
                 self._begin_resting()

@@ -31,7 +31,11 @@ def identification_data(found: FileEstimate) -> dict[str, Any]:
         "torque_late_interval_s": None if late is None else _interval(late),
         "motion": None
         if motion is None
-        else {"moving": list(motion.moving), "tells": list(motion.told), "not": list(motion.left)},
+        else {
+            "moving": list(motion.moving),
+            "tells": list(motion.identified),
+            "not": list(motion.left),
+        },
     }
 
 
@@ -60,13 +64,15 @@ def identification_text(found: FileEstimate) -> str:
         for each in result.found
     ]
     if result.delay is None:
-        lines.append("  the motion does not tell whether torques are logged late: taken as in time")
+        lines.append(
+            "  the motion does not show whether torques are logged late; none are assumed to be"
+        )
     else:
         late = result.delay
         half = 1e3 * (late.high - late.value)
         lines.append(f"  {'torques logged late by':24s} {1e3 * late.value:9.3g} ms  ± {half:.2g}")
     if any(each.others for each in result.found):
-        lines.append("  the motion does not tell the parameters of a sum apart")
+        lines.append("  the motion cannot distinguish the parameters of a sum")
     if result.unexcited:
         lines.append(f"  not excited: {', '.join(result.unexcited)}")
     if found.motion:
@@ -74,27 +80,27 @@ def identification_text(found: FileEstimate) -> str:
     lines.append(f"  {100 * result.unexplained:.2g} % of the torque is not explained")
     lines.append(
         "  The true value is within ± with a probability of 95 %, judging by what is not"
-        " explained. That leaves out what all rows share: wrong geometry or scale of torques and"
-        " forces, forces that are not in the file, and terms that the model lacks."
+        " explained. That leaves out errors that all rows share: wrong geometry, wrong scales of"
+        " torques and forces, forces that are not in the file, and terms that the model lacks."
     )
     if result.unexplained > MUCH:
         lines.append(
-            f"  so much is not explained that no value above can be trusted: is the robot"
-            f" {found.robot}, and has every column the unit that it is read in?"
+            f"  this is too much for the values above to be trusted: is the robot"
+            f" {found.robot}, and does every column have the unit in which it is read?"
         )
     return "\n".join(lines)
 
 
 def _advice(found: FileEstimate) -> str:
-    """Which motion would tell what this one does not."""
+    """Which motion would identify what this one does not."""
     motion = found.motion
     assert motion is not None
     moving = " and ".join(motion.moving)
     rest = " alone" if len(motion.moving) < len(found.coordinates) else " together"
-    left = f"; no motion tells {', '.join(motion.left)} apart" if motion.left else ""
+    left = f"; no motion can distinguish {', '.join(motion.left)}" if motion.left else ""
     return (
         f"a record in which {moving}{rest} swing about here, slowly and quickly at once, would"
-        f" also tell {', '.join(motion.told)}{left}"
+        f" also tell {', '.join(motion.identified)}{left}"
     )
 
 

@@ -1,7 +1,7 @@
 """A path in a file that a browser has sent, read in a process of its own.
 
-The file is hostile. It is read with limits of size and time, in a process that a library's error or
-endless work cannot take the lab along with; see `ExportProcess`.
+The file may be hostile. It is read with limits of size and time, and in that process, so that a
+library that crashes or never returns cannot stop the lab; see `ExportProcess`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,12 @@ from dataclasses import dataclass
 from importlib import import_module
 
 from onpath.app.common.error_log import log_error
-from onpath.app.exports.export_process import ExportError, ExportProcess, ExportStopped
+from onpath.app.exports.export_process import (
+    ExportDied,
+    ExportError,
+    ExportProcess,
+    ExportStopped,
+)
 from onpath.app.lab.commands import FollowCurve
 from onpath.lessons.words import Words
 from onpath.models.errors import Coded, CodedError, Message
@@ -26,10 +31,10 @@ from onpath.models.systems.parameters import Parameters
 
 MOST_BYTES = 1_000_000
 STARTING = 60.0  # [s] for the process to start
-SECONDS = 15.0  # for one file
+SECONDS = 15.0  # [s] for one file
 process = ExportProcess()
 _queue = ThreadPoolExecutor(1, "path files")
-"""Passes one file at a time to the process, on behalf of all tabs."""
+"""Passes the files of all tabs to the process, one at a time."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,8 +77,8 @@ def read_upload(upload: Upload, language: str) -> FollowCurve | Message | ValueE
     )
 
 
-def started() -> None:
-    """Import what reading needs and is slow to import, so that it is not counted as reading."""
+def import_libraries() -> None:
+    """Import what is slow to import, so that a file's time limit does not include it."""
     for name in ("scipy.interpolate", "scipy.spatial", "svgpathtools"):
         with suppress(ImportError):  # svgpathtools is an extra
             import_module(name)
@@ -103,7 +108,7 @@ class PathReader:
 
         def work() -> None:
             try:
-                process.call(STARTING, started)
+                process.call(STARTING, import_libraries)
                 found = process.call(SECONDS, read_upload, upload, self._language)
                 if isinstance(found, FollowCurve):
                     follow(found)
@@ -113,8 +118,8 @@ class PathReader:
                 return  # the server is stopping
             except ExportError as error:
                 log_error(error)
-                late = "ended after its time" in str(error)
-                refuse(CodedError("error.file_takes_long" if late else "error.file_failed"))
+                died = isinstance(error, ExportDied)
+                refuse(CodedError("error.file_takes_long" if died else "error.file_failed"))
             finally:
                 self._busy = False
 

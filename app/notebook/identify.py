@@ -17,18 +17,18 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Identification:
-    """What a log tells about a robot; printed, it is a table.
+class IdentificationResult:
+    """The parameters of a robot that were identified from a log; printed as a table.
 
     Attributes:
-        found: the estimates with standard errors, residuals, and a motion that would tell more.
+        found: the estimates with standard errors, residuals, and a motion that would identify more.
     """
 
     found: FileEstimate
 
     @property
     def values(self) -> dict[str, float]:
-        """Estimates by name; the name of a sum is such as "a1 + 0.0484 g2" (SI)."""
+        """Estimates by name; a sum has a name such as "a1 + 0.0484 g2" (SI)."""
         return {each.label(): each.value for each in self.found.estimate.found}
 
     @property
@@ -38,12 +38,12 @@ class Identification:
 
     @property
     def delay(self) -> float | None:
-        """By how much the torques are logged late, [s]; None if the motion does not tell it."""
+        """Delay of the logged torques, [s]; None if the motion does not show it."""
         late = self.found.estimate.delay
         return None if late is None else late.value
 
     def plot(self, file: str | Path | None = None) -> Figure:
-        """Draw the torques, and what the model does not explain of them.
+        """Draw the torques and their residuals.
 
         Args:
             file: also write the picture to this .png, .svg or .pdf file.
@@ -74,7 +74,7 @@ def identify(
     columns: Mapping[str, str] | None = None,
     units: Mapping[str, str | float] | None = None,
     law: str = "",
-) -> Identification:
+) -> IdentificationResult:
     """Estimate a robot's parameters from the log of a real arm, or a CSV file of OnPath.
 
     The file is a table with the names of its columns in the first line. Separators, decimal sign
@@ -86,8 +86,8 @@ def identify(
             that of the arm.
         columns: names of the log's columns: "t", each coordinate, such as "q1", the torque of each
             motor, such as "tau1", and perhaps the force on the end-point, "force1" and so on.
-            Those that are not named are called as in files of OnPath: t_s, q1_rad, tau1_Nm,
-            force1_N. A log without forces is one of a free motion.
+            Those that are not given are named as in files of OnPath: t_s, q1_rad, tau1_Nm,
+            force1_N. A log without forces is of a free motion.
         units: of these columns, such as {"q1": "deg", "t": "ms"}, or factors to SI units, such as
             {"tau1": 0.085} for a current; others are in s, rad or m, N m or N, and N.
         law: use only the rows of this law, if there is a column `law`.
@@ -106,4 +106,4 @@ def identify(
     >>> bool(low < 0.0226 < high), bool(abs(result.delay) < 1e-3)
     (True, True)
     """
-    return Identification(identify_file(Path(file), entry_named(robot), law, columns, units))
+    return IdentificationResult(identify_file(Path(file), entry_named(robot), law, columns, units))

@@ -181,7 +181,7 @@ def laws() -> dict[str, str]:
 
     >>> import onpath
     >>> onpath.laws()["virtual_constraint"]
-    'Holds the end-point on the curve and leaves it alone along it, like a bead on a wire.'
+    'Holds the end-point on the curve by a virtual constraint, and leaves it alone along it.'
     """
     return {name: law.text for name, law in LAWS.items()}
 

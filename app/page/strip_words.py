@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import json
 
-from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.steps.player_words import player_words
 from onpath.lessons.words import Words
 
 _PLAIN = (
-    *PARTS,
+    *CHART,
     *("lens.closest", "lens.reference", "lens.straight"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
     *("run.press", "run.press_hint", "run.run", "run.pause", "run.run_hint", "run.rate"),

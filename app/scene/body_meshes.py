@@ -1,7 +1,7 @@
 """The meshes of a chain's bodies: those of its file, or capsules about its joints.
 
-`read_shapes` reads the files of strangers. It is called in a process of its own, with a time limit
-(`server/robot_shapes.py`); this package's own files are read here.
+`read_shapes` reads files that users bring. For these it is called in a process of its own, with a
+time limit (`server/robot_shapes.py`); this package's own files are read here.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ SHARP = np.radians(30.0)  # sharper edges are not smoothed
 THICKNESS = 0.045
 """Radius of a capsule, as a share of the robot's length."""
 THINNEST, THICKEST = 0.008, 0.06  # [m]
+INSTALL = 'pip install "onpath[meshes]"'
+"""The reason if a mesh needs a library that is not installed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +67,7 @@ def keep_shapes(chain: Chain, shapes: Sequence[Mesh | None]) -> None:
 
 
 def body_meshes(chain: Chain) -> BodyMeshes:
-    """The meshes of a chain; of a stranger's file, those that were kept by `keep_shapes`."""
+    """The meshes of a chain; for a user's file, those that `keep_shapes` has kept."""
     made = _MADE.get(chain)
     if made is None:
         shapes = _READ.get(chain)
@@ -94,11 +96,11 @@ def read_shapes(chain: Chain) -> tuple[list[Mesh | None], list[tuple[str, str]]]
         for shape in shapes:
             try:
                 solids.append(_solid(shape))
-            except Exception as error:  # whatever a library says about a stranger's file
+            except Exception as error:  # a library may raise anything about a user's file
                 left_out.append((_name_of(shape), _reason(error)))
         mesh = _joined(solids) if solids else None
         if solids and mesh is None:
-            left_out.append((_name_of(shapes[0]), 'pip install "onpath[meshes]"'))
+            left_out.append((_name_of(shapes[0]), INSTALL))
         meshes.append(mesh)
     return meshes, left_out
 
@@ -112,8 +114,8 @@ def _name_of(shape: Shape) -> str:
 
 
 def _reason(error: Exception) -> str:
-    if isinstance(error, ModuleNotFoundError | ImportError):
-        return 'pip install "onpath[meshes]"'
+    if isinstance(error, ImportError):
+        return INSTALL
     return (str(error).splitlines() or [type(error).__name__])[0][:80]
 
 
@@ -163,7 +165,7 @@ def _joined(solids: list[Any]) -> Mesh | None:
     if len(whole.faces) > DRAWN_TRIANGLES:
         try:
             whole = whole.simplify_quadric_decimation(face_count=DRAWN_TRIANGLES)
-        except (ImportError, ModuleNotFoundError):
+        except ImportError:
             if len(whole.faces) > MOST_DRAWN:
                 return None
     smooth = smooth_shade(whole, angle=SHARP, facet_minarea=None)
@@ -185,16 +187,13 @@ def _completed(chain: Chain, shapes: Sequence[Mesh | None]) -> BodyMeshes:
 
 def _capsule(body: Body, end: Array, radius: float) -> Mesh:
     """A bearing about the joint's axis, or a rail along it, and a rod to the end of the body."""
-    from trimesh.creation import capsule, cylinder, icosphere
+    from trimesh.creation import cylinder, icosphere
 
     slides = body.joint.slides
     height = 3.5 * radius if slides else 2.4 * radius
     solids: list[Any] = [cylinder(radius if slides else 1.25 * radius, height, sections=ROUND)]
-    if (length := float(np.linalg.norm(end))) > radius / 2:
-        rod: Any = capsule(height=length, radius=0.85 * radius, count=[ROUND, 6])
-        rod.apply_translation([0, 0, length / 2])
-        rod.apply_transform(_along(end / length))
-        solids.append(rod)
+    if np.linalg.norm(end) > radius / 2:
+        solids.append(_rod(end, 0.85 * radius))
     else:
         solids.append(icosphere(subdivisions=2, radius=radius))
     mesh = _joined(solids)
@@ -204,15 +203,13 @@ def _capsule(body: Body, end: Array, radius: float) -> Mesh:
 
 def _foot(first: Array, radius: float) -> Mesh:
     """A plate on the floor, z = 0, and a rod from it to the first joint."""
-    from trimesh.creation import capsule, cylinder
+    from trimesh.creation import cylinder
 
     plate: Any = cylinder(2.5 * radius, height=radius / 2, sections=2 * ROUND)
     plate.apply_translation([0, 0, radius / 4])
-    solids, length = [plate], float(np.linalg.norm(first))
-    if length > radius / 2:
-        rod: Any = capsule(height=length, radius=radius, count=[ROUND, 6])
-        rod.apply_translation([0, 0, length / 2])
-        rod.apply_transform(_along(first / length))
+    solids = [plate]
+    if np.linalg.norm(first) > radius / 2:
+        rod = _rod(first, radius)
         if first[2] >= 0:
             rod.vertices[:, 2] = np.maximum(rod.vertices[:, 2], 0.0)
         solids.append(rod)
@@ -221,11 +218,16 @@ def _foot(first: Array, radius: float) -> Mesh:
     return mesh
 
 
-def _along(direction: Array) -> Array:
-    """The transformation that turns z to a direction, (4, 4)."""
+def _rod(end: Array, radius: float) -> Any:
+    """A capsule from the origin to a point, a trimesh."""
+    from trimesh.creation import capsule
     from trimesh.geometry import align_vectors
 
-    return np.asarray(align_vectors([0, 0, 1], direction))
+    length = float(np.linalg.norm(end))
+    rod: Any = capsule(height=length, radius=radius, count=[ROUND, 6])
+    rod.apply_translation([0, 0, length / 2])
+    rod.apply_transform(np.asarray(align_vectors([0, 0, 1], end / length)))
+    return rod
 
 
 def _box_of(mesh: Mesh) -> Array:

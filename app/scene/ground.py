@@ -1,7 +1,7 @@
-"""The ground with the shadows of the robots' bases as one picture, which is quickly drawn.
+"""The ground with the shadows of the robots' bases, as one picture that is drawn quickly.
 
-A browser that draws in software takes a third of its time to look up a real shadow at every point
-of the ground.
+A browser that draws in software would spend a third of its time on looking up a real shadow at
+every point of the ground.
 """
 
 from __future__ import annotations

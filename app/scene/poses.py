@@ -19,7 +19,6 @@ PLACED = ("bars", "parts", "tips", "bodies")
 OF_BARS = ("bars", "quaternions", "lengths")
 """Fields with one row for each bar: first the links of all robots, then the pieces of strips, then
 the straight strips."""
-
 OF_BODIES = ("bodies", "attitudes")
 """Fields with one row for each moving body: first the first one of all robots, then the second."""
 

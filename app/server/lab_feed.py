@@ -61,10 +61,12 @@ class LabFeed(CountingDisplay):
     def show(self, lab: Lab, frame: int, stride: float) -> None:
         if self.page.is_ready and self.is_turn(lab, frame, stride):
             self._show_motion(lab)
-        if self._data is not None and self._last is not None:
+        if self._data is None:
+            return
+        lab = self._source(lab, 1.0)[0]
+        if self._last is not None:
             is_turn_of_data = is_turn(frame + self._offset, max(stride, EVERY))
-            shown, path = self._source(lab, 1.0)[0], self._last.path
-            self._data.follow(shown, path, is_turn_of_data, self.page.settle)
+            self._data.follow(lab, self._last.path, is_turn_of_data, self.page.settle)
 
     def _show_motion(self, lab: Lab) -> None:
         lab, _, student = self._source(lab, 1.0)

@@ -1,1 +1,1 @@
-"""A step of a lesson as a page shows it: HTML and data, for whatever plays the lesson."""
+"""A step of a lesson as HTML, the same wherever the lesson is played."""

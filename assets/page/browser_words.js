@@ -1,4 +1,4 @@
-// What the page says while the lab sends no texts: in the page's language, or else in the browser's.
+// What the page says when the lab sends no texts, in the page's language, or else in the browser's.
 const ownWords = (() => {
   "use strict";
 

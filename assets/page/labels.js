@@ -1,6 +1,6 @@
-// Texts in the scene, which viser draws black on a white box: with a rim of the paper's colour instead of
-// the box, which hides what is behind it and is there before its letters; and light on dark pages. Their
-// colours are in viser's shaders. The rim needs the pixels around a letter, which viser leaves out.
+// Texts in the scene. viser draws them black on a white box, which hides what is behind it and appears
+// before its letters. Here they have a rim of the paper's colour instead, and are light on dark pages.
+// The colours are in viser's shaders. The rim needs the pixels around a letter, which viser leaves out.
 (() => {
   "use strict";
 

@@ -14,7 +14,7 @@
   function keep() {
     try {
       localStorage.setItem("viser-user:upright", upright.matches ? "yes" : "no");
-    } catch {}  // of a browser without storage, the lab knows the shape of the scene
+    } catch {}  // without storage, the lab goes by the shape of the scene
   }
 
   upright.addEventListener("change", keep);

@@ -1,7 +1,7 @@
-// How the scene is drawn: plainly in a browser that draws in software, for which pictures take most of
-// the time, and finely elsewhere. The lab builds the scene, and reads the same entry; see QUALITY_KEY in
-// app/server/lab_server.py. In software, edges are not smoothed, plots are not drawn like the scene, and
-// the picture behind the scene, which viser draws although there is none, is left out.
+// How finely the scene is drawn: plainly in a browser that draws in software, which spends most of its
+// time on drawing, and finely elsewhere. The lab, which builds the scene, reads the same entry; see
+// QUALITY_KEY in app/server/lab_server.py. In software, edges are not smoothed, the canvases of plots are
+// kept in memory, and the background picture, which viser draws even when there is none, is left out.
 const webgl = (() => {
   "use strict";
 

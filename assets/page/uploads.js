@@ -1,5 +1,5 @@
-// Sends only the beginning of a file that is too large, so that the lab refuses it in words. Of
-// more, the lab would drop the parts in silence, or close the connection.
+// Sends only the beginning of a file that is too large, so that the lab can refuse it with a message.
+// If all of it were sent, the lab would silently drop the parts, or close the connection.
 (() => {
   "use strict";
 

@@ -1,6 +1,6 @@
-// Says when the scene's picture is lost, because the graphics driver was restarted, for instance, and
-// reloads the page when it can be drawn again; the lab goes on meanwhile. Without WebGL there is no
-// scene, and so no lab: the page then says so, and leads to the course, which needs none.
+// Tells the user when the scene's picture is lost, for instance because the graphics driver was restarted,
+// and reloads the page when it can be drawn again; the lab goes on meanwhile. Without WebGL there is no
+// scene, and so no lab: the page says so, and links to the course, which does not need WebGL.
 (() => {
   "use strict";
 

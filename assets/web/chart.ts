@@ -1,5 +1,5 @@
-// A chart over time: what acts is shaded and named where it is, lines are named where they run, and each event
-// tells its own peak. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
+// A chart over time. It shades when something acts on the robots, names each line beside it, and labels the peak
+// after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
 
 import { made } from "./controls"
 import { disc, letters, niceStep, Sheet, stroke, tones, type Pixel, type Tone } from "./ink"
@@ -38,7 +38,7 @@ const BOLD = "600 13px system-ui, sans-serif"
 const HALF = 8 // [px], of the height of a label
 const TRIED = 25 // times at which a line may be named
 const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], from the line to the middle of its name
-const LEAST_PEAK = 0.004 // of the height, below which a peak is not told
+const LEAST_PEAK = 0.004 // of the height, below which a peak is not labelled
 
 interface Box {
     left: number

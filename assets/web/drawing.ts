@@ -14,7 +14,7 @@ export class Drawing {
     private pointer: number | null = null // that draws
     private last = 0 // time at which it draws
 
-    /** `changed` is told of each change; the chart's ghost is the curve, or null. */
+    /** `changed` is called at each change; the chart's ghost is then the curve, or null. */
     constructor(private readonly chart: Chart, private readonly changed: () => void) {
         const { texts, plot } = chart
         this.points = Array.from({ length: POINTS }, (_, i) => {
@@ -101,7 +101,7 @@ export class Drawing {
         return at.map(rounded) as [number, number]
     }
 
-    /** Go on drawing; whoever goes back draws that part anew. */
+    /** Go on drawing; going back draws that part anew. */
     private extend(time: number, value: number): void {
         const { ghost, from, until } = this.chart
         const least = (until - from) / MOST

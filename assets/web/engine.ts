@@ -1,5 +1,5 @@
-// What the parts of a page know of the robots, whoever simulates them: WebAssembly in the page (local.ts),
-// or the server of a lab. Lengths are in metres, forces in newtons, times in seconds of the simulation.
+// What the parts of a page know of the robots, independently of how they are simulated; see local.ts.
+// Lengths are in metres, forces in newtons, times in seconds of the simulation.
 
 /** A point or a vector in the space of the end-points: two numbers, or three. */
 export type Vector = readonly number[]
@@ -26,7 +26,7 @@ export interface Sample {
     sides: readonly SideSample[]
 }
 
-/** What is said of a robot: its law's name and meaning, and what it does now, if that is worth a word. */
+/** The texts about a robot: the name and meaning of its law, and a caption of what it is doing, which may be empty. */
 export interface SideText {
     /** Its colours: 0 is the left robot's, 1 the right one's. */
     side: 0 | 1

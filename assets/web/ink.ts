@@ -8,9 +8,8 @@ const NAMES = [
     "side0", "side1", "dark0", "dark1",
 ] as const
 export type Tone = (typeof NAMES)[number]
-export type Tones = Record<Tone, string>
+type Tones = Record<Tone, string>
 
-const DARK = matchMedia("(prefers-color-scheme: dark)")
 const listeners = new Set<() => void>()
 let kept: Tones | null = null
 
@@ -21,14 +20,14 @@ export function tones(): Tones {
     return kept
 }
 
-/** Read the colours anew, and draw everything anew; a page calls it that changes its scheme by itself. */
+/** Read the colours again, and draw everything again; for a page that changes its scheme by itself. */
 export function retone(): void {
     kept = null
     for (const listener of listeners) listener()
 }
-DARK.addEventListener("change", retone)
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", retone)
 
-/** A canvas that is told its size. */
+/** A canvas that knows its size. */
 export class Sheet {
     readonly canvas = document.createElement("canvas")
     width = 0

@@ -1,4 +1,4 @@
-// The symbols in a lesson's texts: whoever points at one, or chooses it in the list, sees it on the robots.
+// The symbols in a lesson's texts: pointing at one, or choosing it in the list, shows it on the robots.
 
 import { made } from "./controls"
 import type { PageData } from "./lesson_data"

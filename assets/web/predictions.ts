@@ -3,11 +3,10 @@
 import { made } from "./controls"
 import { judged } from "./asked"
 import type { BlockData, PageData, Script, SketchData, StepData } from "./lesson_data"
-import { said, type Texts } from "./words"
+import { said, significant, type Texts } from "./words"
 import { given, type Answer, type Curves, type Notes } from "./notes"
 import { Chart, type Axes, type Span } from "./chart"
 import { Drawing } from "./drawing"
-import { local } from "./numbers"
 import { radiusOf } from "./strip"
 import type { Student } from "./student"
 
@@ -37,6 +36,8 @@ export interface Form {
     commit: HTMLButtonElement
     /** Where a curve is drawn; null if there is nothing to draw. */
     board: HTMLElement | null
+    /** Leave it out, unless it has been made. */
+    skip(): void
 }
 
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
@@ -62,7 +63,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             drawing.show()
             chart.draw()
         })
-        const seconds = local(data.seconds, 4, page.words["point"]!)
+        const seconds = significant(page, data.seconds, 4)
         chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
         chart.ghost = curveOf(notes.answers[key])
         const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
@@ -100,9 +101,8 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         show()
     }
     commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
-    element.addEventListener("skip", () => notes.answers[key] ?? finish({}))
     show()
-    return { commit, board }
+    return { commit, board, skip: () => void (notes.answers[key] ?? finish({})) }
 }
 
 /** How a prediction compares with what happened. */

@@ -12,7 +12,8 @@ export class Recorded extends Simulation {
     happenings: Happening[] = []
     /** Called before every frame of a 60th of a second; a script acts then. False: wait here. */
     before: (time: number) => boolean = () => true
-    private run = 0
+    /** Number of the run; each reset begins another one. */
+    run = 0
     private frame = 0
     private written = new Map<number, number>()
     private settings: Record<string, number | string> = {}
@@ -67,8 +68,8 @@ export class Recorded extends Simulation {
 
     override set(slider: number, value: number): void {
         super.set(slider, value)
-        const name = this.data.names?.[slider]
-        if (!name || !this.happenings) return // while it is being constructed
+        const name = this.data.names[slider]
+        if (!name) return
         this.settings[name] = value
         this.note("set", name)
     }
@@ -145,7 +146,7 @@ export class Recorded extends Simulation {
 
     private readonly at = (frame: number): number => Math.floor((frame * FRAME) / this.data.dt + 1e-9)
     private note(name: string, detail = "", robots: Robot[] = ROBOTS): void {
-        this.happenings?.push({ run: this.run, time: this.time, name, detail, robots })
+        this.happenings.push({ run: this.run, time: this.time, name, detail, robots })
     }
 
     private isStopped(robot: Robot): boolean {

@@ -13,7 +13,6 @@ export interface Kept {
     state: Float64Array
     law: number
     ticks: number
-    path: Path
 }
 
 export class Side {
@@ -86,8 +85,8 @@ export class Side {
     }
 
     readonly keep = (): Kept => {
-        const { law, ticks, path, kernels, state, longest } = this
-        return { row: this.logged(), state: kernels.numbers.slice(state, state + longest), law, ticks, path }
+        const { law, ticks, kernels, state, longest } = this
+        return { row: this.logged(), state: kernels.numbers.slice(state, state + longest), law, ticks }
     }
 
     /** Draw a past instant, or the present one. */

@@ -29,7 +29,7 @@ export class Simulation {
     readonly values = this.data.sliders.map(slider => slider.value)
     private readonly poles = new Poles(this.data, this.kernels)
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
-    /** Is told what the sides do. */
+    /** Called at each change. */
     changed: (change: Change) => void = () => {}
     /** The last minute of this run. */
     recent: Moment[] = [this.moment()]

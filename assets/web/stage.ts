@@ -29,13 +29,13 @@ export async function kernelsOf(name: string): Promise<Kernels> {
 }
 
 export class Stage {
-    private readonly stop = new AbortController()
     private pulled: [number, number] | null = null
 
     private constructor(
         readonly figure: Figure,
         readonly simulation: Recorded,
         private readonly into: HTMLElement,
+        private readonly ended: AbortController,
     ) {
         if (simulation.data.controls.includes("pull")) this.keys()
     }
@@ -44,13 +44,11 @@ export class Stage {
     static async open(data: SiteFigure, values: StepData["values"], into: HTMLElement): Promise<Stage> {
         const simulation = new Recorded(data, await kernelsOf(data.module), values)
         const ended = new AbortController()
-        const stage = new Stage(new Figure(simulation, into, ended.signal, false), simulation, into)
-        stage.stop.signal.addEventListener("abort", () => ended.abort())
-        return stage
+        return new Stage(new Figure(simulation, into, ended.signal, false), simulation, into, ended)
     }
 
     close(): void {
-        this.stop.abort()
+        this.ended.abort()
         this.into.replaceChildren()
     }
 
@@ -81,9 +79,9 @@ export class Stage {
         simulation.setUp()
         figure.changed()
         this.sliders()
-        let { run } = simulation.record()
+        let { run } = simulation
         simulation.before = time => {
-            if (simulation.record().run !== run) {
+            if (simulation.run !== run) {
                 this.cancel()
                 ended(false)
                 return true
@@ -92,8 +90,8 @@ export class Stage {
                 const [, act] = waiting.shift()!
                 if (act.rate) figure.engine.act({ do: "rate", rate: act.rate })
                 simulation.act(act)
-                if (simulation.record().run === run) continue
-                run = simulation.record().run
+                if (simulation.run === run) continue
+                run = simulation.run
                 before += time
                 time = 0
             }
@@ -126,7 +124,7 @@ export class Stage {
         const ways: Record<string, [number, number]> = {
             a: [-NUDGE, 0], d: [NUDGE, 0], w: [0, NUDGE], s: [0, -NUDGE],
         }
-        const options = { capture: true, signal: this.stop.signal }
+        const options = { capture: true, signal: this.ended.signal }
         const own = (event: KeyboardEvent) => {
             const key = event.key.toLowerCase()
             return isTyped(event) || !(key in ways || key === "x") ? "" : key

@@ -1,4 +1,4 @@
-// What a student has done in a lesson, and who judges it: the page itself, as here, or the server of a lab.
+// What a student has done in a lesson, and whether it is right.
 
 import { judge, statistic, type Verdict } from "./checks"
 import { gradeOf } from "./grade"
@@ -11,7 +11,7 @@ export interface Student {
     readonly notes: Notes
     /** Decides the order of options, which is always the same for a student. */
     readonly name: string
-    /** Is told whenever the notes have changed. */
+    /** Called whenever the notes have changed. */
     changed: () => void
     /** A step is open; the number after the last step is the end. */
     goes(step: number): void
@@ -21,7 +21,7 @@ export interface Student {
     writes(question: string, text: string): void
     /** A run was seen to its end; `asked` is the step of the prediction that it shows. */
     sees(step: number, asked: number, truth: Curves): void
-    /** How far a task is done in the present run; null if nobody can tell. */
+    /** How far a task is done in the present run; null if that is unknown. */
     result(task: TaskData): Result | null
 }
 

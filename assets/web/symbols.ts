@@ -1,6 +1,7 @@
 // What a symbol of a lesson's text means, drawn to scale over a robot; see lessons/symbols.py.
 
 import type { Point } from "./figure_data"
+import { stroke } from "./ink"
 
 /** What is known of a robot in a picture, [m]; x is to the right, y is up. */
 export interface Seen {
@@ -71,13 +72,8 @@ export function drawShapes(ink: CanvasRenderingContext2D, shapes: Shape[], pixel
 
 /** A line with a white rim, so that it is seen on the robot, too. */
 function trace(ink: CanvasRenderingContext2D, way: Point[], colour: string): void {
-    for (const [shade, width] of [["#ffffffd0", 8], [colour, 4]] as const) {
-        ink.strokeStyle = shade
-        ink.lineWidth = width
-        ink.beginPath()
-        for (const point of way) ink.lineTo(...point)
-        ink.stroke()
-    }
+    stroke(ink, way, "#ffffffd0", 8)
+    stroke(ink, way, colour, 4)
 }
 
 /** The path from θ = 0, or from its beginning if it is open, to a point on it. */

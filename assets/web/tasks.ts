@@ -1,4 +1,4 @@
-// The tasks of a step: how far they are done, looked at twice a second.
+// A task of a step, which shows how far it is done.
 
 import { made } from "./controls"
 import type { Verdict } from "./checks"

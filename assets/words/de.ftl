@@ -1667,6 +1667,7 @@ strip-lost = Keine Verbindung zum Labor; neuer Versuch läuft.
 ## Roboter aus Dateien
 
 robot_file-at = { $file }, Zeile { $line }, { $element }: { $reason }
+robot_file-at_line = { $file }, Zeile { $line }: { $reason }
 robot_file-absent = { $file }: Diese Datei gibt es nicht
 robot_file-unreadable = { $file } lässt sich nicht lesen: { $reason }
 robot_file-size = { $file } ist größer als { $most }
@@ -1690,7 +1691,7 @@ robot_file-twice = den Namen gibt es schon in Zeile { $line }
 robot_file-many = mehr als { $most } davon
 robot_file-joints = Auf dem Weg zur Spitze bewegen sich mehr als { $most } Gelenke: { $names }. Halten Sie einige mit --lock Gelenk=Wert (in Python lock=…)
 robot_file-type = unbekannter Typ { $type }
-robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze: Sperren Sie es
+robot_file-free = ein Gelenk vom Typ { $type } auf dem Weg zur Spitze kann nicht simuliert werden: Machen Sie es in der Datei fest
 robot_file-mimic = ein Gelenk, das einem anderen folgt, auf dem Weg zur Spitze: Sperren Sie es
 robot_file-outside = { $value } liegt außerhalb der Grenzen von { $low } bis { $high }
 robot_file-mass = die Masse { $value } ist negativ
@@ -1717,6 +1718,7 @@ robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Tr�
 robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
 robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen

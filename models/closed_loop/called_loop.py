@@ -1,8 +1,8 @@
 """A closed loop whose law is a Python function, which is called once in every control interval.
 
-The function is a law for studies: see `Now` in models/control/laws/python_law.py. What it raises
-and a result that is no command, stop the run, with file and line. So does what `Law.called` raises
-when the function takes longer than its interval (app/common/own_laws.py): nothing here has a clock.
+The function is a law for studies: see `Now` in models/control/laws/python_law.py. An exception or
+an invalid command stops the run, and the message has file and line. The time limit is not here,
+since models have no clock: app/common/own_laws.py wraps the function in one that raises.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def callable_loop(robot: Robot, kind: Kind, kernel: Kernel, loop: Loop) -> Loop:
 
 @dataclass(slots=True)
 class _Progress:
-    """What the calls of a run have left: the law with its memory, and the time.
+    """The law in a run, with its memory.
 
     Attributes:
         act: the function.
@@ -117,7 +117,7 @@ class CalledLoop(Loop):
         return state[None], rows[None]
 
     def _begin(self, state: Array) -> None:
-        """Go back to the law's memory at the last beginning if the run begins there again."""
+        """Restore the law's memory if the run begins again in the state of its last beginning."""
         if self._before is not None and np.array_equal(self._before[0], state):
             self._now = self._before[1]
         if self._now is None:
@@ -164,10 +164,10 @@ class CalledLoop(Loop):
 
 
 def _command(given: Any, p: int) -> Array:
-    """The numbers that a function has returned, shape (p,).
+    """The numbers that a function returned, shape (p,).
 
     Raises:
-        ValueError: they are no command.
+        ValueError: they are not a valid command.
     """
     form = f"{p} finite numbers, θ'' and λ''" + ("" if p == 2 else " in each normal direction")
     try:

@@ -2,12 +2,13 @@
 
     S cos φ x'' + J φ'' + g S sin φ + p φ' = 0,
 
-the pendulum's equation of models/systems/pendulum_on_cart.py, has no motor in it; x'' is the input.
+the pendulum's equation of models/systems/cart_pendulum.py, has no motor in it; x'' is the input.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,6 @@ from onpath.models.systems.system import GRAVITY
 
 ORDER = 4  # of the trigonometric polynomials of the plan
 STEPS = 128  # of the gains, per period
-FINE = 16  # of the motion, per step
 PERIODS = 12  # of the Riccati equation
 LENGTHS = 2.25  # a / (J / |S|): 1.5 times the length of a rod
 FAR, FAST = 0.01, 0.1  # e [m] and e' [m/s] that count as much as all of the energy
@@ -89,28 +89,22 @@ def orbit_plan(pendulum: Pendulum, swing: float) -> Array:
 
 def _motion(pendulum: Pendulum, swing: float) -> tuple[Array, Array, float]:
     """φ and φ' at `STEPS` instants of a period, and the time between them, [s]."""
-    step, state, time = 2 * np.pi / pendulum.rate / 4 / 400, np.array([swing, 0.0]), 0.0
-    while True:
-        later = _stepped(pendulum, state, step)
-        if later[0] <= 0:
-            break
-        state, time = later, time + step
-    period = 4 * (time + step * state[0] / (state[0] - later[0]))
-    state, found = np.array([swing, 0.0]), list[Array]()
-    for _ in range(STEPS):
-        found.append(state)
-        for _ in range(FINE):
-            state = _stepped(pendulum, state, period / STEPS / FINE)
-    return *np.array(found).T, period / STEPS
+    from scipy.integrate import solve_ivp  # slow to import
 
+    def moving(_time: float, state: Array) -> Array:
+        return pendulum.slope(state)
 
-def _stepped(pendulum: Pendulum, state: Array, h: float) -> Array:
-    """A step of the classical Runge-Kutta method."""
-    one = pendulum.slope(state)
-    two = pendulum.slope(state + h / 2 * one)
-    three = pendulum.slope(state + h / 2 * two)
-    four = pendulum.slope(state + h * three)
-    return state + h / 6 * (one + 2 * two + 2 * three + four)
+    def down(_time: float, state: Array) -> float:
+        return float(state[0])
+
+    options: Any = {"rtol": 1e-10, "atol": 1e-12}
+    begin, long = np.array([swing, 0.0]), 2 * np.pi / pendulum.rate
+    fall = solve_ivp(moving, (0, long), begin, events=down, **options)
+    assert fall.t_events is not None
+    period = 4 * float(fall.t_events[0][0])
+    instants = np.arange(STEPS) * period / STEPS
+    phi, rate = solve_ivp(moving, (0, period), begin, t_eval=instants, **options).y
+    return phi, rate, period / STEPS
 
 
 def _periodic_gains(drive: Array, step: float, energy: float) -> Array:

@@ -6,17 +6,19 @@
               with radius R, negative for the longer arc
 
 Codes hold until the next one, and M2 and M30 end the program. Where the tool is raised or lowered,
-a line ends; Z does not change within one. Numbers of lines and programs, comments and % mean
-nothing. What tells the machine something, but leaves the path as it is, has no effect: speeds,
-tools, pauses, coolant, and the codes in `WITHOUT_EFFECT`. Everything else is refused: a
-compensated tool, for example, would follow another path than the one read here.
+a line ends; Z does not change within one. Numbers of lines and programs, comments and % are
+skipped. Words that leave the path as it is have no effect: speeds, tools, pauses, coolant, and the
+codes in `WITHOUT_EFFECT`. Everything else is refused: a compensated tool, for example, would follow
+another path than the one read here.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import atan2, ceil, cos, hypot, isfinite, pi, sin, sqrt
+from typing import TypeVar
 
 from onpath.models.errors import CodedError
 from onpath.models.path_files.stroke import UNITS, Stroke, check_count, drawn_stroke
@@ -33,15 +35,16 @@ WITHOUT_EFFECT = frozenset(
     + [f"M{code}" for code in (0, 1, 3, 4, 5, 6, 7, 8, 9, 48, 49, 52)]
 )
 """Codes besides those above that leave the path in the plane as it is."""
-SPOKEN = frozenset("FSTHP")
-"""Letters whose numbers do, too."""
+LETTERS_WITHOUT_EFFECT = frozenset("FSTHP")
+"""Letters of further words without effect: speeds, tools and times."""
 ENDS = frozenset(("M2", "M30"))
 _COMMENT = re.compile(r"\([^()]*\)|;.*")
 _OBEYED = {f"G{code}" for code in (*MOTIONS, *SIZES, *WAYS)} | set("XYZIJRNO")
-_KNOWN = _OBEYED | WITHOUT_EFFECT | SPOKEN | ENDS
+_KNOWN = _OBEYED | WITHOUT_EFFECT | LETTERS_WITHOUT_EFFECT | ENDS
 _WORD = re.compile(r"\s*([A-Z])\s*([-+]?(?:\d+\.?\d*|\.\d+))", re.ASCII)
 
 Point = tuple[float, float]
+T = TypeVar("T")
 
 
 @dataclass(slots=True)
@@ -56,7 +59,7 @@ class _Machine:
     count: int = 0
     drawn: list[tuple[int, list[Point]]] = field(default_factory=list[tuple[int, list[Point]]])
     fresh: bool = True  # the next line begins where the machine is
-    unheeded: dict[str, None] = field(default_factory=dict[str, None])
+    without_effect: dict[str, None] = field(default_factory=dict[str, None])
 
     def lift(self, height: float, *, moves: bool, line: int) -> None:
         """Raise or lower the tool, which ends a line.
@@ -88,7 +91,7 @@ def strokes_of_gcode(text: str) -> tuple[list[Stroke], tuple[str, ...]]:
     """The lines that a tool draws, in the order of the file, and the words without effect.
 
     Raises:
-        CodedError: the text has anything else than the codes above, or an impossible arc; the
+        CodedError: the text has anything but the words above, or an impossible arc; the
             message names line and column.
     """
     machine = _Machine()
@@ -101,7 +104,7 @@ def strokes_of_gcode(text: str) -> tuple[list[Stroke], tuple[str, ...]]:
         if words.keys() & ENDS:
             break
     strokes = [drawn_stroke(points, f"line {line}") for line, points in machine.drawn]
-    return strokes, tuple(machine.unheeded)
+    return strokes, tuple(machine.without_effect)
 
 
 def _words(bare: str, line: int) -> dict[str, float]:
@@ -133,7 +136,7 @@ def _words(bare: str, line: int) -> dict[str, float]:
 
 
 def _at(bare: str, place: int) -> tuple[str, str]:
-    """Column and text of what stands at a place of a line, for a message."""
+    """Column and text of the word at a place of a line, for a message."""
     begin = place + len(bare[place:]) - len(bare[place:].lstrip())
     word = re.match(r"\S[^A-Z\s]*", bare[begin:])
     return str(begin + 1), repr((word[0] if word else bare[begin:])[:20])
@@ -141,13 +144,11 @@ def _at(bare: str, place: int) -> tuple[str, str]:
 
 def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:
     """Do what a line says."""
-    for codes, name in ((MOTIONS, "motion"), (SIZES, "unit"), (WAYS, "relative")):
-        said = [code for code in codes if f"G{code}" in words]
-        if len(said) > 1:
-            raise CodedError("error.gcode_both", line=str(line), text=f"G{said[0]}, G{said[1]}")
-        if said:
-            setattr(machine, name, codes[said[0]])
-    machine.unheeded.update((name, None) for name in words if name in WITHOUT_EFFECT | SPOKEN)
+    machine.motion = _code(words, MOTIONS, machine.motion, line)
+    machine.unit = _code(words, SIZES, machine.unit, line)
+    machine.relative = _code(words, WAYS, machine.relative, line)
+    without_effect = WITHOUT_EFFECT | LETTERS_WITHOUT_EFFECT
+    machine.without_effect.update((name, None) for name in words if name in without_effect)
     moves = words.keys() & set("XYIJR")
     if not moves and "Z" not in words:
         return
@@ -174,6 +175,14 @@ def _obey(machine: _Machine, words: dict[str, float], line: int) -> None:
         machine.go(_arc(machine, words, (x, y), line), line)
 
 
+def _code(words: dict[str, float], codes: Mapping[str, T], before: T, line: int) -> T:
+    """The meaning of the one of these G codes that a line has; the one before if it has none."""
+    found = [code for code in codes if f"G{code}" in words]
+    if len(found) > 1:
+        raise CodedError("error.gcode_both", line=str(line), text=f"G{found[0]}, G{found[1]}")
+    return codes[found[0]] if found else before
+
+
 def _arc(machine: _Machine, words: dict[str, float], end: Point, line: int) -> list[Point]:
     """Points of an arc after its beginning."""
     begin, clockwise = machine.at, machine.motion == 2
@@ -190,10 +199,9 @@ def _arc(machine: _Machine, words: dict[str, float], end: Point, line: int) -> l
     angle = atan2(begin[1] - y, begin[0] - x)
     sweep = (atan2(end[1] - y, end[0] - x) - angle) % (2 * pi)
     if hypot(end[0] - begin[0], end[1] - begin[1]) < ROUNDED / 20:
-        sweep = 2 * pi  # the whole circle
+        sweep = -2 * pi if clockwise else 2 * pi  # the whole circle
     elif clockwise:
         sweep -= 2 * pi
-    sweep = -2 * pi if clockwise and sweep == 2 * pi else sweep
     count = max(2, ceil(abs(sweep) / TURN))
     points = list[Point]()
     for i in range(1, count + 1):

@@ -51,7 +51,7 @@ def placed(stroke: Stroke, placing: Placing) -> Stroke:
     """The line at its place in the plane, [m].
 
     Raises:
-        CodedError: it is then too large, or a line without length that is to fit.
+        CodedError: it is then too large, or a line without length has no size to fit.
     """
     points = stroke.points * placing.scale
     low, high = points.min(0), points.max(0)
@@ -66,7 +66,7 @@ def placed(stroke: Stroke, placing: Placing) -> Stroke:
     if not farthest <= LARGEST:
         raise CodedError("error.file_too_large", farthest=f"{farthest:.4g}", most=f"{LARGEST:g}")
     closed = stroke.closed if placing.closed is None else placing.closed
-    return replace(stroke, points=points, closed=closed is not False)
+    return replace(stroke, points=points, closed=closed)
 
 
 def curve_of(stroke: Stroke, placing: Placing) -> Curve:

@@ -1,4 +1,4 @@
-"""A path from a file, whatever program wrote it, with remarks on what was done to it.
+"""Reads a path from a file of any of these kinds, with remarks on what was done to it.
 
 @points.csv                      a path in a file
 @logo.svg fit=0.1 corners=round  with options, see `Placing`
@@ -47,8 +47,8 @@ class PathFile:
 
     Attributes:
         curve: the path.
-        remarks: what its user should know of it: which line was taken, how far the path is from
-            it, the smallest radius of its bends.
+        remarks: what the user should know about it: which line was taken, how far the path is
+            from it, the smallest radius of its bends.
     """
 
     curve: Curve
@@ -113,7 +113,7 @@ def _path(stroke: Stroke, placing: Placing, remarks: list[Message]) -> PathFile:
 
 
 def read_reference(text: str) -> tuple[Path, Placing]:
-    """File and options of a text such as `logo.svg fit=0.1 open`; the name may have blanks.
+    """File and options of a text such as `logo.svg fit=0.1 open`; the name may contain spaces.
 
     Raises:
         CodedError: an option is unknown or has an impossible value.
@@ -173,13 +173,13 @@ def _strokes(
     if name.lower().endswith(GCODE) or _GCODE.match(head):
         text = text_of(data, encoding_of(data[:4]))
         strokes, words = strokes_of_gcode(text)
-        unheeded = Message("say.gcode_words", {"words": ", ".join(words)})
-        return _in_units(strokes, placing, UNITS["mm"]), [unheeded] if words else []
+        remark = Message("say.gcode_words", {"words": ", ".join(words)})
+        return _in_units(strokes, placing, UNITS["mm"]), [remark] if words else []
     return [stroke_of_table(data, placing.unit)], []
 
 
 def _in_units(strokes: list[Stroke], placing: Placing, usual: float) -> list[Stroke]:
-    """The strokes of a file whose unit is said otherwise."""
+    """The strokes in the unit that the user gives, instead of the usual one, [m]."""
     if placing.unit is None:
         return strokes
     factor = UNITS[placing.unit] / usual

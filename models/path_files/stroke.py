@@ -1,4 +1,4 @@
-"""Lines of a file before they become a path."""
+"""One line of a file before it becomes a path, units of length, and limits of files."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Stroke:
         closed: whether its end is joined to its beginning; None: the file does not say.
         straight: whether it is straight between the points, as a drawing is; otherwise the points
             are all that is known of it.
-        name: what it is called in its file; "" if it is the only one.
+        name: that in its file; "" if it is the only one.
     """
 
     points: Array

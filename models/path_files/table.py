@@ -2,7 +2,7 @@
 
 Two columns, or those that a line of names calls x and y, z1 and z2, or y1 and y2; other columns may
 be there. A name may state the unit: `x_mm`, `x [mm]`, `x (mm)`, `x in mm`. The columns may also be
-separated by blanks. See `models/studies/table_file.py` for the rest.
+separated by spaces. See `models/studies/table_file.py` for the rest.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def stroke_of_table(data: bytes, unit: str | None) -> Stroke:
         unit: of its numbers; None: the one that the columns' names state, else metres.
 
     Raises:
-        CodedError: it is no such table; the message names line and column.
+        CodedError: the data are not such a table; the message names line and column.
     """
     with io.TextIOWrapper(
         io.BytesIO(data), encoding_of(data[:4]), errors="replace", newline=None
@@ -75,7 +75,7 @@ def _rows(file: io.TextIOWrapper) -> Iterator[Row]:
 
 
 def _separator(line: str) -> str:
-    """The separator of a table with this first line; a blank only if nothing else is one."""
+    """The separator of a table with this first line; a space only if nothing else is."""
     unquoted = re.sub('"[^"]*"', "", line)
     words = unquoted.split()
     if len(words) > 1 and all(NUMBER.fullmatch(word) for word in words):

@@ -41,8 +41,8 @@ class Curve:
         equation: s = ... in z1 and z2, if the curve consists of the points where s is 0.
         deviation: largest distance between the curve and the straight lines between the points to
             which it was fitted, [m]; 0 if it was not fitted.
-        given: these points, or some of very many, shape (n, 2), [m]; the last one is the first one
-            of a closed curve. None if it was not fitted.
+        given: these points, thinned if there are very many, shape (n, 2), [m]; those of a closed
+            curve end with the first one. None if it was not fitted.
     """
 
     closed: bool
@@ -57,7 +57,7 @@ class Curve:
         return f"<{kind} path, {1e3 * self.length():.0f} mm long, {extent} mm>"
 
     def _repr_svg_(self) -> str:
-        """A drawing for notebooks: the plan view, dashed what was given, with a dot at θ = 0."""
+        """A drawing for notebooks: the plan view, the given points dashed, and a dot at θ = 0."""
         z = 1e3 * self._drawn()[:, :2] * (1, -1)
         (left, top), (width, height) = z.min(0) - 5, np.ptp(z, axis=0) + 10
         x, y = 1e3 * self.at(np.array(0.0))[:2] * (1, -1)

@@ -29,8 +29,8 @@ SCALES = np.append(np.linspace(0.1, 1.0, 19), [1.15, 1.3, 1.5, 1.75, 2.0, 2.5, 3
 SHIFTS = (0.0, 0.15, 0.3, 0.5, 0.7, 0.85, 1.0)  # u; at 1 the centre is the robot's home
 BISECTIONS = 6
 SAMPLES = 30  # points at which versions are compared
-CHECKED = 240  # points at which their curvature is
-SLACK = 1.001  # of the quick checks, whose samples are others
+CHECKED = 240  # points at which their curvature is checked
+SLACK = 1.001  # of the quick checks, which sample other points
 
 
 def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
@@ -60,7 +60,7 @@ def nearest_path(reach: Callable[[Array], Array], curve: Curve) -> Curve | None:
     for k in sorted(range(len(ways)), key=lambda k: apart[k]):
         i, scale, _ = ways[k]
         if bends[i] > SLACK * scale / TUBE:
-            continue  # quicker than all checks
+            continue  # before the slower checks
         if not reach(scale * outlines[i] + moves[k]).min() >= LEAST_MARGIN / SLACK:
             continue
         terms = scale * smoothed[i]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -35,11 +35,11 @@ PATHS = ("circle", "ellipse", "rounded square")
 CONDITIONS = ("exact", "payload", "noise", "slow")
 OBSTRUCTIONS = ("pull", "brake", "hand", "wall", "weak")
 OFF = 0.005  # [m] from which on a robot counts as off its path
-RESERVE = 1.5  # torque limit over the largest torque of undisturbed path following
-WEAK = 0.6  # and of weak motors, over that limit: 0.9 times what path following needs
-LASTS, RATE = 5.0, 2.0  # [s], [N/s] of a pull
-ACTS, AFTER = 1.0, 2.0  # [s] of the other obstructions, and after them
-EVERY = 20  # [ms] for which a run that is shown has a point
+RESERVE = 1.5  # ratio of the torque limit to what undisturbed path following needs
+WEAK = 0.6  # ratio of the limit of weak motors to that limit; it is 0.9 times what is needed
+LASTS, RATE = 5.0, 2.0  # duration of a pull, [s], and growth of its force, [N/s]
+ACTS, AFTER = 1.0, 2.0  # duration of the other obstructions, and of the run after them, [s]
+EVERY = 20  # [ms] between the points of a run that is shown
 MOST_LOOPS = 16
 
 
@@ -75,7 +75,7 @@ class Trial:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Result:
-    """One law in one trial; numbers that the trial does not give are None.
+    """One law in one trial; measures that do not apply to the trial are None.
 
     Attributes:
         law: name of the law.
@@ -86,11 +86,11 @@ class Result:
         distance_m: largest distance to the path.
         delay_s: by how much it is late at the end, at the wanted speed; negative: early.
         energy_J: largest work of the end-point on the hand, brake or wall.
-        overshoot_m: how far it leaves its path again after the release, from the moment at which
-            it is within 5 mm and comes no nearer; infinity if it does not come back.
+        overshoot_m: largest distance after the release, from the first minimum below 5 mm on;
+            infinity if it does not come back.
         stopped_at_s: time at which the run was stopped as diverged, or None.
         reason: why.
-        shown: (t [s], distance [m], z1, z2 [m]) where it is farthest off in each 20 ms, (k, 4).
+        shown: (t [s], distance [m], z1, z2 [m]) at the largest distance in each 20 ms, (k, 4).
     """
 
     law: str
@@ -113,7 +113,7 @@ STEPS = {
     "energy_J": 1e-4,
     "overshoot_m": 1e-5,
 }
-"""Measure -> smallest difference that counts, with which it is shown."""
+"""Measure -> resolution to which it is shown and ranked."""
 MEASURES = tuple(STEPS)
 LARGER_IS_BETTER = ("force_N",)
 Row = tuple[str, "bool | None"]
@@ -141,9 +141,9 @@ class Cell:
 def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]]:
     """The trials of each round: every obstruction of every robot once.
 
-    The first round is on the circle with an exact model; path and condition of the others are
-    drawn, and place and direction of all obstructions. What is drawn for a robot does not depend on
-    the other robots, nor on the number of rounds.
+    The first round is on the circle with an exact model. Paths and conditions of the other rounds
+    are random, and so are places and directions of all obstructions. A robot's trials depend
+    neither on the other robots nor on the number of rounds.
 
     Args:
         seed: 0 or more.
@@ -166,7 +166,7 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
 def _trial(
     number: int, robot: str, obstruction: str, draw: np.random.Generator, plain: bool
 ) -> Trial:
-    """A trial that is drawn; a plain one is on the circle, with an exact model."""
+    """A random trial; a plain one is on the circle, with an exact model."""
     possible = _possible(robot, obstruction)
     path = PATHS[0 if plain else int(draw.integers(len(PATHS)))]
     condition = "exact" if plain else possible[int(draw.integers(len(possible)))]
@@ -183,7 +183,7 @@ def _trial(
 
 
 def _possible(robot: str, obstruction: str) -> list[str]:
-    """The conditions; no payload under a pull, since it may hold a robot off its path by itself."""
+    """The conditions. A payload alone may keep a robot off its path, so a pull has none."""
     loaded = "payload" in specs(ROBOTS[robot].parameters) and obstruction != "pull"
     return [each for each in CONDITIONS if loaded or each != "payload"]
 
@@ -191,7 +191,7 @@ def _possible(robot: str, obstruction: str) -> list[str]:
 def _drawn(
     robot: str, path: str, obstruction: str, condition: str, draw: np.random.Generator
 ) -> tuple[dict[str, float], float | None]:
-    """The values of a trial, and when its obstruction ends."""
+    """The values of a random trial, and when its obstruction ends."""
     curve, speed = curve_from_text(path), ROBOTS[robot].parameters().speed
     begin = float(np.round(draw.uniform(0.5, 1.5), 3))
     sign, angle = float(draw.choice((-1, 1))), float(draw.uniform(-np.pi, np.pi))
@@ -233,17 +233,17 @@ def _limit(robot: str, path: str) -> float:
     """The torque limit of a robot on a path: `RESERVE` times what path following needs there."""
     plain = experiments(robot)["obstruction"].along(curve_from_text(path), path)
     free = plain.with_values({"hold_from": 0, "hold_to": 0, "duration": 2, "ramp": 10})
-    (moved,) = run_all([free], "path_following")
+    moved = run_under(free, "path_following")
     strength = np.array(plain.robot().system.strength)
     least = float((np.abs(moved.fields["u"]) / strength).max())
     return min(RESERVE * least, specs(plain.parameters)["torque_limit"].high)
 
 
 def entrants(robot: str, asked: Sequence[str] = (), only: bool = False) -> list[Row]:
-    """The rows of a robot: the laws asked for first, then those of OnPath that go along a path.
+    """The rows of a robot: the laws asked for, then OnPath's laws that move along a path.
 
     Args:
-        only: whether the laws asked for are all.
+        only: whether to leave out OnPath's laws that were not asked for.
     """
     machine = ROBOTS[robot].make(ROBOTS[robot].parameters())
     composite = getattr(ROBOTS[robot].parameters(), "law", "") == "composite"
@@ -261,14 +261,13 @@ def entrants(robot: str, asked: Sequence[str] = (), only: bool = False) -> list[
     return rows
 
 
-def run_all(wanted: Sequence[Experiment], law: str) -> Iterator[Trajectory]:
-    """Run experiments under a law, one after the other.
+def run_under(experiment: Experiment, law: str) -> Trajectory:
+    """Run an experiment under a law, in a compiled loop that is kept.
 
     Raises:
         ValueError: see `experiments.run`.
     """
-    for each in wanted:
-        yield run(each, law, _loop)
+    return run(experiment, law, _loop)
 
 
 _LOOPS = dict[int, tuple[Kernel, Loop]]()
@@ -286,13 +285,13 @@ def _loop(kernel: Kernel) -> Loop:
 
 
 def results_of(row: Row, trials: Sequence[Trial]) -> list[Result]:
-    """What becomes of a row in some trials. An error of the law is a stop at the start."""
+    """The results of a row in some trials. An error in the law counts as a stop at the start."""
     law, remedy = row
     found = list[Result]()
     for trial in trials:
         experiment = trial.experiment(bool(remedy))
         try:
-            (moved,) = run_all([experiment], law)
+            moved = run_under(experiment, law)
         except ValueError as error:
             told = message_of(error)
             found.append(Result(law, remedy, trial, stopped_at_s=0.0, reason=told))
@@ -311,7 +310,7 @@ def measured(
     result = Result(law=law, remedy=remedy, trial=trial, shown=shown)
     distance, force, y = moved.distance, moved.fields["force"], moved.fields["y"]
     off = distance > OFF
-    if trial.obstruction == "pull" and off.any():  # what a stronger pull does is not asked
+    if trial.obstruction == "pull" and off.any():  # what a stronger pull does is not measured
         return dataclasses.replace(result, force_N=float(np.linalg.norm(force[off.argmax()])))
     if moved.stopped_at is not None:
         return dataclasses.replace(result, stopped_at_s=moved.stopped_at, reason=moved.reason)
@@ -338,7 +337,7 @@ def _parts(count: int) -> list[NDArray[np.int_]]:
 
 
 def _overshoot(distance: Array) -> float:
-    """The largest distance from the first least one within `OFF` on; infinity if there is none."""
+    """The largest distance from the first minimum below `OFF` on; infinity if there is none."""
     back = (distance <= OFF) & (np.diff(distance, append=np.inf) >= 0)
     return float(distance[back.argmax() :].max()) if back.any() else np.inf
 
@@ -362,7 +361,7 @@ def table(rows: Sequence[Row], results: Sequence[Result]) -> dict[Row, dict[str,
 
 
 def _badness(name: str, value: float | None) -> tuple[bool, float]:
-    """What a measure is ranked by, the best first: a lacking value comes last."""
+    """Sort key of a measure, the best first; a missing value comes last."""
     if value is None:
         return True, 0.0
     steps = abs(value) if math.isinf(value) else float(round(abs(value) / STEPS[name]))
@@ -372,7 +371,7 @@ def _badness(name: str, value: float | None) -> tuple[bool, float]:
 def complete(
     rows: Mapping[str, Sequence[Row]], results: Sequence[Result]
 ) -> dict[str, list[Result]]:
-    """The results by robot, of the trials through which all of its rows have gone."""
+    """The results by robot, of the trials that all of its rows have finished."""
     found = dict[str, list[Result]]()
     for robot, wanted in rows.items():
         own = [each for each in results if each.trial.robot == robot]

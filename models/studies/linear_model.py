@@ -100,7 +100,7 @@ class Estimate:
         found: the estimates, in the order of the robot's parameters.
         unexcited: parameters on which the record does not depend.
         unexplained: rms of the filtered torque that the model does not explain, as a share.
-        delay: by which the logged torques are late, [s]; None if the motion does not tell it.
+        delay: by which the logged torques are late, [s]; None if the motion does not show it.
         times: middle of each window, from the beginning of its record, shape (windows,), [s].
         torque: filtered torque of each coordinate, shape (windows, n).
         residual: the part of it that the model does not explain, shape (windows, n).

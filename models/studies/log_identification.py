@@ -1,4 +1,4 @@
-"""Identification of a robot from a file: a record of OnPath, or a log of a real arm."""
+"""Identification of a robot from a file of OnPath or the log of a real arm."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from onpath.models.errors import CodedError
+from onpath.models.studies.exciting_motion import ExcitingMotion, exciting_motion
 from onpath.models.studies.linear_model import Estimate, estimate, linear_model
 from onpath.models.studies.record_file import log_columns, read_records
-from onpath.models.studies.telling_motion import TellingMotion, telling_motion
 from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.robots import RobotEntry
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FileEstimate:
-    """What a file tells about a robot.
+    """The parameters of a robot that were identified from a file.
 
     Attributes:
         robot: its name.
@@ -25,7 +25,7 @@ class FileEstimate:
         seconds: of motion.
         measured: whether the angles are sensor readings.
         estimate: of the parameters and the delay.
-        motion: a motion that would tell what the file does not, or None.
+        motion: a motion that would identify what the file does not, or None.
     """
 
     robot: str
@@ -34,7 +34,7 @@ class FileEstimate:
     seconds: float
     measured: bool
     estimate: Estimate
-    motion: TellingMotion | None
+    motion: ExcitingMotion | None
 
 
 def identify_file(
@@ -52,7 +52,7 @@ def identify_file(
         columns, units: see `log_columns`; without either it is a file of OnPath.
 
     Raises:
-        ValueError: the robot is not suitable, the file is refused, or it tells too little.
+        ValueError: the robot is not suitable, the file is refused, or its motion is too short.
         OSError: the file cannot be read.
     """
     robot = entry.make(entry.parameters())
@@ -81,5 +81,5 @@ def identify_file(
         seconds=sum(len(each.q) * each.dt for each in used),
         measured=all(each.measured for each in used),
         estimate=result,
-        motion=telling_motion(robot.system, used, plant, names),
+        motion=exciting_motion(robot.system, used, plant, names),
     )

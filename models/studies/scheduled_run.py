@@ -26,8 +26,8 @@ from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 CHUNK = 200  # ticks between checks for divergence
-FAR_AWAY = 1e3  # [m]
-STEP = 0.01  # [s] after which a hand that goes along with the end-point has moved
+FAR_AWAY = 1e3  # [m], of a hand that pulls
+STEP = 0.01  # [s] between movements of a hand that goes along with the end-point
 JUMP = 0.5  # [rad] in one tick; a closest point that moves farther has jumped
 LEFT = np.array([[0.0, -1.0], [1.0, 0.0]])  # turns a tangent to the left
 
@@ -56,7 +56,7 @@ class ScheduledRun:
         schedule: Schedule,
         start: Array,
     ) -> None:
-        self._robot, self._kernel, self._curve = robot, loop.layouts, curve
+        self._robot, self._layouts, self._curve = robot, loop.layouts, curve
         self._parameters, self._schedule = parameters, schedule
         self._loop, self._dt = loop, time_step(parameters)
         self._hold = schedule.ticks("hold", self._dt)
@@ -111,7 +111,7 @@ class ScheduledRun:
         place = self._schedule.hold_at
         if not self._waits or place is None or self._tick < self._hold.start:
             return None
-        before, new = self._theta, self._kernel.log.unpack(rows)["theta"][:, 0]
+        before, new = self._theta, self._layouts.log.unpack(rows)["theta"][:, 0]
         theta, self._theta = np.concatenate([before, new]), new[-1:].copy()
         turns = np.floor((theta - place) / PERIOD) if self._curve.closed else np.sign(theta - place)
         passed = (np.diff(turns) != 0) & (np.abs(np.diff(theta)) < JUMP)
@@ -120,7 +120,7 @@ class ScheduledRun:
     def _settings(self) -> Array:
         """The inputs of the loop from now on; a profile also sets the present speed reference."""
         if self._moves:  # the hand alone has moved
-            return pushed(self._kernel, self._inputs, self._push())
+            return pushed(self._layouts, self._inputs, self._push())
         schedule, dt, tick = self._schedule, self._dt, self._tick
         wanted = self._parameters
         if 0 < round(schedule.reverse_at / dt) <= tick:
@@ -131,7 +131,7 @@ class ScheduledRun:
             wanted = dataclasses.replace(wanted, speed=leg.last, ramp=leg.rate)
             self._fields()["speed_ref"][:] = leg.at(tick)
         push = self._push()
-        self._inputs = settings_vector(self._robot, self._kernel, wanted, self._curve, push)
+        self._inputs = settings_vector(self._robot, self._layouts, wanted, self._curve, push)
         return self._inputs
 
     def _push(self) -> Push:
@@ -152,10 +152,10 @@ class ScheduledRun:
         return Push(hand=hand, share=share, hold=hold, hold_normal=hold_normal, wall=wall)
 
     def _pulling(self) -> tuple[Array, float]:
-        """Where the hand is that pulls across, shape (p,), [m], and the share of its force.
+        """Position of the hand that pulls across, shape (p,), [m], and the share of its force.
 
-        It is far away, so that its force is the largest one and has the direction of the normal:
-        taken for the middle of the next `STEP`, as the force is.
+        It is far away along the normal, so that its force has the normal's direction and the
+        largest size. Normal and share are those in the middle of the next `STEP`.
         """
         fields, frame, schedule = self._fields(), self._robot.frame, self._schedule
         theta = fields["theta"][0] + STEP / 2 * fields["theta_rate"][0]
@@ -173,7 +173,7 @@ class ScheduledRun:
         return brake_in(self._robot, self._curve, y, theta, self._schedule.hold_direction)
 
     def _fields(self) -> dict[str, Array]:
-        return self._kernel.state.unpack(self._state)
+        return self._layouts.state.unpack(self._state)
 
     def _first(self, start: Array) -> Array:
         """The state at the start."""
@@ -186,5 +186,5 @@ class ScheduledRun:
         y = start if places == (None, None) else frame.lift(np.array(given))
         q, along, across = self._robot.rest(y), schedule.start_along, schedule.start_across
         v = velocity_at(self._robot, self._parameters, self._curve, q, along, across)
-        state = first_state(self._robot, self._kernel, self._curve, q, v)
-        return lead(state, self._kernel, self._curve, schedule.clock_offset)
+        state = first_state(self._robot, self._layouts, self._curve, q, v)
+        return lead(state, self._layouts, self._curve, schedule.clock_offset)

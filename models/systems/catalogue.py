@@ -8,6 +8,7 @@ from pkgutil import iter_modules
 from onpath.models import systems
 from onpath.models.errors import CodedError
 from onpath.models.systems.chain_robot import chain_entry
+from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.rigid_chain import ChainSource
 from onpath.models.systems.robots import RobotEntry
 
@@ -31,13 +32,25 @@ def found_robots() -> dict[str, RobotEntry]:
     return robots
 
 
+def robot_named(name: str) -> RobotEntry:
+    """The robot of this name.
+
+    Raises:
+        CodedError: there is none; the message lists the nearest names.
+    """
+    if name not in ROBOTS:
+        raise unknown_name(name, list(ROBOTS), "robot")
+    return ROBOTS[name]
+
+
 def add_robot(entry: RobotEntry) -> RobotEntry:
     """Add a robot that is not a module of this folder, such as one from a file.
 
     Call it before a server listens: pages and labs expect that the robots stay the same.
 
     Returns:
-        The entry; an earlier one with the same chain of bodies, whose loops may be compiled.
+        The entry, or the one added earlier from the same file and options: its loops may already
+        be compiled.
 
     Raises:
         CodedError: another robot has this name.
@@ -49,7 +62,7 @@ def add_robot(entry: RobotEntry) -> RobotEntry:
 
 
 def added_chains() -> list[ChainSource]:
-    """What the robots are made from that have been added: plain data, for another process."""
+    """The sources of the chains that have been added: plain data, for another process."""
     return [entry.source for name, entry in ROBOTS.items() if name not in _FOUND and entry.source]
 
 
@@ -59,9 +72,9 @@ def add_chains(sources: list[ChainSource]) -> None:
         add_robot(chain_entry(source))
 
 
-ROBOTS = found_robots()
-_FOUND = frozenset(ROBOTS)
-FIVE_BAR = ROBOTS["five_bar"]
+_FOUND = found_robots()
+FIVE_BAR = _FOUND["five_bar"]
 """The robot of section III of the paper, with which a lab begins."""
+ROBOTS = {FIVE_BAR.name: FIVE_BAR, **_FOUND}  # menus begin with it, too
 FLEXIBLE = ROBOTS["flexible"]
 """The robot of section IV of the paper."""

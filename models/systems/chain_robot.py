@@ -5,8 +5,8 @@ and a payload at the end-point,
 
     M(q) v' + c(q, v) + D v = u + J_h^T F.
 
-The controller's model differs from the plant by a factor of all masses and inertias, by one of all
-weights, and by the payload, which it does not know. M and c are linear in these three. A robot
+The controller's model differs from the plant by a factor on all masses and inertias, by another on
+all weights, and by the payload, which it does not know. M and c are linear in these three. A robot
 whose tip can only move in a plane has p = 2 outputs, others p = 3. With more joints than outputs it
 is redundant, and holds a posture by
 
@@ -29,8 +29,14 @@ from onpath.models.arrays import Array
 from onpath.models.errors import Message
 from onpath.models.paths.frames import LevelPlane, Plane
 from onpath.models.systems.drawing import Depths, Drawing, Point, Spot
-from onpath.models.systems.parameter_specs import model_error, number, unknown_payload
-from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
+from onpath.models.systems.parameter_specs import (
+    model_error,
+    number,
+    path_rise,
+    unknown_payload,
+    velocity_filter,
+)
+from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.rigid_chain import (
     Chain,
     ChainSource,
@@ -55,7 +61,7 @@ STEPS = (0.25, 0.5, 0.75, 1.0, 1.0, 1.0, 1.0)
 """Shares of the way from home to y, each with a step of Newton's method."""
 SOLVED = 1e-9  # [m], least accuracy of the inverse
 NEAR_LIMIT = 1 / 8  # of a joint's range, within which the regularity falls to 0 at its end
-UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not tell
+UNLIMITED = 1e6  # [N m], for a motor whose limit the file does not state
 FASTEST_DECAY = 2500.0  # [1/s], of friction, which one Runge-Kutta step of 1 ms can follow
 MOST_STEPS = 2
 SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -122,8 +128,13 @@ class RedundantPlanarParameters(ChainParameters):
 
 @dataclass(frozen=True, slots=True)
 class RedundantSpatialParameters(SpatialChainParameters):
-    """Parameters of a chain with more joints than its path in space needs."""
+    """Parameters of a chain with more joints than its path in space needs.
 
+    Its wrist turns fast, so velocities that lag by the usual 5 ms keep the posture swinging after
+    about one of a hundred pulls; by 2 ms, after none of 120.
+    """
+
+    encoder_filter: float = velocity_filter(0.002)
     posture_stiffness: float = _posture_stiffness()
     posture_damping: float = _posture_damping()
 
@@ -300,7 +311,7 @@ def chain_robot(source: ChainSource) -> Robot:
 
 def _limit_stops(chain: Chain, q: ca.SX) -> tuple[StopCondition, ...]:
     """A joint passes a limit, if any has limits."""
-    beyond, low, high = ca.SX(0), *_limits(chain)
+    beyond, (low, high) = ca.SX(0), chain.limits
     for i, joint in enumerate(chain.joints):
         if joint.high - joint.low < math.inf:
             beyond = ca.fmax(beyond, ca.logic_or(q[i] < joint.low, q[i] > joint.high))
@@ -325,12 +336,6 @@ def _posture(parameters: ChainParameters) -> dict[str, float]:
         "posture_stiffness": parameters.posture_stiffness,
         "posture_damping": parameters.posture_damping,
     }
-
-
-def _limits(chain: Chain) -> tuple[Array, Array]:
-    """Low and high ends of the joints' coordinates, shape (n,) each."""
-    ends = np.array([(joint.low, joint.high) for joint in chain.joints])
-    return ends[:, 0], ends[:, 1]
 
 
 def _reach(chain: Chain) -> float:

@@ -1,4 +1,4 @@
-"""What a user says about a robot's file, what is read from it, and how its links become bodies."""
+"""How a user wants a robot's file to be read, what is read, and how links become bodies."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ EXACT = 1e-10  # entries of rotations this near to 0 and ±1 are set to them: fi
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Options:
-    """What the user says about a robot's file.
+    """How to read a robot's file.
 
     Attributes:
         tip: link whose origin is the end-point; empty: the only link without a further one.
         lock: joints on the way to the tip that do not move, and where they stand, [rad] or [m].
-        pose: where joints stand at home; those beside the way to the tip stay there, [rad] or [m].
-        armature: inertia of the motors that the file does not tell, as seen at the joints, [kg m²].
+        pose: where joints stand at home; those not on the way to the tip stay there, [rad] or [m].
+        armature: inertia of the motors' rotors, which a file may leave out, as seen at the joints,
+            [kg m²].
         packages: folders of packages, for the addresses of meshes.
     """
 

@@ -23,9 +23,9 @@ LARGEST_CIRCLE = 1.0  # [m]
 def chosen_pose(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) -> Array:
     """A configuration at which the end-point moves easily in all directions, shape (n,).
 
-    Of `TRIES` random ones within the limits, it maximizes σ_min(J) times the least distance from
-    a limit, as a share of its joint's travel. No joint is below the base, and the end-point is in
-    front of it. A tip whose axis points downward is preferred.
+    Of `TRIES` random ones within the limits, and within half a turn from 0, it maximizes σ_min(J)
+    times the least distance from a limit, as a share of its joint's travel. No joint is below the
+    base, and the end-point is in front of it. A tip whose axis points downward is preferred.
 
     Args:
         axes: directions of the outputs.
@@ -41,7 +41,8 @@ def chosen_pose(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) -
     heights = ca.vertcat(*[origin[2] for origin in frames.origins], tip[2])
     pointing = frames.rotations[-1] @ ca.DM(chain.facing)
     seen = ca.vertcat(ca.vec(jacobian), ca.mmin(ca.densify(heights)), tip[0], pointing[2])
-    low, high = _travel(chain)
+    low, high = chain.limits
+    low, high = np.maximum(low, -np.pi), np.minimum(high, np.pi)
     tried = low + (high - low) * np.random.default_rng(0).random((TRIES, chain.n))
     for i, joint in enumerate(chain.joints):
         if joint.name in pose:
@@ -58,12 +59,6 @@ def chosen_pose(chain: Chain, axes: tuple[Point, ...], pose: dict[str, float]) -
     score[(lowest < OVER_FLOOR) | (ahead <= 0)] = 0.0
     best = int(score.argmax())
     return tried[best] if score[best] > 0 else np.full(chain.n, np.nan)
-
-
-def _travel(chain: Chain) -> tuple[Array, Array]:
-    """The range of each joint that is searched: a full turn if it has no limits."""
-    ends = np.array([(joint.low, joint.high) for joint in chain.joints])
-    return np.maximum(ends[:, 0], -np.pi), np.minimum(ends[:, 1], np.pi)
 
 
 def reachable_circle(robot: Robot) -> float:

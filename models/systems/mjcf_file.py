@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,8 @@ from onpath.models.systems.file_chain import (
     aligned,
     exact,
     many_joints,
+    turn,
 )
-from onpath.models.systems.file_chain import turn as turned
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, Fault, shown
 
@@ -54,12 +55,23 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
         mujoco: Any = import_module("mujoco")
     except ImportError:
         raise CodedError("robot_file.mujoco") from None
+    warned, before = list[str](), mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(warned.append)  # else they go to a file in the current folder
     try:
         model = mujoco.MjModel.from_xml_path(str(file))
     except (ValueError, RuntimeError) as error:
-        reason = shown(" ".join(str(error).split()), 200) or type(error).__name__
+        reason = _one_line(str(error)) or type(error).__name__
         raise CodedError("robot_file.mjcf", file=file.name, reason=reason) from None
-    return _Model(model, root, options).read()
+    finally:
+        mujoco.set_mju_user_warning(before)
+    read = _Model(model, root, options).read()
+    told = [Message("robot_file.mujoco_warns", {"reason": _one_line(each)}) for each in warned]
+    return replace(read, remarks=(*read.remarks, *told))
+
+
+def _one_line(text: str) -> str:
+    """What MuJoCo says, as it may appear in a message."""
+    return shown(" ".join(text.split()), 200)
 
 
 def _all(root: Element) -> Iterator[Element]:
@@ -141,7 +153,9 @@ class _Model:
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
                 if on_way:
-                    reason = Message("robot_file.free", {"type": shown(name)})
+                    reason = Message(
+                        "robot_file.free", {"type": "free" if kind == FREE else "ball"}
+                    )
                     raise Fault(self._element(name), reason)
                 continue
             anchor = Place(translation=np.array(model.jnt_pos[i]))
@@ -293,8 +307,8 @@ def _place(position: Any, quaternion: Any) -> Place:
     sine = float(np.linalg.norm(vector))
     if sine == 0:
         return Place(translation=np.array(position))
-    return Place(exact(turned(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
+    return Place(exact(turn(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
 
 
 def _moved(kind: int, axis: Array, value: float) -> Place:
-    return Place(translation=value * axis) if kind == SLIDE else Place(turned(axis, value))
+    return Place(translation=value * axis) if kind == SLIDE else Place(turn(axis, value))

@@ -108,6 +108,26 @@ def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
 
 
+def pivot_damping(default: float) -> Any:
+    """A dataclass field for the damping of a pivot that no motor drives, [N m s]."""
+    text = "damping of the pivot, which has no motor"
+    bounds = (0, 0.02, 0.001)
+    return number(default, "N m s", bounds, text, group="robot", label="Pivot damping")
+
+
+def velocity_filter(default: float) -> Any:
+    """A dataclass field for the filter that gives velocities from measured angles, [s]."""
+    text = "time constant of the velocity filter behind them; no effect without steps or noise"
+    bounds = (0.0005, 0.05, 0.0005)
+    return number(default, "s", bounds, text, group="realism", label="Velocity filter")
+
+
+def path_rise() -> Any:
+    """A dataclass field for the rise of the path of a robot that takes space curves, [m]."""
+    text, bounds = "the path rises and falls by this, twice around: a saddle", (-0.05, 0.05, 0.001)
+    return number(0.0, "m", bounds, text, group="path", label="Rise of the path")
+
+
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
     """The error for an unknown name, which suggests the nearest known ones."""
     near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(

@@ -14,7 +14,7 @@ from types import MappingProxyType
 from typing import TypeVar
 
 from onpath.models.systems.law_parameters import LawParameters
-from onpath.models.systems.parameter_specs import Spec, choice, number
+from onpath.models.systems.parameter_specs import Spec, choice, number, velocity_filter
 
 TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
 
@@ -69,14 +69,7 @@ class Parameters(LawParameters):
         label="Encoder",
         on=2000.0,
     )
-    encoder_filter: float = number(
-        0.005,
-        "s",
-        (0.0005, 0.05, 0.0005),
-        "time constant of the velocity filter behind them; no effect without steps or noise",
-        group="realism",
-        label="Velocity filter",
-    )
+    encoder_filter: float = velocity_filter(0.005)
     sensor_noise: float = number(
         0.0,
         "rad",
@@ -176,18 +169,6 @@ def look_ahead_time(parameters: Parameters) -> float:
     if parameters.look_ahead == "half_interval" and not composite:
         return 1 / parameters.control_rate / 2
     return time_step(parameters) / 2
-
-
-def path_rise() -> float:
-    """A dataclass field for the rise of the path of a robot that takes space curves, [m]."""
-    return number(
-        0.0,
-        "m",
-        (-0.05, 0.05, 0.001),
-        "the path rises and falls by this, twice around: a saddle",
-        group="path",
-        label="Rise of the path",
-    )
 
 
 def rise_of(parameters: Parameters) -> float:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from onpath.models.systems.robot_file import own_robot
+from onpath.models.systems.robot_file import packaged_robot
 
-ROBOT = own_robot(
+ROBOT = packaged_robot(
     "planar_arm",
     label="Planar arm with three joints",
-    text="Three motors, one more than the path needs: a posture is held beside the path.",
+    text="Three motors, one more than the path needs: the arm also holds a posture.",
     pose={"joint1": 2.0, "joint2": -1.3, "joint3": -0.9},
 )

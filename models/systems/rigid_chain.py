@@ -1,9 +1,9 @@
 """A chain of rigid bodies from a base to an end-point, and its equations of motion.
 
-Each body has one joint, which joins it to the body before it, and a frame at that joint whose axis
-z is the joint's: it turns about z, or slides along z. A rotation E and a translation p place the
-frame of body i in that of the body before it, for q_i = 0. All sums of mass are about the origin of
-the body's frame: its mass m, the first moment m c, and the inertia
+Each body has one joint, which connects it to the body before it, and a frame at that joint whose
+axis z is the joint's: it turns about z, or slides along z. A rotation E and a translation p place
+the frame of body i in that of the body before it, for q_i = 0. All sums of mass are about the
+origin of the body's frame: its mass m, the first moment m c, and the inertia
 
     I = -Σ dm [r] [r],   [r] s = r x s.
 
@@ -62,7 +62,7 @@ class Shape:
         size: edges of a box; radius, radius and length of a cylinder, and of the cylinder of a
             capsule; radii of a sphere or ellipsoid; scale of a mesh along its axes.
         rotation, translation: of the shape in its body's frame, (3, 3) and (3,), [m].
-        triangles: vertices of a mesh, (k, 3), [m], and of each triangle the numbers of its three.
+        triangles: vertices of a mesh, (k, 3), [m], and the indices of each triangle's, (l, 3).
     """
 
     kind: str
@@ -84,7 +84,7 @@ class Body:
         mass: [kg].
         moment: m c, shape (3,), [kg m].
         inertia: I, shape (3, 3), [kg m²].
-        shapes: its meshes.
+        shapes: what is drawn of it.
     """
 
     name: str
@@ -105,7 +105,7 @@ class Chain:
         bodies: from the base on.
         tip: the end-point in the frame of the last body, shape (3,), [m].
         facing: direction of the tip's own axis z in the frame of the last body, shape (3,).
-        base: meshes of the base, in the frame of the base.
+        base: what is drawn of the base, in its frame.
     """
 
     bodies: tuple[Body, ...]
@@ -122,6 +122,12 @@ class Chain:
     def n(self) -> int:
         """Number of coordinates."""
         return len(self.bodies)
+
+    @property
+    def limits(self) -> tuple[Array, Array]:
+        """Low and high ends of the coordinates, shape (n,) each, infinite without limits."""
+        ends = np.array([(joint.low, joint.high) for joint in self.joints])
+        return ends[:, 0], ends[:, 1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -78,7 +78,7 @@ def read_robot(file: Path, options: Options) -> RobotFile:
     return _made(file, f"{stem}_{digest}", read.chain, {**read.home, **options.pose}, read.remarks)
 
 
-def own_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> RobotEntry:
+def packaged_robot(name: str, label: str, text: str, pose: Mapping[str, float]) -> RobotEntry:
     """A robot from a file of this package, whose tests check what `read_robot` checks.
 
     Args:
@@ -124,7 +124,9 @@ def _made(
     if circle < LEAST_CIRCLE:
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
-    return RobotFile(entry=chain_entry(source), circle=circle, remarks=remarks)
+    text = f"{source.text} Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
+    entry = chain_entry(replace(source, text=text))
+    return RobotFile(entry=entry, circle=circle, remarks=remarks)
 
 
 def _home(chain: Chain, axes: tuple[Point, ...], pose: Mapping[str, float]) -> Array:
@@ -169,9 +171,9 @@ def _substeps(source: ChainSource) -> int:
             decay; the message names an armature that is large enough.
     """
     chain, system = source.chain, chain_system(source)
-    ends = np.array([(joint.low, joint.high) for joint in chain.joints]).clip(-np.pi, np.pi)
+    low, high = (ends.clip(-np.pi, np.pi) for ends in chain.limits)
     share = np.random.default_rng(1).random((POSES, chain.n))
-    q = np.concatenate([[source.home], ends[:, 0] + share * (ends[:, 1] - ends[:, 0])])
+    q = np.concatenate([[source.home], low + share * (high - low)])
     numbers = np.array([1.0, 0.0, 0.0] + [0.0] * (system.parameters.numel() - 3))
     found = Rows([system.q, system.parameters], ca.vec(system.mass))(q, numbers)
     masses = found.reshape(-1, chain.n, chain.n)

@@ -27,8 +27,8 @@ TOO_FAST = Message("stop.fast", {"limit": f"{FASTEST_JOINT:.0f}"})
 NOT_FINITE = Message("stop.range")
 SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
 LEAST_REGULARITY = 0.02
-FARTHEST = 1e3  # [m], beyond the reach of every robot, also of one that slides without an end
 """Regularity relative to home below which a run is stopped, unless a robot has its own stops."""
+FARTHEST = 1e3  # [m], beyond the reach of every robot, also of one that slides without limits
 _FINITE = float(np.finfo(float).max)
 _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
 
@@ -84,7 +84,7 @@ class Robot:
         substeps: Runge-Kutta steps per tick.
         grip: the springs by which a hand, a brake and a wall act on its end-point.
         shared: the robot whose loops it shares, because they differ in `frame.numbers` only.
-        chain: the bodies that it is made of, which are drawn; None: its bars are.
+        chain: the bodies that it is made of, which are drawn; None: its bars are drawn.
     """
 
     system: MechanicalSystem
@@ -345,7 +345,7 @@ class RobotEntry:
         flexible_link: for a robot with parameters `law` and `alpha` and an extra "deflection"; None
             if all links are rigid.
         linkage: data for identification from a record of its motion, or None.
-        source: the chain of bodies that it is, as from a file, or None.
+        source: what it is made from if it is a chain of bodies, such as one from a file, or None.
     """
 
     name: str

@@ -27,7 +27,12 @@ import casadi as ca
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing, Length
 from onpath.models.systems.forces import Grip, SpringLimits
-from onpath.models.systems.parameter_specs import number, unknown_payload, wanted_speed
+from onpath.models.systems.parameter_specs import (
+    number,
+    pivot_damping,
+    unknown_payload,
+    wanted_speed,
+)
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import GRAVITY, mechanical_system
@@ -60,14 +65,7 @@ class RodGantryParameters(Parameters):
     rod: float = number(
         0.3, "kg", (0.05, 0.5, 0.01), "mass of the hanging rod", group="robot", label="Rod"
     )
-    pivot: float = number(
-        0.005,
-        "N m s",
-        (0, 0.02, 0.001),
-        "damping of the pivot, which has no motor",
-        group="robot",
-        label="Pivot damping",
-    )
+    pivot: float = pivot_damping(0.005)
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 

@@ -34,8 +34,8 @@ import casadi as ca
 from onpath.models.arrays import Array
 from onpath.models.paths.frames import LevelPlane
 from onpath.models.systems.drawing import Angle, Depths, Drawing, Length, Waist
-from onpath.models.systems.parameter_specs import model_error, unknown_payload
-from onpath.models.systems.parameters import Parameters, own_parameters, path_rise
+from onpath.models.systems.parameter_specs import model_error, path_rise, unknown_payload
+from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import SINGULAR, Robot, RobotEntry, StopCondition
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
 from onpath.models.systems.two_links import elbow_up

@@ -69,7 +69,8 @@ class _Tree:
         for joint in self._joints.values():
             self._after.setdefault(joint.need("parent").name("link"), []).append(joint)
         self._base = self._checked_base()
-        self._way = self._way_to(self._tip())
+        self._tip = self._tip_link()
+        self._way = self._joints_to(self._tip)
         self._check_names()
 
     def _parents(self) -> dict[str, Element]:
@@ -106,7 +107,8 @@ class _Tree:
                 raise Fault(link, Message("robot_file.loop"))
         return roots[0]
 
-    def _tip(self) -> str:
+    def _tip_link(self) -> str:
+        """The link that is the tip: the one that the user names, or the only one at an end."""
         tip = self._options.tip
         if tip:
             if tip not in self._links:
@@ -118,14 +120,13 @@ class _Tree:
             raise CodedError("robot_file.which_tip", names=", ".join(leaves))
         return leaves[0]
 
-    def _way_to(self, tip: str) -> set[str]:
+    def _joints_to(self, tip: str) -> set[str]:
         """The joints from the base to the tip."""
         way, link = set[str](), tip
         while link in self._before:
             joint = self._before[link]
             way.add(joint.name())
             link = joint.need("parent").name("link")
-        self._tip_link = tip
         return way
 
     def _check_names(self) -> None:
@@ -140,7 +141,7 @@ class _Tree:
         waiting = [(self._base, 0, Place())]
         while waiting:
             name, number, place = waiting.pop()
-            if name == self._tip_link:
+            if name == self._tip:
                 last, tip = number, place
                 _check_last(self._links[name], last, groups)
             self._add_link(groups[number], self._links[name], place)
@@ -339,7 +340,7 @@ def _refuse_xacro(root: Element) -> None:
 
 
 def _check_last(link: Element, number: int, groups: list[Group]) -> None:
-    """Check that something moves at all."""
+    """Check that a joint moves the tip."""
     if number == 0 or len(groups) < 2:
         raise Fault(link, Message("robot_file.still_tip"))
 

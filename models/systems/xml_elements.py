@@ -1,4 +1,4 @@
-"""Reads small XML files that a stranger has written, with the line of each element."""
+"""Reads small XML files from untrusted sources, with the line of each element."""
 
 from __future__ import annotations
 
@@ -118,12 +118,16 @@ class Fault(Exception):
 
     def in_file(self, file: Path) -> CodedError:
         """The error that names the file, the line and the element."""
-        named = self.element.values.get("name", "")
+        tag, named = self.element.tag, self.element.values.get("name", "")
+        if not tag:  # not even XML
+            return CodedError(
+                "robot_file.at_line", file=file.name, line=self.element.line, reason=self.reason
+            )
         return CodedError(
             "robot_file.at",
             file=file.name,
             line=self.element.line,
-            element=shown(self.element.tag) + (f" {shown(named)}" if named else ""),
+            element=shown(tag) + (f" {shown(named)}" if named else ""),
             reason=self.reason,
         )
 

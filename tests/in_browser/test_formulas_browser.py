@@ -18,6 +18,8 @@ from tests.support.waiting import wait_for
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
+pytestmark = pytest.mark.thorough
+
 WAIT = 30.0  # [s]
 LOADED = "[...document.fonts].map(font => [font.family.replace(/['\"]/g, ''), font.status])"
 LACKING = """letters => {

@@ -17,6 +17,8 @@ from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from tests.support.browser import Tab, wait_for
 
+pytestmark = pytest.mark.thorough
+
 LESSON = "01-path-or-timetable"
 
 

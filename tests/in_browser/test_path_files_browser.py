@@ -8,6 +8,8 @@ from onpath.app.exports.path_upload import MOST_BYTES
 from tests.support.browser import Tab
 from tests.support.waiting import wait_for
 
+pytestmark = pytest.mark.thorough
+
 pytest.importorskip("svgpathtools")
 
 LEAF = b"""<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 80">

@@ -163,10 +163,10 @@ def test_keys_on_the_handle_look_back_and_everything_goes_along(page: Page) -> N
     for _ in range(3):
         grip.press("PageDown")
     grip.press("ArrowLeft")
+    expect(grip).to_have_attribute("aria-valuetext", re.compile("^2.4 s: Trajectory tracking "))
     told = grip.get_attribute("aria-valuetext") or ""
     past = "onpath.simulation.recent.find(each => each.time === onpath.engine.state.past)"
     sample = page.evaluate(past)
-    assert told.startswith("2.4 s: Trajectory tracking ")
     page.evaluate(THREE_FRAMES)
     for side, element in zip(sample["sides"], page.locator(".lens .distance").all(), strict=True):
         assert f"{1e3 * side['distance']:.1f} mm" in told

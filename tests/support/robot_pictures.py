@@ -15,7 +15,7 @@ from tests.support.browser import CHROMIUM, PLAIN, Tab, wait_for
 from tests.support.checkout import ROOT
 
 WINDOW: Any = {"width": 1280, "height": 800}
-SCENE: Any = {"x": 0, "y": 90, "width": 945, "height": 581}
+SCENE: Any = {"x": 0, "y": 55, "width": 945, "height": 620}
 """The part of the window beside the panel."""
 WIDTH = 400  # [px], of a picture
 SHOWN = 2.6  # [s], simulated time in the picture

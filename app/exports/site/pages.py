@@ -9,7 +9,7 @@ from typing import Any
 from onpath.app.common.templates import environment, json_block
 from onpath.app.exports.site.step_data import SiteStep
 from onpath.app.exports.site.task_data import check_words
-from onpath.app.exports.standalone.figure_words import PARTS
+from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.exports.standalone.page_style import page_style
 from onpath.app.steps.player_words import player_words
 from onpath.app.steps.step_html import live
@@ -25,10 +25,10 @@ POLICY = (
 WebAssembly, pictures of the site and of the lessons' texts, the site's font for formulas, no
 requests to other servers."""
 MESSAGES = (
-    *("lesson.finish", "lesson.next", "lesson.skip", "report.chosen", "report.not_happened"),
+    *("lesson.finish", "lesson.next", "lesson.skip", "report.not_happened"),
     *("site.forgotten", "site.forget_sure", "site.read_done", "site.no_progress", "site.not_kept"),
     *("site.no_platform", "site.no_room", "site.to_robots", "site.to_text", "site.skip_short"),
-    *("site.review", *PARTS),
+    *("site.review", *CHART),
 )
 
 

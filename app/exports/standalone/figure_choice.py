@@ -178,11 +178,14 @@ def refusal(figure: FigureChoice, control: str) -> str | None:
 def _usual_sliders(laws: Sequence[str], parameters: Parameters) -> tuple[str, ...]:
     """The parameter of the wanted motion, and the gains that act in one of the laws.
 
-    The speed of a law with a plan is in its plan, which a page cannot compute.
+    A page cannot compute a plan, which contains the speed and the law's own gains.
     """
     task, unused = ("speed", "K4") if parameters.task == "speed" else ("target", "")
-    gains = dict.fromkeys(gain for law in laws for gain in law_named(law).gain_names)
-    if any(law_named(law).plan for law in laws) and task == "speed":
+    chosen = [law_named(name) for name in laws]
+    gains = dict.fromkeys(
+        gain for law in chosen for gain in (law.gains if law.plan else law.gain_names)
+    )
+    if any(law.plan for law in chosen) and task == "speed":
         return tuple(gain for gain in gains if gain != unused)
     return task, *(gain for gain in gains if gain != unused)
 

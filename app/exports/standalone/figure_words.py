@@ -7,13 +7,13 @@ from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
 from onpath.models.paths.path_checks import TUBE
 
-PARTS = (
+CHART = (
     *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
     *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
 )
-"""Messages of the chart, on every page that has one."""
+"""Messages of the chart, which figures and lessons have."""
 PLAIN = (
-    *PARTS,
+    *CHART,
     *("lens.closest", "lens.reference", "lens.straight", "run.press", "run.press_hint"),
     *("run.rate", "past.go_on", "transport.go_on_hint", "transport.back", "transport.back_hint"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),

@@ -1,4 +1,4 @@
-"""Path following with a disturbance observer: the lasting force is estimated, not integrated."""
+"""Path following with a disturbance observer in place of the integral."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ BOUND = own_gain(
     10.0,
     "m/s²",
     (0, 60, 0.5),
-    "the largest acceleration with which the observer's estimate is opposed",
+    "largest acceleration that opposes the observer's estimate",
     label="Observer's bound",
 )
 MODEL, STARTED = "observer_model", "observer_started"
@@ -49,8 +49,8 @@ def disturbance_observer(view: View) -> ControlAction:
     robot pushes on for no longer than about 1/L after a hand has let go. A force of more than a m
     moves the robot off as it would a spring K1.
 
-    What is kept is r = p + K2 λ, so that K2 λ' need not be integrated, which the controller only
-    predicts:
+    The state is r = p + K2 λ, so that K2 λ', which the controller only predicts, need not be
+    integrated:
 
         d = L (λ' + K2 λ - r),   r' = -K1 λ + d - sat(d).
 
@@ -104,7 +104,7 @@ LAW = Law(
     good="After a long pull it is back on the curve sooner than path following, because it forgets"
     " the force at once.",
     limits="A force beyond its bound moves it off as it would a spring, and with noisy sensors its"
-    " torques tremble more than those of path following.",
+    " torques vary more than those of path following.",
     objection="Its authors would use an observer along the path, too, and a filter of"
     " higher order.",
 )

@@ -23,8 +23,8 @@ SWING = own_gain(
     "amplitude of the pendulum on the orbit",
     label="Swing",
 )
-LEVEL, STEEP = 0.7, 0.4  # |dx/ds| of the path down to which it is kept, and at which it is left
-NARROW, WIDE = 0.85, 0.75  # cos φ, the same
+LEVEL, STEEP = 0.7, 0.4  # |dx/ds| of the path: the orbit alone above, the position task below
+NARROW, WIDE = 0.85, 0.75  # cos φ, likewise
 
 
 def plan(robot: Robot, parameters: Parameters, _curve: Curve) -> Array:
@@ -60,8 +60,8 @@ def orbital_stabilization(view: View) -> ControlAction:
     models/control/pendulum_orbit.py), where e_r(ψ) is what the last term does to e. x'' is attained
     by v_par, eq. (16), and (18) holds across the path. x_m is the x of the path at `target`. Where
     the path is too steep to move x along it, |dx/ds| < 0.4, or the pendulum has fallen, cos φ <
-    0.75, the position task (19) leads to that place. All this is mixed with (19) smoothly up to
-    |dx/ds| = 0.7 and cos φ = 0.85, and acts alone from there on.
+    0.75, the position task (19) leads to that place. Above |dx/ds| = 0.7 and cos φ = 0.85 it has no
+    part in the motion; in between, the two are blended.
 
     Cart with a pendulum of 0.1 kg, default settings, circle of 50 mm: period 0.82 s upright and
     1.32 s hanging; multipliers of the linearized motion across the orbit 0, 0, 0.05 and 0, 0, 0.21.

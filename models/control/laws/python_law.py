@@ -21,19 +21,19 @@ from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
 
 CALLED = "called"
-"""The field of a law's memory that holds what its function has returned."""
+"""The field of a law's memory that holds the result of its function."""
 MOST = 3  # numbers that a function returns
 IN_FILE = re.compile(r"(?P<file>.+\.py):(?P<name>[^\W\d]\w*)")
 GIVEN = {f.name for f in dataclasses.fields(Law)} - {"name", "command", "origin", "called"}
-"""What an object may say of its law besides its name and its command."""
+"""Fields of `Law` that an object may have besides its name and its command."""
 
 
 @dataclass(frozen=True, slots=True)
 class Now:
-    """What a function that is a law is called with, once in every control interval.
+    """The argument of a law that is a function, which is called once in every control interval.
 
-    All quantities are as the controller knows them, predicted to the middle of the tick, as for
-    other laws; p is the number of outputs, n that of coordinates.
+    As for other laws, all quantities are those that the controller knows, predicted to the middle
+    of the tick. p is the number of outputs, n that of coordinates.
 
     Attributes:
         t: time since the start, [s].
@@ -68,14 +68,16 @@ def python_law(given: Any) -> Law:
     """The law that an object describes; for the same object, the same law.
 
     Args:
-        given: a `Law`; or an object with `command(view)`, see `Law.command`, whose other attributes
-            with names of `Law`, such as `gains` and `memory`, are the law's; or a class of such
-            objects, made without arguments; or, for studies, a function of `Now` that returns
-            θ'' and λ'', p numbers in [rad/s²] and [m/s²]; or a class of objects that can be called
-            like this, of which each run gets a new one.
+        given: one of
+            - a `Law`;
+            - an object with `command(view)`, see `Law.command`, which may also have other fields of
+              `Law`, such as `gains` and `memory`, or the class of such an object, which is created
+              without arguments;
+            - for studies, a function of `Now` that returns θ'' and λ'', p numbers in [rad/s²] and
+              [m/s²], or a class of such callable objects, of which each run creates one.
 
     Raises:
-        CodedError: it describes none; the message has file and line.
+        CodedError: it does not describe a law; the message has file and line.
     """
     if id(given) not in _KNOWN:
         _KNOWN[id(given)] = given, _law_of(given)
@@ -83,7 +85,7 @@ def python_law(given: Any) -> Law:
 
 
 _KNOWN = dict[int, tuple[Any, Law]]()
-"""The laws of objects by their identity, with the objects, so that no other gets that identity."""
+"""Objects and their laws by `id`; the objects are kept so that no other gets the same `id`."""
 
 
 def _law_of(given: Any) -> Law:
@@ -184,7 +186,7 @@ def _called(
 
 
 def _returned(view: View) -> ControlAction:
-    """The command that a function has returned at its last call."""
+    """The command that the function returned at its last call."""
     numbers, p = view.clock.memory[CALLED], view.frame.p
     direction = view.output.acceleration_per_along
     action = followed(view, numbers[0], numbers[1:p], direction)
@@ -192,7 +194,7 @@ def _returned(view: View) -> ControlAction:
 
 
 def _where(given: Any) -> tuple[str, int]:
-    """File and line of the code that matters to a user."""
+    """File and line of the code of a law."""
     code = given.command if isinstance(given, Law) or hasattr(given, "command") else given
     if isinstance(code, type):
         code = next((vars(k)["__call__"] for k in code.__mro__ if "__call__" in vars(k)), code)

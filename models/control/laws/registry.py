@@ -80,9 +80,7 @@ def add_law(law: Law) -> Law:
     base, number = law.name, 1
     if base in _FOUND or is_text(base):
         raise CodedError("error.law_same_name", law=base)
-    while (known := LAWS.get(law.name)) is not None:
-        if known == law:
-            return known
+    while _ADDED.get(law.name, law) != law:
         number += 1
         law = replace(law, name=f"{base}_{number}")
     versions = {base, *_versions(base)}
@@ -91,7 +89,7 @@ def add_law(law: Law) -> Law:
     if twice := taken & {gain.name for gain in law.own_gains}:
         raise ValueError(f"{law.name}: its gain {min(twice)!r} is one of another law, too")
     OWN_GAINS.update(gains_of([law]))
-    LAWS[law.name] = law
+    LAWS[law.name] = _ADDED[law.name] = law
     return law
 
 
@@ -134,6 +132,7 @@ def gains_of(laws: Iterable[Law]) -> dict[str, OwnGain]:
 
 LAWS = found_laws()
 _FOUND = frozenset(LAWS)
+_ADDED = dict[str, Law]()  # all laws ever added: a name means one law, since loops are kept by it
 NAMES = (TRAJECTORY_TRACKING.name, PATH_FOLLOWING.name)
 """The two laws of a new lab, which the paper's experiments compare."""
 SHARED_GAINS = ("K1", "K2", "K3", "K4", "K5")

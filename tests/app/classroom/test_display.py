@@ -48,6 +48,7 @@ def test_a_class_stored_by_an_older_version_shows_nothing_yet() -> None:
     assert from_stored(stored, lambda _: NOTHING_DONE, 0.0).display == Display()
 
 
+@pytest.mark.thorough
 @given(displays, st.booleans())
 def test_a_step_that_is_sent_is_displayed_without_its_answers(shown: Display, again: bool) -> None:
     room = Classroom()
@@ -56,6 +57,7 @@ def test_a_step_that_is_sent_is_displayed_without_its_answers(shown: Display, ag
     assert room.display == Display("01-a", 2, shown=False, revealed=False)
 
 
+@pytest.mark.thorough
 @given(displays)
 def test_a_setup_that_is_sent_changes_nothing_that_is_displayed(shown: Display) -> None:
     room = Classroom()

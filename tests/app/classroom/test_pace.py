@@ -80,6 +80,7 @@ ways = st.sampled_from(
 )
 
 
+@pytest.mark.thorough
 @given(st.lists(ways, max_size=12))
 @settings(max_examples=60)
 def test_no_way_of_a_student_leads_out_of_them(course: Course, walk: list[c.Command]) -> None:

@@ -15,6 +15,7 @@ HOSTILE = '"><script>alert(1)</script>'
 ADDRESS = "http://192.0.2.7:8080/c/m63eyz/"
 
 
+@pytest.mark.thorough
 @given(st.lists(st.tuples(st.integers(0, 4), st.text(max_size=40)), max_size=8))
 def test_however_members_are_renamed_they_are_told_apart(renamings: list[tuple[int, str]]) -> None:
     room = Classroom(key="k7mf2xqa9tzr")

@@ -33,6 +33,7 @@ def files(tmp_path: Path) -> list[str]:
     return ["--html", str(tmp_path / "a.html"), "--csv", str(tmp_path / "a.csv"), "--processes=1"]
 
 
+@pytest.mark.thorough
 def test_an_arena_of_laws_of_ones_own(files: list[str], tmp_path: Path, capsys: Any) -> None:
     broken = tmp_path / "broken.py"
     broken.write_text(BROKEN)
@@ -70,6 +71,7 @@ def test_the_command_behind_a_number_gives_that_number(
     assert float(shown) == pytest.approx(1e3 * float(row["distance_m"]), abs=0.01)
 
 
+@pytest.mark.thorough
 def test_an_interrupted_arena_has_what_all_laws_have_finished(
     files: list[str], tmp_path: Path, capsys: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -26,6 +26,7 @@ from onpath.models.path_files.placing import RADIUS
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from tests.support.checkout import ROOT
 from tests.support.csv_columns import read_csv
+from tests.support.robot_files import PLANAR, urdf
 from tests.support.suitable_laws import laws_for
 
 SHORT = ["experiment", "obstruction", "--set", "duration=0.2"]
@@ -128,6 +129,14 @@ def test_what_cannot_be_followed_is_told_and_the_nearest_path_is_taken_if_asked_
     file.write_text("G0 X0 Y0\nG1 X30\nG41\n", "utf-8")
     assert run_command([*SHORT, "--path", f"@{file}"]) == 2
     assert f"--path @{file}: line 3, column 1: 'G41' is not read" in capsys.readouterr().err
+
+
+def test_a_figure_of_a_robot_from_a_file_is_exported(tmp_path: Path) -> None:
+    file, page = tmp_path / "own.urdf", tmp_path / "own.html"
+    file.write_text(urdf("own", PLANAR), "utf-8")
+    pose = [f"--pose=joint{i}={x}" for i, x in enumerate((2.0, -1.3, -0.9), 1)]
+    assert run_command(["export", "figure", str(page), "--robot", str(file), *pose]) == 0
+    assert page.stat().st_size > 1e5
 
 
 def test_cut_corners_are_told(capsys: pytest.CaptureFixture[str]) -> None:
@@ -364,6 +373,7 @@ def test_a_file_that_cannot_be_written_is_named_as_it_was_typed(
     assert name in told and "tmpq3x" not in told and "Read-only" in told
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("arguments", [["lessons", "names"], ["figure", "2"]])
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii", ""])
 def test_output_is_printed_whatever_the_encoding_of_the_machine(

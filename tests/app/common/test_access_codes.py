@@ -64,6 +64,7 @@ def test_a_share_code_is_read_as_it_was_sent(setup: Setup, mangle: object) -> No
     assert decode(mangle(encode(setup))) == setup  # type: ignore[operator]
 
 
+@pytest.mark.thorough
 @given(manglers(wraps=False))
 def test_a_class_code_is_read_as_it_was_sent_and_is_no_wrong_guess(mangle: object) -> None:
     door, code = Admission(lambda: 0.0), class_code_of(new_code())

@@ -145,7 +145,7 @@ def test_the_picture_says_what_it_shows(language: str) -> None:
         words.get("path.circle", "circle") in said
         and words.get("machine.five_bar.label", "") in said
     )
-    assert "K1" in said and "= 650" in said and "= 0.1 kg" in said
+    assert "K1" in said and "= 650" in said and f"= {words.written('0.1')} kg" in said
     assert "ξ" in said and "θ" in said and "η" in said
     legends = [legend.get_texts() for legend in figure.findobj(match=Legend)]
     marked = {text.get_text() for texts in legends for text in texts}

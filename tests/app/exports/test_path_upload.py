@@ -80,6 +80,7 @@ def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
     return found[0]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", HOSTILE)
 def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) -> None:
     content, name, words = HOSTILE[case]
@@ -91,6 +92,7 @@ def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) 
     assert isinstance(good, c.FollowCurve)
 
 
+@pytest.mark.thorough
 def test_a_file_that_takes_for_ever_is_ended_and_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(path_upload, "read_upload", wait_for_ever)
     monkeypatch.setattr(path_upload, "SECONDS", 2.0)

@@ -128,6 +128,7 @@ STEPS = st.sampled_from(
 )
 
 
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(
     st.lists(
@@ -226,6 +227,7 @@ def test_another_lab_is_told_from_its_beginning() -> None:
     assert len(reader.rows) < 70
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
     lab, reader = new_lab(), Reader()

@@ -41,6 +41,7 @@ def test_the_tip_sags_under_the_load_and_comes_back() -> None:
     assert_sound(lab)
 
 
+@pytest.mark.thorough
 def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
     lab = flexible_lab(0.7)
     ends = list[dict[str, np.ndarray]]()

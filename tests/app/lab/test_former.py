@@ -96,6 +96,7 @@ def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
     return {**WRITTEN["defaults"][robot], **own}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", CASES)
 def test_a_share_code_means_what_it_meant(name: str) -> None:
     case = CASES[name]
@@ -109,6 +110,7 @@ def test_a_share_code_means_what_it_meant(name: str) -> None:
         assert {name: found[name] for name in expected} == expected
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", CASES)
 def test_a_share_code_moves_as_it_moved(name: str) -> None:
     case = CASES[name]
@@ -127,6 +129,7 @@ def written_out(case: Mapping[str, Any]) -> dict[str, Any]:
     return as_then(case["robot"], case["parameters"].get(case["robot"], {}))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", CASES)
 def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
     data = CASES[name]["data"]
@@ -174,6 +177,7 @@ def test_a_share_code_of_a_newer_version_says_so(monkeypatch: pytest.MonkeyPatch
     assert lab.message == lab.words("error.share_newer")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("case", CODES)
 def test_a_share_code_of_version_1_keeps_its_physics(case: str) -> None:
     code, own = CODES[case]

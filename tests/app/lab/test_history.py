@@ -114,6 +114,7 @@ def test_short_stretches_do_not_pile_up() -> None:
     )
 
 
+@pytest.mark.thorough
 def test_a_minute_takes_little_memory() -> None:
     """At 60 Hz, both robots, after a long time: less than 1 MB."""
     lab = new_lab(0.5)

@@ -189,6 +189,7 @@ def test_where_it_fails_the_usual_law_takes_its_place(
     assert_sound(lab)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
 def test_whatever_is_changed_the_lab_goes_on(store: LoopCache, laws: list[str], seed: int) -> None:
     """The law of a side is the one that was chosen, or where that fails the usual one."""

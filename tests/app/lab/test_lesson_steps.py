@@ -192,6 +192,7 @@ ways = st.one_of(
 )
 
 
+@pytest.mark.thorough
 @example(STEPS[0], [MEDDLING[-1], played])  # a pull that is a script, in a step without one
 @given(steps, st.lists(st.one_of(meddling, ways, st.just(played), st.just(reloaded)), max_size=12))
 @settings(max_examples=30)
@@ -206,6 +207,7 @@ QUICK = "05-invariance", "07-flexible-link"
 """Lessons of `make test`, a rigid and a flexible robot; `make thorough` has the others."""
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", some(COURSE.lessons, QUICK))
 def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     lab = pushed((name, 0))(new_lab())
@@ -221,6 +223,7 @@ def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     assert sorted(set(places)) == list(range(last + 1)) and places[-1] == 0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("meddle", MEDDLING)
 @pytest.mark.parametrize("way", [set_up_again, turned(1), turned(-1), left_and_opened])
 def test_whatever_was_done_nothing_of_it_is_left(

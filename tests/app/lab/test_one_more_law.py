@@ -27,6 +27,7 @@ def test_the_readme_shows_this_law() -> None:
     assert f"```python\n{law}```" in (ROOT / "models" / "README.md").read_text("utf-8")
 
 
+@pytest.mark.thorough
 def test_a_law_is_one_file() -> None:
     run_tests("tests/app/lab/one_more_law.py")
 

@@ -12,6 +12,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab, replayed, run
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_both_are_pulled_across_and_let_go(robot: str) -> None:
     lab = new_lab()

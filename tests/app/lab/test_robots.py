@@ -107,6 +107,7 @@ def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry)
     assert_sound(lab)
 
 
+@pytest.mark.thorough
 def test_a_pull_moves_it_and_it_comes_back(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.5)
     session = lab.session
@@ -209,6 +210,7 @@ def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
     )
 
 
+@pytest.mark.thorough
 def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.1)
     session = lab.session

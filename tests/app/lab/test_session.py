@@ -239,6 +239,7 @@ IN_A_LESSON: dict[type, st.SearchStrategy[Any]] = LESSON_COMMANDS | {
 }
 
 
+@pytest.mark.thorough
 @settings(max_examples=25, deadline=None)
 @given(
     robot=st.sampled_from(["five_bar"] * 4 + ["flexible"]),
@@ -323,6 +324,7 @@ def test_a_pull_to_no_point_is_refused_by_its_command(command: c.Command) -> Non
     assert not lab.session.forces.hands and lab.session.forces.grabbed is None
 
 
+@pytest.mark.thorough
 @given(st.data())
 def test_parameters_within_their_ranges_are_packed_to_finite_numbers(data: st.DataObject) -> None:
     """Whatever `changed` lets in: nothing checks the vector again."""

@@ -82,6 +82,7 @@ def test_a_new_lab_has_nothing_to_tell() -> None:
     assert to_data(Setup()) == {"defaults": DEFAULTS}
 
 
+@pytest.mark.thorough
 @SLOW
 @given(setups())
 def test_what_is_restored_is_captured_again(setup: Setup) -> None:

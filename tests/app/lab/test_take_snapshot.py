@@ -58,6 +58,7 @@ def test_an_instant_is_the_same_object_until_something_changes() -> None:
     np.testing.assert_allclose(lab.session.instant().sample, lab.session.sample())
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", ["circle", "clover", "segment"])
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str) -> None:

@@ -330,6 +330,7 @@ TEXTS = st.one_of(
 )
 
 
+@pytest.mark.thorough
 @settings(CALM, max_examples=150)
 @given(TEXTS)
 def test_any_text_is_a_law_or_is_refused(text: str) -> None:

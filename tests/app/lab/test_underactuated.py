@@ -85,6 +85,7 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
     assert SINGULAR in lab.message and lab.message_level == "error"
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", SUITABLE)
 @pytest.mark.parametrize("robot", [GANTRY.name, CART.name])
 def test_it_runs_under_every_law_that_suits_it(robot: str, law: str) -> None:

@@ -56,6 +56,7 @@ def depths(lab: Lab, y: np.ndarray) -> np.ndarray:
     return (place - y) @ normal
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", list(ROBOTS))
 def test_a_wall_pushes_out_and_nowhere_else(robot: str) -> None:
     """F is along the normal, never inwards, and only where the end-point is in the wall."""
@@ -109,6 +110,7 @@ def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None
     assert take_snapshot(lab, 1.0).obstacle is None
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", list(ROBOTS))
 def test_the_drawn_surface_is_where_the_force_begins(robot: str) -> None:
     lab = walled(0.05, Wall(0.01, 0.02, 2.2), robot)

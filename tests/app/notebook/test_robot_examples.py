@@ -15,6 +15,7 @@ EXAMPLES = {
 }
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_runs_and_prints_what_it_promises(name: str) -> None:
     file = asset_path(f"examples/{name}.py")

@@ -262,6 +262,7 @@ def test_a_law_that_fails_at_once_is_not_the_best_one() -> None:
 DOCUMENTED = ("simulate", "figure", "identify", "path_files")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("module", ["", *(f".app.notebook.{name}" for name in DOCUMENTED)])
 def test_examples_in_docstrings_do_what_they_show(module: str) -> None:
     failed, tried = doctest.testmod(importlib.import_module(f"onpath{module}"))

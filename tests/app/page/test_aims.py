@@ -38,6 +38,7 @@ def test_every_lesson_says_it_and_keeps_the_teachers_part(language: str) -> None
         assert words("lesson.needs") not in step_html(bare, 0, [], words)
 
 
+@pytest.mark.thorough
 def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
     lines = "\n".join(f'{name} = "{text}"' for name, text in TEXTS.items())
     write_lesson(tmp_path, LESSON.replace(SUMMARY, f"{SUMMARY}\n{lines}"))

@@ -50,6 +50,7 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
     wait_for(lambda: lab.lessons.progress.lesson == AFTER)
 
 
+@pytest.mark.thorough
 def test_a_student_answers_is_told_nothing_and_hands_in(
     server: LabServer, student: Student
 ) -> None:

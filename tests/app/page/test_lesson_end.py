@@ -74,6 +74,7 @@ def at_the_end(site: Site, answers: dict[str, Answer], truths: dict[str, Truth])
     site.sees("What you predicted, and what happened", POINT)
 
 
+@pytest.mark.thorough
 def test_own_curves_and_what_is_right_are_beside_what_happened(site: Site) -> None:
     answers = {"1": CURVE, "3": Answer(option=0)}
     at_the_end(site, answers, {"1": TRUTH, "3": TRUTH})
@@ -82,6 +83,7 @@ def test_own_curves_and_what_is_right_are_beside_what_happened(site: Site) -> No
     assert curves(site.student) == [["truth", "you"]]
 
 
+@pytest.mark.thorough
 def test_what_has_not_been_seen_is_not_told(site: Site) -> None:
     at_the_end(site, {"1": CURVE, "3": Answer(option=0)}, {})
     site.sees("What really happens has not been seen yet")
@@ -89,6 +91,7 @@ def test_what_has_not_been_seen_is_not_told(site: Site) -> None:
     assert curves(site.student) == [["you"]]
 
 
+@pytest.mark.thorough
 def test_it_leads_back_and_to_the_next_lesson(site: Site) -> None:
     at_the_end(site, {}, {})
     site.student.set("Back", True)

@@ -66,6 +66,7 @@ def chosen(lab: Lab) -> int | None:
     return answer.option if answer else None
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("step", [PREDICTION, QUIZ], ids=["prediction", "quiz"])
 def test_a_letter_means_the_option_that_stands_beside_it(
     server: LabServer, course: Course, step: int

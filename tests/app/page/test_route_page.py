@@ -5,6 +5,8 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
+import pytest
+
 from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -17,6 +19,7 @@ from tests.support.student import Student
 wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
 
 
+@pytest.mark.thorough
 def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> None:
     server = LabServer("127.0.0.1", 0, LoopCache(), written(tmp_path))
     try:

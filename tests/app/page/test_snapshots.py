@@ -149,6 +149,7 @@ def assert_draws_the_same(drawing: Drawing, snapshots: list[PageSnapshot | Motio
     assert drawing.posted == []  # what draws asks for nothing
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) -> None:
     lab = Lab(store(), ROBOTS[robot], course)
@@ -164,6 +165,7 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
     assert_draws_the_same(drawing, list(film))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_a_page_is_told_nothing_while_nothing_changes(
     robot: str, drawing: Drawing, course: Course

@@ -385,6 +385,7 @@ def test_every_code_has_words_and_exactly_its_arguments() -> None:
         assert given == arguments(known), (code, where)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("language", TRANSLATED)
 def test_an_error_is_told_by_its_code_whatever_its_english_is(language: str) -> None:
     for code, given, _ in said_in_code():
@@ -507,6 +508,7 @@ def test_counts_have_plurals_in_every_language() -> None:
                 assert words(key, **others | {count: 1}) != words(key, **others | {count: 2}), key
 
 
+@pytest.mark.thorough
 def test_a_count_is_given_as_a_number() -> None:
     """A plural of a text would always be the general one."""
     counted: dict[str, set[str]] = {}

@@ -118,6 +118,7 @@ def hostile_messages(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
     return kind, {k: v for k, v in (HONEST[kind] | hostile).items() if k not in missing}
 
 
+@pytest.mark.thorough
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(messages=st.lists(hostile_messages(), min_size=1, max_size=20), at=st.data())
 def test_several_hostile_fields_at_once(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -12,6 +13,7 @@ from onpath.app.lab.snapshots.page_snapshot import LawPlaces, PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.lab_feed import AT_EASE, LabFeed
 from onpath.app.simulation.display_rate import STRIDES, is_turn
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.models.control.settable import changed
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, FRAME, do, new_lab, y
@@ -23,6 +25,7 @@ class Paper:
     """Stands in for a page; notes when it is shown what moves, and when everything."""
 
     is_ready, is_outdated = True, False
+    captions: Mapping[str, str] = {}
 
     def __init__(self) -> None:
         self.exporter, self.now = self, 0
@@ -92,6 +95,36 @@ def test_a_hand_is_followed_in_every_frame_of_a_thread_at_ease() -> None:
 def test_of_a_lab_at_rest_only_slow_updates_are_shown() -> None:
     paper = shown(AT_EASE, 0, c.SetRunning(False))
     assert len(paper.moved) <= 1 and paper.whole
+
+
+def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown() -> None:
+    """In a frame of a busy thread in which nothing that moves is shown."""
+    own, other, paper, told = new_lab(FRAME), new_lab(FRAME), Paper(), list[object]()
+
+    class Data:
+        def follow(self, lab: object, path: object, is_turn: bool) -> None:
+            told.append(lab)
+
+        def tell(self, snapshot: object, captions: object) -> None: ...
+
+    class Followed:
+        found: Any = None
+
+        def find(self) -> Any:
+            return self.found
+
+    page, data, followed = cast(Any, paper), cast(Any, Data()), cast(Any, Followed())
+    feed = LabFeed(page, 0, followed=followed, data=data)
+    stride = STRIDES[-1]
+    frame = next(i for i in range(9) if not is_turn(i, stride))
+    feed.refresh(own, 1.0)
+    feed.show(own, frame, stride)
+    followed.found = ScheduledLab(other), 1
+    feed.show(own, frame, stride)
+    assert told == [own]
+    feed.refresh(own, 1.0)
+    feed.show(own, frame, stride)
+    assert told == [own, other]
 
 
 @pytest.mark.parametrize("name", ["flexible", "five_bar"])

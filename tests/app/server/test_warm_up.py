@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import subprocess
 import sys
 from importlib import import_module
@@ -9,8 +10,11 @@ from importlib import import_module
 import pytest
 
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.session import Session
 from onpath.app.server import warm_up
 from onpath.lessons.course import NO_LESSONS
+from onpath.models.closed_loop.loops import CompiledLoop
+from onpath.models.systems.catalogue import ROBOTS
 
 FIRST_PICTURE = """
 import sys
@@ -49,6 +53,7 @@ print("new:", *sorted(set(sys.modules) - known))
 """
 
 
+@pytest.mark.thorough
 def test_a_board_to_sketch_on_imports_nothing_after_the_start() -> None:
     """All labs would wait for the imports."""
     run = subprocess.run([sys.executable, "-c", SKETCH], capture_output=True, text=True)
@@ -69,3 +74,15 @@ def test_what_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(warm_up, "import_module", loaded)
     warm_up.warm_up(LoopCache(), NO_LESSONS, rest=0.0).join()
     assert {*warm_up.LATER} <= {*done}
+
+
+def test_the_loops_of_a_robots_first_lab_are_compiled_with_progress(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    caplog.set_level(logging.INFO)
+    cache, entry = LoopCache(), ROBOTS["planar_arm"]
+    warm_up.compile_loops(cache, entry)
+    told = [record.getMessage() for record in caplog.records]
+    assert told == [f"compiling {entry.label}: {i} of 4" for i in range(1, 5)]
+    for run in Session(cache, entry).runs.values():
+        assert isinstance(run.loop(), CompiledLoop)

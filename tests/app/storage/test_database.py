@@ -223,6 +223,7 @@ def test_a_file_of_something_else_is_moved_aside(file: Path, size: int) -> None:
     assert len({aside.name for aside in broken_files(file)}) == 2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(60))
 def test_a_file_with_wrong_bytes_opens_and_nothing_is_deleted(file: Path, seed: int) -> None:
     chance = random.Random(seed)
@@ -415,6 +416,7 @@ for i in range(int(sys.argv[3])):
 """
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no kill -9 here")
 def test_kill_9_in_the_middle_of_writes(file: Path) -> None:
     for attempt in range(4):

@@ -208,6 +208,7 @@ def test_what_is_open_in_one_process_is_not_taken_by_another(two: list[Records])
     assert other.delete(LAB) == 1 and other.delete(LAB) == 0 and other.load(LAB) is None
 
 
+@pytest.mark.thorough
 def test_a_lease_ends_when_its_owner_is_gone(two: list[Records]) -> None:
     """The fixture's databases reckon by their own clocks, so this waits for the lease's end."""
     one, other = two

@@ -162,6 +162,7 @@ def test_a_lab_that_moved_away_while_its_process_was_suspended_is_given_up(
     assert one.registry.join(2, code).code == code and one.gain(code) == 43
 
 
+@pytest.mark.thorough
 def test_a_lab_that_waited_here_meanwhile_is_read_again_and_its_late_changes_are_dropped(
     two: list[Process], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -214,6 +215,7 @@ def test_a_lab_that_is_open_in_one_process_stays_there(
     assert there.registry.join(3, code).code == code and there.gain(code) == 42
 
 
+@pytest.mark.thorough
 def test_the_lab_of_a_process_that_was_killed_is_waited_for(two: list[Process]) -> None:
     here, there = two
     code = here.registry.join(1, None).code

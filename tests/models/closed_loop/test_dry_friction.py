@@ -23,6 +23,7 @@ from onpath.models.systems.catalogue import ROBOTS
 CIRCLE = circle(0.05)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ROBOTS)
 def test_at_rest_no_joint_chatters_with_any_dry_friction(name: str) -> None:
     """Position task, after 4 s: no joint that still moves reverses from tick to tick."""

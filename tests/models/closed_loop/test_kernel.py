@@ -132,6 +132,7 @@ def test_path_is_invariant(rig: Rig, kind: Kind, curve: Curve) -> None:
     assert curve.nearest(log["y"])[1].max() < 1e-6
 
 
+@pytest.mark.thorough
 def test_random_paths_are_invariant(rig: Rig, random_curve: Callable[[int], Curve]) -> None:
     for seed in range(12):
         curve = random_curve(seed)
@@ -389,6 +390,7 @@ def hand_written(
     return {lanes: reference_loop(kernel, folder, lanes) for lanes in LANES}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     "changes",
     [

@@ -35,6 +35,7 @@ def test_only_erf_has_no_webassembly() -> None:
     assert {*LIBRARY} - {*MATHEMATICS} == {"erf"}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", TRANSLATED)
 def test_llvm_computes_the_virtual_machine_s_bits(name: str) -> None:
     x = ca.SX.sym("x", 2)

@@ -83,6 +83,7 @@ def ran(
 # Both tiers
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", list(ROBOTS))
 @pytest.mark.parametrize(
     "names", [("stiction", "coulomb"), ("torque_step",), ("delay",), ("sensor_noise", "seed"), ()]

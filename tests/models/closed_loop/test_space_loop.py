@@ -162,6 +162,7 @@ def compiled(kernel: Kernel) -> CompiledLoop:
     return translate_loop(kernel)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", SUITABLE)
 @pytest.mark.parametrize("shape", ["saddle", "clover", "open"])
 def test_the_compiled_loop_gives_the_same_bits(law: str, shape: str) -> None:

@@ -40,6 +40,7 @@ def flexible(plant: str) -> Robot:
     return robot_for(replace(FlexibleParameters(), modes=1, plant=plant))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("stiction", [False, True])
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_compiled_loop_keeps_the_layouts_and_not_the_graphs(name: str, stiction: bool) -> None:
@@ -79,6 +80,7 @@ def test_every_loop_of_every_robot_can_be_translated(
             assert translate(kernel_of(flexible(plant), replace(kind, law=law)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
 def test_no_law_takes_a_third_more_operations_than_path_following(entry: RobotEntry) -> None:
     robot, curve = entry.make(entry.parameters()), circle(0.05)

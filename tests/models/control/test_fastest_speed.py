@@ -71,6 +71,7 @@ def test_the_torques_stay_below_their_limit_all_along(
     assert not curve.closed or rates.min() > LEAST / 2
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", ["circle", "clover", "segment"])
 def test_no_speed_beside_it_that_keeps_its_torques_is_faster(path: str) -> None:
     """The times of the feasible speeds are a convex function on a convex set but for friction, so

@@ -22,10 +22,10 @@ from onpath.models.control.rank_test import rank_number
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
 from onpath.models.studies.experiments import on_path, run
+from onpath.models.systems.cart_pendulum import ROBOT as CART
+from onpath.models.systems.cart_pendulum import CartParameters
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
-from onpath.models.systems.pendulum_on_cart import ROBOT as CART
-from onpath.models.systems.pendulum_on_cart import CartParameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.rod_gantry import PERCUSSION, ROD, RodGantryParameters
 from onpath.models.systems.rod_gantry import ROBOT as GANTRY
@@ -181,6 +181,7 @@ def shapes(draw: st.DrawFn) -> Shape:
     )
 
 
+@pytest.mark.thorough
 @settings(deadline=None, max_examples=30)
 @given(shapes(), st.sampled_from(CHAIN_LAWS))
 def test_a_chain_with_passive_joints_runs_or_is_refused_in_words(shape: Shape, law: str) -> None:

@@ -97,6 +97,7 @@ def torques(text: str, entry: RobotEntry, v: Array, curve: Curve = CIRCLE, **cha
 # The law that a user begins with is path following.
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("entry", ROBOTS.values(), ids=list(ROBOTS))
 @pytest.mark.parametrize(
     ("curve", "changes"),

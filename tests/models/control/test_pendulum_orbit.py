@@ -12,7 +12,7 @@ import onpath
 from onpath.models.arrays import Array
 from onpath.models.control.laws.law import PLAN
 from onpath.models.control.pendulum_orbit import ORDER, Pendulum, orbit_plan
-from onpath.models.systems.pendulum_on_cart import LENGTH
+from onpath.models.systems.cart_pendulum import LENGTH
 from onpath.models.systems.system import GRAVITY
 
 MASS, SIDES = 0.1, {"hanging": 1.0, "upright": -1.0}
@@ -59,6 +59,7 @@ def lap(own: Pendulum, plan: Array, swing: float, driven: bool = True) -> tuple[
     return period, solve_ivp(slope, (0, period), begin, rtol=1e-9).y[2:, -1].reshape(3, 3)
 
 
+@pytest.mark.thorough
 @settings(max_examples=10, deadline=None)
 @given(st.sampled_from(sorted(SIDES)), st.floats(0.02, 0.3))
 def test_a_lap_shrinks_what_is_off_the_orbit(side: str, swing: float) -> None:
@@ -105,6 +106,7 @@ def test_with_friction_the_constraint_moves_as_its_plan_says(side: str) -> None:
     assert not orbit_plan(frictionless, swing).reshape(4, -1)[3].any()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("pivot", "near"), [(0.0, 1e-3), (0.001, 1e-3), (0.01, 1e-2)])
 @pytest.mark.parametrize(("side", "settled"), [("upright", 3.0), ("hanging", 9.0)])
 def test_the_cart_finds_its_orbit_and_keeps_it(
@@ -126,6 +128,7 @@ def test_the_cart_finds_its_orbit_and_keeps_it(
     assert np.abs(share[round(1000 * settled) :] - 1).max() < near
 
 
+@pytest.mark.thorough
 def test_the_amplitude_is_the_one_that_is_set() -> None:
     for swing in (0.05, 0.12):
         run = onpath.simulate(

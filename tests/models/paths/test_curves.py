@@ -246,6 +246,7 @@ def polygon_distance(z: Array, corners: Array) -> Array:
     return np.linalg.norm(z[:, None] - nearest, axis=2).min(1)
 
 
+@pytest.mark.thorough
 @given(st.integers(0, 10_000))
 def test_a_fitted_curve_tells_how_far_it_is_from_the_lines_between_its_points(seed: int) -> None:
     corners = star(np.random.default_rng(seed))

@@ -50,6 +50,7 @@ def test_on_a_circle_it_is_that_of_the_radius_also_near_the_centre():
         assert np.abs(found - np.abs(np.linalg.norm(y, axis=1) - 0.05)).max() < 1e-10
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(8))
 def test_no_point_of_the_curve_is_nearer_even_where_two_valleys_are_equally_deep(
     random_curve, seed

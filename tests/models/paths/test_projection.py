@@ -61,6 +61,7 @@ def once() -> ca.Function:
     return projector(closed=True, passes=1)
 
 
+@pytest.mark.thorough
 def test_closest_point_of_thousands_is_that_of_brute_force(
     random_curve: Callable[[int], Curve], once: ca.Function
 ) -> None:

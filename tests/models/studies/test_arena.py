@@ -21,7 +21,7 @@ from onpath.models.studies.arena import (
     entrants,
     measured,
     results_of,
-    run_all,
+    run_under,
     table,
     trials_of,
 )
@@ -71,7 +71,7 @@ def test_every_law_that_can_take_part_has_its_rows(robot: str) -> None:
 def test_a_growing_pull_has_the_force_that_it_says() -> None:
     """F = rate (t - from) across the path, whatever the speed along it."""
     (trial,) = [each for each in trials_of(("five_bar",), 1, 1)[0] if each.obstruction == "pull"]
-    (moved,) = run_all([trial.experiment(True)], "path_following")
+    moved = run_under(trial.experiment(True), "path_following")
     values = dict(trial.values)
     acts = (moved.t > values["pull_from"] + 0.02) & (moved.t < values["pull_from"] + 0.5)
     wanted = np.abs(values["pull_rate"]) * (moved.t[acts] - values["pull_from"])
@@ -87,7 +87,7 @@ def test_the_measures_are_what_they_say() -> None:
     trials = {each.obstruction: each for each in trials_of(("five_bar",), 1, 1)[0]}
     brake = trials["brake"]
     experiment = brake.experiment(False)
-    (moved,) = run_all([experiment], "path_following")
+    moved = run_under(experiment, "path_following")
     result = measured("path_following", False, brake, experiment, moved)
     assert result.distance_m == moved.distance.max() == result.shown[:, 1].max()
     assert result.force_N is None and len(result.shown) == len(moved.t) // 20 + 1

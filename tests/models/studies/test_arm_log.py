@@ -151,8 +151,8 @@ def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
     found, motion = result.found.estimate, result.found.motion
     assert found.unexcited or any(each.others for each in found.found)
     assert motion is not None and not motion.left
-    assert "q2" in motion.moving and {"M22", "b2"} <= {*motion.told}
-    assert f"would also tell {', '.join(motion.told)}" in repr(result)
+    assert "q2" in motion.moving and {"M22", "b2"} <= {*motion.identified}
+    assert f"would also tell {', '.join(motion.identified)}" in repr(result)
 
 
 def test_a_rich_log_needs_no_other_motion(log: Path) -> None:

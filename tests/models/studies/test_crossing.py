@@ -29,6 +29,7 @@ def steps(trajectory: Trajectory) -> Array:
     return np.abs(np.diff(trajectory.fields["theta"][:, 0]))
 
 
+@pytest.mark.thorough
 def test_of_three_ways_only_the_global_search_jumps_to_the_other_strand() -> None:
     elsewhere = set[bool]()
     for seed in (1, 2, 3):
@@ -62,6 +63,7 @@ def test_held_at_the_crossing_nothing_jumps_and_the_follower_stays_near(law: str
         assert held.distance.max() < 4e-3 and held.distance[-500:].max() < 1e-3
 
 
+@pytest.mark.thorough
 def test_pushed_at_the_crossing_forty_times_it_keeps_its_strand() -> None:
     rng, other_was_nearer = np.random.default_rng(5), 0
     for _ in range(40):

@@ -77,6 +77,7 @@ def test_a_file_gives_the_robot_back_to_four_digits(robot: str, tmp_path: Path) 
     assert result.unexplained < 1e-4 and not result.unexcited
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
 def test_errors_of_noisy_encoders_are_as_large_as_stated(robot: str, tmp_path: Path) -> None:
     clean = record(robot, tmp_path, payload=0.05)
@@ -122,6 +123,7 @@ def test_the_file_has_the_angles_that_the_loop_reads(robot: str, values: dict[st
         assert read == pytest.approx(own.fields[MEASURED][k], abs=1e-12)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", RIGID)
 def test_measured_angles_are_written_and_used(
     robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -167,6 +169,7 @@ def test_runs_with_and_without_exact_sensors_are_written_together() -> None:
     assert all(row[2:4] == row[-2:] for row in rows[51:])  # exact sensors read what is
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("robot", "values"), [*((name, {}) for name in RIGID), *((name, NOISY) for name in TURNING)]
 )

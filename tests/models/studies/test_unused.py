@@ -56,6 +56,7 @@ def cases(draw: st.DrawFn) -> tuple[str, str, Parameters, str]:
     return robot, law, parameters, draw(st.sampled_from(list(specs(parameters))))
 
 
+@pytest.mark.thorough
 @settings(max_examples=40)
 @given(cases(), st.randoms(use_true_random=False))
 def test_what_has_no_effect_is_named_and_nothing_else(

@@ -55,7 +55,6 @@ def added(text: str) -> str:
 MASS = '<mass value="0.6"/>'
 CASES = {
     "doctype": ('<!DOCTYPE robot [<!ENTITY a "b">]>\n' + ARM.split("\n", 1)[1], 1, "!DOCTYPE"),
-    "xml": (ARM.replace("</robot>", "<link"), 12, ""),
     "root": ("<sdf/>", 1, "sdf"),
     "xacro": (changed(MASS, '<mass value="${m}"/>'), 5, "mass"),
     "without": (changed(MASS, "<mass/>"), 5, "mass"),
@@ -125,7 +124,10 @@ def test_files_that_are_none_or_too_large_are_refused(tmp_path: Path) -> None:
     assert code_of(caught.value) == "absent"
     assert code_of(refused(tmp_path, b" " * 1_000_001)) == "size"
     for data in (b"", b"\x00\xff", b"<?xml version='1.0' encoding='klingon'?><robot/>"):
-        assert refused(tmp_path, data).message.code == "robot_file.at"
+        error = refused(tmp_path, data)
+        assert error.message.code == "robot_file.at_line"
+        assert str(error).startswith("arm.urdf, line 1: this is not XML: ")
+    assert refused(tmp_path, ARM.replace("</robot>", "<link")).message.arguments["line"] == 12
 
 
 def test_many_joints_must_be_locked(tmp_path: Path) -> None:
@@ -237,6 +239,7 @@ MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="link1" pos="0
 <geom type="capsule" fromto="0 0 0 0.22 0 0" size="0.02"/>
 <site name="tip" pos="0.22 0 0"/></body></body></worldbody></mujoco>
 """
+TWICE = '<joint name="again" axis="0 -1 0"/><joint name="joint2"'
 STRANGE = {
     "mass": ('mass="0.6"', 'mass="nan"', "line 2, inertial: mass nan"),
     "place": ('pos="0.15 0 0"', 'pos="0.15 1e308 0"', "line 4, body link2: pos 0.15 1e308 0"),
@@ -252,6 +255,21 @@ def test_what_is_wrong_in_an_mjcf_file_is_named_with_its_line(tmp_path: Path, ca
     pytest.importorskip("mujoco")
     old, new, words = STRANGE[case]
     assert words in str(refused(tmp_path, MJCF.replace(old, new), Options()))
+
+
+def test_warnings_of_mujoco_are_remarks_and_no_file_in_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two joints about one axis have a singular mass matrix; a mass is then added to one."""
+    pytest.importorskip("mujoco")
+    monkeypatch.chdir(tmp_path)
+    again = MJCF.replace('<joint name="joint2"', TWICE)
+    file = tmp_path / "arm.xml"
+    file.write_text(again)
+    options = Options(armature=0.01, pose={"joint1": 1.2, "again": 0.0, "joint2": -1.4})
+    codes = [remark.code for remark in read_robot(file, options).remarks]
+    assert codes == ["robot_file.mujoco_warns"]
+    assert [each.name for each in tmp_path.iterdir()] == ["arm.xml"]
 
 
 @settings(

@@ -48,6 +48,7 @@ def critical(joints: Array, modes: int = 3, plant: str = "lagrangian", **changes
     return zero.critical_alpha(straight(joints, modes), parameters, highest=8.0)
 
 
+@pytest.mark.thorough
 def test_the_command_takes_just_the_settings_that_change_its_table() -> None:
     def told(parameters: Any) -> Any:
         return as_json(study(parameters, (0.02, 0.01), alphas=np.array([0.5])))

@@ -74,6 +74,7 @@ def store() -> LoopCache:
     return LoopCache(at_once=True)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("lesson", "task", "until", "do"), EXPLOITS)
 def test_what_once_passed_without_what_is_asked_does_not(
     store: LoopCache, lesson: str, task: str, until: float, do: tuple[Action, ...]
@@ -138,6 +139,7 @@ above = 0.1
 ONLY = '\n[[check]]\nkind = "only"\nnames = ["K1", "K2"]\n'
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("check", "fair", "found"),
     [("", "", True), (FORCE, "", False), (ONLY, "", False), ("", 'fair = ["speed"]', False)],

@@ -80,6 +80,7 @@ displays = st.builds(
 )
 
 
+@pytest.mark.thorough
 @given(displays, st.sampled_from((-1, 1)))
 def test_from_any_stored_place_there_is_a_step_that_exists(display: Display, by: int) -> None:
     lesson, index = STEPS.place(display)

@@ -228,6 +228,7 @@ def leans(run: onpath.Run) -> float:
     return float(np.abs(run.trajectory.fields["q"][-1000:, 2]).max())
 
 
+@pytest.mark.thorough
 @pytest.mark.filterwarnings("ignore:the zero dynamics are unstable")
 def test_orbital_stabilization_keeps_an_upright_pendulum_up_also_after_a_push() -> None:
     assert leans(upright("path_following")) > 1
@@ -237,6 +238,7 @@ def test_orbital_stabilization_keeps_an_upright_pendulum_up_also_after_a_push() 
         assert run.trajectory.distance[-1000:].max() < NEAR
 
 
+@pytest.mark.thorough
 def test_a_swing_too_wide_for_its_curve_drops_the_pendulum() -> None:
     run = upright("orbital_stabilization", orbit_swing=0.16)
     assert run.stopped_at is not None or leans(run) > 1

@@ -174,6 +174,7 @@ def test_a_set_point_regulator_cuts_across_the_circle_and_path_following_does_no
         assert np.linalg.norm(log["y"][-1] - CIRCLE.at(np.array(3.0))) < 1e-4
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("theta", np.arange(4) * np.pi / 2)
 def test_a_waiting_clock_waits_while_the_robot_is_held(theta: float) -> None:
     advances = list[float]()

@@ -1,8 +1,10 @@
-"""Motions that would tell apart the parameters that a record does not.
+"""Motions that excite the parameters that a record does not.
 
-The equations of motion give the regressor of any motion, also of one that no robot has made yet.
-A motion tells parameters apart if, together with the record, the columns of its regressor are
+The equations of motion give the regressor of any motion, even of one that no robot has made yet. A
+motion identifies parameters if the columns of its regressor, together with those of the record, are
 independent (see linear_model.py).
+
+Source: exciting trajectories in Khalil and Dombre, Modeling, Identification and Control of Robots.
 """
 
 from __future__ import annotations
@@ -24,54 +26,54 @@ QUICK, SMALL = 4.3, 0.15  # frequency and amplitude of the second wave, relative
 
 
 @dataclass(frozen=True, slots=True)
-class TellingMotion:
-    """A motion, in which some coordinates swing about their mean in the record.
+class ExcitingMotion:
+    """A motion in which some coordinates swing about their mean in the record.
 
     Attributes:
         moving: names of these coordinates; the others rest.
-        told: the parameters that it tells, or tells apart, and the record does not.
-        left: those that it does not tell either, such as those that no motion does.
+        identified: the parameters that it identifies and the record does not.
+        left: those that it does not identify either, such as those that no motion can.
     """
 
     moving: tuple[str, ...]
-    told: tuple[str, ...]
+    identified: tuple[str, ...]
     left: tuple[str, ...]
 
 
-def telling_motion(
+def exciting_motion(
     system: MechanicalSystem, records: list[MotionRecord], geometry: Array, names: tuple[str, ...]
-) -> TellingMotion | None:
-    """The motion of the fewest coordinates that tells the most of what the records do not.
+) -> ExcitingMotion | None:
+    """The motion of the fewest coordinates that identifies the most of what the records do not.
 
     Args:
         geometry: see `linear_model.estimate`.
         names: of the parameters that matter.
 
     Returns:
-        None if the records tell all of them, or no motion tells more.
+        None if the records identify all of them, or no motion identifies more.
     """
     before = dependent_names(system, records, geometry, names)
-    best: TellingMotion | None = None
+    best: ExcitingMotion | None = None
     centre = np.mean(np.concatenate([each.q for each in records]), axis=0)
     for moving in _choices(system.n) if before else ():
         motion = _swinging(system, centre, moving)
         left = dependent_names(system, [*records, motion], geometry, names)
         if len(left) < len(before if best is None else best.left):
             coordinates = tuple(system.coordinate_names[i].rpartition("_")[0] for i in moving)
-            told = tuple(name for name in before if name not in left)
-            best = TellingMotion(coordinates, told, left)
+            identified = tuple(name for name in before if name not in left)
+            best = ExcitingMotion(coordinates, identified, left)
     return best
 
 
 def _choices(n: int) -> Iterator[tuple[int, ...]]:
-    """One coordinate, then two, and all of them."""
+    """Each coordinate, each pair, and all of them."""
     for size in dict.fromkeys((1, 2, n)):
         if size <= n:
             yield from combinations(range(n), size)
 
 
 def _swinging(system: MechanicalSystem, centre: Array, moving: tuple[int, ...]) -> MotionRecord:
-    """Two waves of each moving coordinate, slow and quick, of another frequency for each."""
+    """A slow and a quick wave of each moving coordinate, with frequencies of its own."""
     t = np.arange(0.0, SECONDS, STEP)
     q, v = np.tile(centre, (len(t), 1)), np.zeros((len(t), system.n))
     for k, i in enumerate(moving):

@@ -26,7 +26,13 @@ import casadi as ca
 
 from onpath.models.arrays import Array
 from onpath.models.systems.drawing import Angle, Drawing
-from onpath.models.systems.parameter_specs import choice, number, unknown_payload, wanted_speed
+from onpath.models.systems.parameter_specs import (
+    choice,
+    number,
+    pivot_damping,
+    unknown_payload,
+    wanted_speed,
+)
 from onpath.models.systems.parameters import Parameters, own_parameters
 from onpath.models.systems.robots import Robot, RobotEntry
 from onpath.models.systems.system import GRAVITY, MechanicalSystem, mechanical_system
@@ -60,14 +66,7 @@ class CartParameters(Parameters):
     mass: float = number(
         0.1, "kg", (0.01, 0.5, 0.01), "mass of the pendulum", group="robot", label="Mass"
     )
-    pivot: float = number(
-        0.001,
-        "N m s",
-        (0, 0.02, 0.001),
-        "damping of the pivot, which has no motor",
-        group="robot",
-        label="Pivot damping",
-    )
+    pivot: float = pivot_damping(0.001)
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 
 
