@@ -10,6 +10,7 @@ import tomllib
 from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -74,7 +75,10 @@ def get(port: int, path: str, token: str = TOKEN) -> http.client.HTTPResponse:
 def test_a_lab_runs_under_jupyters_sub_path(port: int, folder: Path) -> None:
     page = get(port, "/onpath/")
     assert page.status == 200 and b"<html" in page.read(200).lower()
-    headers = {"Origin": f"http://127.0.0.1:{port}", "Authorization": f"token {TOKEN}"}
+    headers: dict[str, Any] = {
+        "Origin": f"http://127.0.0.1:{port}",
+        "Authorization": f"token {TOKEN}",
+    }
     with Student(f"ws://127.0.0.1:{port}/onpath/", None, **headers) as student:
         student.open()
         student.read(lambda: student.sees("poles -26"))

@@ -154,7 +154,11 @@ def test_a_command_that_is_not_possible_is_told_in_the_pages_language(
 def test_a_canvas_of_another_size_is_framed_anew(server: LabServer, student: Student) -> None:
     with Script(server, ticket_of(student)) as script:
         script.read("frame")
-        (page,) = [view.page for view in server._views.values() if view._data._stream.is_open]
+        (page,) = [
+            view.page
+            for view in server._views.values()
+            if view._data and view._data._stream.is_open
+        ]
         page._settling = 0
         script.socket.send('{"is":"resized"}')
         wait_for(lambda: page._settling > 0)
