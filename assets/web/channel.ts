@@ -181,7 +181,7 @@ export class RemoteEngine implements Engine {
         if (!ticket || ticket === this.refused || (this.socket && ticket === this.ticket) || now < this.again) return
         this.close()
         this.ticket = ticket
-        const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, "").replace(/\/$/, ""), PROTOCOL)
+        const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, ""), PROTOCOL)
         this.socket = socket
         socket.addEventListener("open", () => socket.send(ticket))
         socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
