@@ -92,15 +92,19 @@ def test_the_strip_speaks_the_language_of_the_page(tab: Tab) -> None:
     expect(tab.page.get_by_role("button", name="Hold both back")).to_be_visible()
 
 
-def test_a_lesson_has_the_window_for_itself(tab: Tab) -> None:
-    strip = tab.page.locator("#op-strip")
+def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> None:
+    strip, column = tab.page.locator("#op-strip"), tab.page.locator("#op-column")
     expect(strip).to_be_visible()
+    expect(column).to_be_hidden()
     tab.ask(c.OpenLesson(next(iter(tab.lab.lessons.course.lessons))))
-    expect(strip).to_have_count(0)
-    height = tab.page.viewport_size["height"]  # type: ignore[index]
-    root = "document.querySelector('#root').getBoundingClientRect().height"
-    wait_for(lambda: tab.page.evaluate(root) == height)
+    expect(column).to_be_visible()
+    read, scene = column.bounding_box(), tab.page.locator("canvas").first.bounding_box()
+    assert read and scene and read["width"] > 300 and scene["width"] > 300
+    assert (
+        read["x"] + read["width"] <= scene["x"] + 1 or scene["x"] + scene["width"] <= read["x"] + 1
+    )
     tab.ask(c.CloseLesson())
+    expect(column).to_be_hidden()
     expect(strip).to_be_visible()
 
 

@@ -141,7 +141,7 @@ def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
     context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
     tab = Tab(server, context, draws=False)
     places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
-    assert places[1][0] - places[0][0] > 0.45 * 820
+    assert places[1][0] - places[0][0] > 0.4 * 820
     for name in (TRACKER, FOLLOWER):
         for point in tab.session.editor.points():
             x, y = tab.placed(name, point)

@@ -9,10 +9,8 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from html.parser import HTMLParser
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -26,12 +24,10 @@ from onpath.app.common.templates import environment, phrase, render
 from onpath.app.exports.report import report
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.snapshots.page_snapshot import LessonSnapshot
-from onpath.app.page import lesson_html, narration
+from onpath.app.page import lesson_html
 from onpath.app.page.lesson_message import lesson_message
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.panels.flexible_panel import alpha_bar
-from onpath.app.page.preferences import DEFAULTS
-from onpath.app.scene.captions import Captions
 from onpath.assets import asset_path
 from onpath.lessons.course import Course
 from onpath.lessons.progress import Answer, Notes, Progress
@@ -45,7 +41,6 @@ from onpath.lessons.schema import (
     Step,
 )
 from onpath.lessons.words import ENGLISH, Words, languages
-from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 
@@ -135,42 +130,6 @@ def choices(text: str) -> str:
     return class_html.prediction_view(block, found, None, True, ENGLISH)
 
 
-def message(text: str) -> str:
-    return shown(ENGLISH, text or " ")
-
-
-def shown(words: Words, text: str) -> str:
-    """What is said, with a message, as a browser is given it."""
-    view = SimpleNamespace(
-        law=DEFAULT_LAWS[LEFT],
-        force=np.zeros(3),
-        end=np.zeros(3),
-        speed=0.1,
-        distance=0.001,
-        max_distance=float("nan"),
-    )
-    robots = {LEFT: view, RIGHT: view}
-    snapshot = SimpleNamespace(
-        robots=robots,
-        laws=DEFAULT_LAWS,
-        running=True,
-        time=1.0,
-        achieved_speed=1.0,
-        message=text,
-        message_level="error",
-        held=False,
-        held_back=(),
-        stopped=(),
-        path=SimpleNamespace(points=np.zeros((2, 3))),
-    )
-    sent: list[str] = []
-    gui: Any = SimpleNamespace(add_html=lambda content: None)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(narration, "update_gui", lambda handle, name, content: sent.append(content))
-        narration.Narration(gui, words, DEFAULTS, Captions(words)).follow(snapshot)  # type: ignore[arg-type]
-    return sent[0]
-
-
 def gone(text: str) -> str:
     run = LessonRun(COURSE, Progress(notes={text: Notes()}))
     return report(run, "x" + text, DAY).decode()
@@ -183,7 +142,6 @@ PLACES: dict[str, Callable[[str], str]] = {
     "nickname": nickname,
     "member": lambda text: render("panel/member.html", name=text, words=ENGLISH, small=True),
     "choices": choices,
-    "message": message,
     "note": lambda text: render("panel/note.html", text=text, small=False),
     "refusal of a law": lambda text: render("panel/refusal.html", reason=text),
     "own law": lambda text: render("panel/laws.html", laws=[("#123456", "Own law", text, True)]),
@@ -230,7 +188,6 @@ def test_no_catalogue_changes_what_a_page_is_made_of() -> None:
         run = LessonRun(COURSE, Progress(lesson=NAME))
         run.words = words
         yield from pieces(run, words)
-        yield shown(words, "a")
         yield alpha_bar(0.5, 0.2, True, words)
         yield class_html.table([Member(1, "Ada")], COURSE, 0.0, words)
         yield class_html.class_code("https://a.example/c/a/", False, "a", 1, words)
