@@ -1,5 +1,6 @@
-// Adds what viser's page lacks: the page's language, names for screen readers, and folder headings
-// that are buttons. Names come from the labels on the page, or from the lab's texts in [data-page].
+// Adds what viser's page lacks: the page's language, names for screen readers, folder headings that
+// are buttons, and refusals that are seen wherever the panel has been scrolled. Names come from the
+// labels on the page, or from the lab's texts in [data-page].
 //
 // React draws viser's page and may draw any part of it anew at any time, so everything is checked
 // again soon after a change; elements that have a name are left alone.
@@ -79,12 +80,22 @@
     }
   }
 
+  let refusals = [];
+
+  function showRefusals() {
+    const alerts = [...document.querySelectorAll('[role="alert"]')];
+    const fresh = alerts.find((alert) => !refusals.includes(alert.textContent));
+    refusals = alerts.map((alert) => alert.textContent);
+    fresh?.scrollIntoView({ block: "nearest" });
+  }
+
   function look() {
     due = false;
     nameFields();
     nameFolders();
     nameButtons();
     nameTheRest();
+    showRefusals();
   }
 
   let due = false;
