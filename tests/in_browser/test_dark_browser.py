@@ -182,6 +182,9 @@ def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
 
 def test_plots_can_be_read_with_the_users_own_colours(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, scheme="light", forced_colors="active")
+    tab.open("More plots")
+    tab.choose("Show", "torques")
     behind = "plot => getComputedStyle(plot).backgroundColor"
-    assert tab.page.locator(".uplot").first.evaluate(behind) == "rgb(255, 255, 255)"
+    for plot in (".uplot", "#op-strip .plot"):
+        assert tab.page.locator(plot).first.evaluate(behind) == "rgb(255, 255, 255)"
     tab.page.context.close()
