@@ -6,10 +6,12 @@ import math
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
-from onpath.app.common.own_laws import as_given
+from onpath.app.common.own_laws import as_given, only_here
+from onpath.app.common.robot_files import robot_arguments
 from onpath.app.common.templates import render
 from onpath.lessons.labels import path_label, robot_label
 from onpath.lessons.sides import law_text, law_titles
@@ -160,10 +162,12 @@ def _described(trial: Trial, words: Words) -> dict[str, object]:
 
 
 def command_of(result: Result) -> str:
-    """The command that repeats a run."""
+    """The command that repeats a run; "" if its law is only known in this process."""
     trial = result.trial
-    given = ["onpath", "experiment", "obstruction", "--robot", trial.robot, "--path", trial.path]
-    given += ["--law", as_given(result.law)]
+    if only_here(result.law):
+        return ""
+    given = ["onpath", "experiment", "obstruction", *robot_arguments(trial.robot)]
+    given += ["--path", trial.path, "--law", as_given(result.law)]
     for name, value in trial.settings(bool(result.remedy)).items():
         given += ["--set", f"{name}={value}"]
     return shlex.join(given)
@@ -232,22 +236,45 @@ def _points(x: np.ndarray, y: np.ndarray) -> str:
     return " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
 
 
-COLUMNS = ("trial", "robot", "path", "obstruction", "condition", "law", "at_limit", *MEASURES)
+def run_rows(contents: Contents) -> Iterator[dict[str, object]]:
+    """A row for each run: its trial, measures in SI units and stop; None where there is none."""
+    for each in chain.from_iterable(contents.results.values()):
+        trial = each.trial
+        yield {
+            "trial": trial.number,
+            "robot": trial.robot,
+            "path": trial.path,
+            "obstruction": trial.obstruction,
+            "condition": trial.condition,
+            "law": each.law,
+            "at_limit": _limit((each.law, each.remedy)),
+            **{name: getattr(each, name) for name in MEASURES},
+            "stopped_at_s": each.stopped_at_s,
+            "reason": str(each.reason),
+            "command": command_of(each),
+        }
 
 
 def csv_rows(contents: Contents) -> Iterator[list[object]]:
     """The header and a row for each run; infinity is written as inf."""
-    yield [*COLUMNS, "stopped_at_s", "reason", "command"]
-    for results in contents.results.values():
-        for each in results:
-            trial = each.trial
-            yield [
-                *(trial.number, trial.robot, trial.path, trial.obstruction, trial.condition),
-                *(each.law, _limit((each.law, each.remedy))),
-                *("" if (x := getattr(each, name)) is None else f"{x:.9g}" for name in MEASURES),
-                "" if each.stopped_at_s is None else f"{each.stopped_at_s:.9g}",
-                *(str(each.reason), command_of(each)),
-            ]
+    for number, row in enumerate(run_rows(contents)):
+        if number == 0:
+            yield list(row)
+        yield [f"{each:.9g}" if isinstance(each, float) else each for each in row.values()]
+
+
+def table_rows(contents: Contents) -> Iterator[dict[str, object]]:
+    """A row for each robot, law and reaction at the limit: worst value, median and rank."""
+    for robot, results in contents.results.items():
+        for row, cells in table(contents.rows[robot], results).items():
+            found: dict[str, object] = {"robot": robot, "law": row[0], "at_limit": _limit(row)}
+            for name, cell in cells.items():
+                found |= {
+                    name: cell.worst,
+                    f"{name}_median": cell.median,
+                    f"{name}_rank": cell.rank,
+                }
+            yield {**found, "stops": stopped(row, results)}
 
 
 def markdown(contents: Contents, words: Words) -> str:
@@ -255,18 +282,25 @@ def markdown(contents: Contents, words: Words) -> str:
     blocks = list[str]()
     units = [f"{words(f'arena.{name}')} [{SHOWN[name][1]}]" for name in MEASURES]
     for robot, results in contents.results.items():
-        rows = contents.rows[robot]
-        cells = table(rows, results)
-        number = len({each.trial.number for each in results})
-        lines = [f"{robot_label(robot, words)}, {words('arena.trials', count=number)}", ""]
-        lines += ["| " + " | ".join([words("arena.law"), "", *units, words("arena.stops")]) + " |"]
-        lines += ["|" + "---|" * (len(units) + 3)]
-        for row in rows:
+        cells = table(contents.rows[robot], results)
+        lines = [[words("arena.law"), "", *units, words("arena.stops")]]
+        for row in contents.rows[robot]:
             shown = [_plain(name, cells[row][name], words) for name in MEASURES]
             law = [f"`{row[0]}`", words(f"arena.{_limit(row)}")]
-            lines.append("| " + " | ".join([*law, *shown, str(stopped(row, results))]) + " |")
-        blocks.append("\n".join(lines))
+            lines.append([*law, *shown, str(stopped(row, results))])
+        number = len({each.trial.number for each in results})
+        title = f"{robot_label(robot, words)}, {words('arena.trials', count=number)}"
+        blocks.append("\n".join([title, "", *_aligned(lines)]))
     return "\n\n".join(blocks)
+
+
+def _aligned(lines: Sequence[Sequence[str]]) -> Iterator[str]:
+    """A table in Markdown whose columns are aligned in plain text, too."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    ruled = [lines[0], ["-" * width for width in widths], *lines[1:]]
+    for line in ruled:
+        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        yield f"| {' | '.join(cells)} |"
 
 
 def _plain(name: str, cell: Cell, words: Words) -> str:

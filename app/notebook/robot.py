@@ -6,9 +6,8 @@ import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
-from onpath.models.systems.catalogue import add_robot
+from onpath.app.common.robot_files import robot_of_file
 from onpath.models.systems.file_chain import Options
-from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 
 
@@ -61,7 +60,7 @@ def robot(
         armature=armature,
         packages={name: Path(folder) for name, folder in (packages or {}).items()},
     )
-    read = read_robot(Path(file), options)
-    for remark in read.remarks:
+    entry, remarks = robot_of_file(Path(file), options)
+    for remark in remarks:
         warnings.warn(str(remark), UserWarning, stacklevel=2)
-    return add_robot(read.entry)
+    return entry

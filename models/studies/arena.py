@@ -26,6 +26,7 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message, message_of
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.studies.experiments import Experiment, experiments, run
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS
@@ -149,7 +150,7 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
         seed: 0 or more.
 
     Raises:
-        ValueError: a robot that has no circle to follow.
+        ValueError: a robot that can follow none of the paths.
     """
     found, number = list[list[Trial]](), 0
     for round_number in range(rounds):
@@ -167,8 +168,8 @@ def _trial(
     number: int, robot: str, obstruction: str, draw: np.random.Generator, plain: bool
 ) -> Trial:
     """A random trial; a plain one is on the circle, with an exact model."""
-    possible = _possible(robot, obstruction)
-    path = PATHS[0 if plain else int(draw.integers(len(PATHS)))]
+    possible, paths = _possible(robot, obstruction), paths_of(robot)
+    path = paths[0 if plain else int(draw.integers(len(paths)))]
     condition = "exact" if plain else possible[int(draw.integers(len(possible)))]
     given, released = _drawn(robot, path, obstruction, condition, draw)
     return Trial(
@@ -180,6 +181,19 @@ def _trial(
         values=tuple(given.items()),
         released=released,
     )
+
+
+def paths_of(robot: str) -> list[str]:
+    """The paths of `PATHS` that a robot can follow.
+
+    Raises:
+        ValueError: there is none.
+    """
+    margin = ROBOTS[robot].make(ROBOTS[robot].parameters()).margin
+    paths = [each for each in PATHS if not curve_faults(margin, curve_from_text(each))]
+    if not paths:
+        raise ValueError(f"{robot}: it can follow none of {', '.join(PATHS)}")
+    return paths
 
 
 def _possible(robot: str, obstruction: str) -> list[str]:

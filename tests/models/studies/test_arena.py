@@ -50,6 +50,16 @@ def test_the_trials_of_a_robot_do_not_depend_on_others() -> None:
         assert mine == [dataclasses.replace(trial, number=0) for trial in other]
 
 
+def test_a_robot_is_given_only_paths_that_it_can_follow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a small arm from a file, for which some are too large."""
+    monkeypatch.setattr("onpath.models.studies.arena.PATHS", ("circle 0.9", "circle", "ellipse"))
+    given = [trial.path for trials in trials_of(("five_bar",), 8, 1) for trial in trials]
+    assert set(given) == {"circle", "ellipse"} and set(given[:5]) == {"circle"}
+    monkeypatch.setattr("onpath.models.studies.arena.PATHS", ("circle 0.9",))
+    with pytest.raises(ValueError, match="five_bar: it can follow none"):
+        trials_of(("five_bar",), 1, 1)
+
+
 def test_all_laws_have_the_same_conditions_but_for_the_remedy() -> None:
     for trial in trials_of(("five_bar",), 2, 1)[1]:
         cut, remedy = trial.settings(False), trial.settings(True)
