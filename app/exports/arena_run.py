@@ -20,6 +20,7 @@ from onpath.app.exports.arena_page import Contents, arena_page, csv_rows, markdo
 from onpath.app.exports.arena_work import FigureJob, Job, Processes, simulate, write_figure
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
+from onpath.models.control.laws.law import OwnGain
 from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.arena import Result, Row, Trial, complete, entrants, trials_of
 from onpath.models.systems.catalogue import robot_named
@@ -72,6 +73,7 @@ class Arena:
             raise ValueError("rounds, processes or seed: the number is too small")
         if options.only and not options.laws:
             raise ValueError("only: give laws to compare")
+        _check_gains(options.laws)
         self._options, self._words = options, Words(options.language)
         self._rows = {robot: self._entrants(robot) for robot in options.robots}
         self._trials = trials_of(tuple(self._rows), options.rounds, options.seed)
@@ -185,3 +187,17 @@ class Arena:
         for job in self._each(processes, write_figure, jobs, "figures"):
             self._figures[job.trial.robot, job.law] = f"{folder.name}/{job.file.name}"
         self._write()
+
+
+def _check_gains(laws: Sequence[str]) -> None:
+    """Refuse laws whose gains have one name and differ, such as two versions of one law.
+
+    Raises:
+        ValueError: there are two.
+    """
+    known = dict[str, tuple[str, OwnGain]]()
+    for law in laws:
+        for gain in law_named(law).own_gains:
+            other, same = known.setdefault(gain.name, (law, gain))
+            if same != gain:
+                raise ValueError(f"{law} has another gain {gain.name!r} than {other}: rename it")

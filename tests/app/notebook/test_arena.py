@@ -106,6 +106,16 @@ def test_a_file_may_have_changed_since_its_law_was_added(tmp_path: Path) -> None
     assert worst[0] > worst[1] == worst[3] > worst[2]
 
 
+def test_two_laws_cannot_have_different_gains_of_one_name(tmp_path: Path) -> None:
+    """Their values are kept by name, so that both would have that of the second."""
+    laws = list[str]()
+    for value in (300, 500):
+        (tmp_path / f"pull_{value}.py").write_text(TEXT.format("both_here", value), "utf-8")
+        laws.append(f"{tmp_path / f'pull_{value}.py'}:Law")
+    with pytest.raises(ValueError, match=r"Law_\d+ has another gain 'both_here' than Law"):
+        onpath.arena(laws, **FEW)
+
+
 def test_an_interrupted_arena_returns_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
     run, given = Arena.run, dict(FEW, rounds=2)
 
