@@ -25,6 +25,8 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.arena import Result, Row, Trial, complete, entrants, trials_of
 from onpath.models.systems.catalogue import robot_named
 
+NO_MOTION = "it does not move along a path, as laws in an arena do"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArenaOptions:
@@ -88,8 +90,9 @@ class Arena:
         """
         robot_named(robot)
         rows = entrants(robot, self._options.laws, self._options.only)
-        if missing := set(self._options.laws) - {law for law, _ in rows}:
-            raise ValueError(f"{min(missing)}: it does not suit {robot}, or is not for motion")
+        for law in set(self._options.laws) - {law for law, _ in rows}:
+            why = f"it does not suit {robot}" if law_named(law).travels else NO_MOTION
+            raise ValueError(f"{law}: {why}")
         return rows
 
     def run(self, after_round: Callable[[int], None] = lambda _: None) -> bool:

@@ -7,15 +7,19 @@ import re
 import shlex
 from collections import Counter
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.exports.arena_page import described
 from onpath.app.exports.arena_work import Processes
 from onpath.lessons.words import Words
-from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS
+from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS, trials_of
+from onpath.models.studies.path_text import curve_from_text
 from tests.support.catalogues import COMPLETE
 from tests.support.checkout import ROOT
 from tests.support.robot_files import PLANAR, urdf
@@ -125,7 +129,11 @@ def test_an_interrupted_arena_has_what_all_laws_have_finished(
         (["--robot", "five_bat"], "did you mean five_bar"),
         (["--rounds", "0"], "too small"),
         (["--only"], "give laws"),
-        (["set_point"], "does not suit five_bar, or is not for motion"),
+        (["set_point"], "set_point: it does not move along a path"),
+        (
+            ["velocity_field", "--robot", "seven_axes"],
+            "velocity_field: it does not suit",
+        ),
         (["--language", "xx"], "there are de, en"),
         (["nothing.py:Law"], "there is no file"),
         (["--robot", "nothing.urdf"], "nothing.urdf"),
@@ -147,10 +155,29 @@ def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", COMPLETE)
 def test_everything_that_the_page_names_has_words(language: str) -> None:
     words = Words(language)
-    for name in (*OBSTRUCTIONS, *CONDITIONS, *MEASURES, "cut", "remedy", "torques"):
+    for name in (*MEASURES, "cut", "remedy", "torques"):
         assert words(f"arena.{name}")
     for name in (*MEASURES, "stops"):
         assert words(f"arena.{name}_text")
+
+
+@pytest.mark.parametrize("language", COMPLETE)
+def test_a_trial_is_described_with_its_numbers(language: str) -> None:
+    words, found = Words(language), set[str]()
+    for trial in chain.from_iterable(trials_of(("five_bar", "seven_axes", "rod_gantry"), 12, 1)):
+        told, values = described(trial, words), dict(trial.values)
+        found |= {trial.obstruction, trial.condition}
+        if trial.released is not None:
+            assert words.number(trial.released) in str(told["obstruction"])
+        if trial.condition == "payload":
+            assert words.number(values["payload"]) in str(told["condition"])
+        if trial.obstruction == "hand":
+            (away,) = re.findall(r"(\d+) mm", str(told["obstruction"]))
+            hand = np.array([[values["push_z1"], values["push_z2"]]])
+            curve = curve_from_text(trial.path)
+            near = np.linalg.norm(curve.at(np.linspace(-np.pi, np.pi, 5000)) - hand, axis=1).min()
+            assert float(away) == pytest.approx(1e3 * near, abs=1.0)
+    assert found == {*OBSTRUCTIONS, *CONDITIONS}
 
 
 @pytest.mark.thorough
