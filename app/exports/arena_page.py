@@ -17,6 +17,7 @@ from onpath.lessons.labels import parameter_label, parameter_unit, path_label, r
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
+from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import SHARED_GAINS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message
@@ -75,39 +76,19 @@ def arena_page(contents: Contents, words: Words) -> str:
     robots, runs = list[dict[str, object]](), list[dict[str, object]]()
     trials = dict[int, Trial]()
     for robot, results in contents.results.items():
-        shown, marks = table(contents.rows[robot], results), dict[int, str]()
-        lines = list[dict[str, object]]()
-        for row in contents.rows[robot]:
-            cells = [_cell(robot, name, shown[row][name], marks, words) for name in MEASURES]
-            count = sum((each.law, each.remedy) == row for each in results)
-            stops = [i for i, each in enumerate(results) if _stopped_in(each, row)]
-            links = [
-                {"mark": marks.setdefault(i, f"{robot}-{i}"), "trial": results[i].trial.number}
-                for i in stops[:3]
-            ]
-            told = words("arena.of", stops=len(stops), runs=count)
-            lines.append(
-                {
-                    "law": titles[row[0]],
-                    "own": law_named(row[0]).origin is not None or "=" in row[0],
-                    "limit": words(f"arena.{_limit(row)}"),
-                    "cells": cells,
-                    "stops": told,
-                    "links": links,
-                }
-            )
+        marks, tried = dict[int, str](), {each.trial.number: each.trial for each in results}
         robots.append(
             {
                 "label": robot_label(robot, words),
                 "settings": _settings(robot, words),
-                "lines": lines,
-                "trials": len({each.trial.number for each in results}),
+                "lines": _lines(robot, contents, titles, marks, words),
+                "trials": len(tried),
             }
         )
         runs += [
             _run(results[i], mark, titles, contents, words) for i, mark in sorted(marks.items())
         ]
-        trials |= {each.trial.number: each.trial for each in results}
+        trials |= tried
     return render(
         "arena/page.html",
         words=words,
@@ -144,8 +125,32 @@ def _limit(row: Row) -> str:
     return {None: "torques", False: "cut", True: "remedy"}[row[1]]
 
 
-def _stopped_in(result: Result, row: Row) -> bool:
-    return (result.law, result.remedy) == row and result.stopped_at_s is not None
+def _lines(
+    robot: str,
+    contents: Contents,
+    titles: Mapping[str, str],
+    marks: dict[int, str],
+    words: Words,
+) -> list[dict[str, object]]:
+    """The rows of a robot's table, whose runs are marked to be shown."""
+    results, lines = contents.results[robot], list[dict[str, object]]()
+    for row, cells in table(contents.rows[robot], results).items():
+        own = {i: each for i, each in enumerate(results) if each.row == row}
+        stops = [i for i, each in own.items() if each.stopped_at_s is not None]
+        lines.append(
+            {
+                "law": titles[row[0]],
+                "own": law_named(row[0]).origin is not None or is_text(row[0]),
+                "limit": words(f"arena.{_limit(row)}"),
+                "cells": [_cell(robot, name, cells[name], marks, words) for name in MEASURES],
+                "stops": words("arena.of", stops=len(stops), runs=len(own)),
+                "links": [
+                    {"mark": marks.setdefault(i, f"{robot}-{i}"), "trial": own[i].trial.number}
+                    for i in stops[:3]
+                ],
+            }
+        )
+    return lines
 
 
 def _cell(
@@ -178,7 +183,7 @@ def _told(name: str, value: float, words: Words) -> str:
 
 def described(trial: Trial, words: Words) -> dict[str, object]:
     """What happens in a trial, in words with numbers."""
-    values, sizes = dict(trial.values), np.ptp(_outline(trial), axis=0)
+    values, sizes = trial.values, np.ptp(_outline(trial), axis=0)
     width, height = (f"{1e3 * size:.0f}" for size in sizes)
     said = {name: words.number(value) for name, value in values.items()}
     begin, end = (words.number(time) for time in _acting(trial))
@@ -205,7 +210,7 @@ def _outline(trial: Trial) -> Array:
 
 def _acting(trial: Trial) -> tuple[float, float]:
     """The interval in which an obstruction acts, [s]; (0, 0) for weak motors."""
-    values = dict(trial.values)
+    values = trial.values
     name = {"pull": "pull", "brake": "hold", "hand": "push", "wall": "wall"}.get(trial.obstruction)
     return (values[f"{name}_from"], values[f"{name}_to"]) if name else (0.0, 0.0)
 
@@ -256,7 +261,7 @@ def _run(
     return {
         "mark": mark,
         "law": titles[result.law],
-        "limit": words(f"arena.{_limit((result.law, result.remedy))}"),
+        "limit": words(f"arena.{_limit(result.row)}"),
         **described(trial, words),
         "values": values,
         "command": command_of(result),
@@ -268,8 +273,8 @@ def _run(
 
 def _pictures(result: Result, words: Words) -> dict[str, object]:
     """Coordinates of the pictures of a run: the distance over time, and the path in its plane."""
-    values, trial = dict(result.trial.values), result.trial
-    lasts, shown = values["duration"], result.shown
+    trial, shown = result.trial, result.shown
+    lasts = trial.values["duration"]
     most = max(1.5 * OFF, float(shown[:, 1].max()) if len(shown) else 0.0)
     t = shown[:, 0] / lasts * WIDTH
     d = HEIGHT - MARGIN - shown[:, 1] / most * (HEIGHT - 2 * MARGIN)
@@ -318,7 +323,7 @@ def run_rows(contents: Contents) -> Iterator[dict[str, object]]:
             "obstruction": trial.obstruction,
             "condition": trial.condition,
             "law": each.law,
-            "at_limit": _limit((each.law, each.remedy)),
+            "at_limit": _limit(each.row),
             **{name: getattr(each, name) for name in MEASURES},
             "stopped_at_s": each.stopped_at_s,
             "reason": str(each.reason),

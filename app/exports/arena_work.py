@@ -9,7 +9,7 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from onpath.app.exports.export_process import ExportError, ExportProcess, ExportStopped
+from onpath.app.exports.export_process import ExportDied, ExportProcess
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import Words
@@ -74,12 +74,10 @@ class Processes:
             process = free.get()
             try:
                 return process.call(LONGEST, work, job)
-            except ExportStopped:
-                raise
-            except ExportError as error:
-                if error.__cause__ is None or not isinstance(job, Job):
+            except ExportDied as error:
+                if not isinstance(job, Job):
                     raise
-                return job.failed(str(error))  # the process has died, or has been killed
+                return job.failed(str(error))
             finally:
                 free.put(process)
 
@@ -106,7 +104,7 @@ def simulate(job: Job) -> list[Result]:
 
 def write_figure(job: FigureJob) -> FigureJob:
     """Write a figure: the robot of a trial under a law, on each of its paths; return the job."""
-    values = {"torque_limit": dict(job.trial.values)["torque_limit"]}
+    values = {"torque_limit": job.trial.values["torque_limit"]}
     figure = chosen(
         job.trial.robot,
         laws=[job.law],

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -43,6 +43,9 @@ ACTS, AFTER = 1.0, 2.0  # duration of the other obstructions, and of the run aft
 EVERY = 20  # [ms] between the points of a run that is shown
 MOST_LOOPS = 16
 
+Row = tuple[str, bool | None]
+"""A row of the table: a law, and whether the remedy acts; None if it commands torques."""
+
 
 @dataclass(frozen=True, slots=True)
 class Trial:
@@ -60,12 +63,12 @@ class Trial:
     path: str
     obstruction: str
     condition: str
-    values: tuple[tuple[str, float], ...]
+    values: Mapping[str, float]
     released: float | None
 
     def settings(self, remedy: bool) -> dict[str, Any]:
         """The values, with what happens at the torque limit."""
-        return {**dict(self.values), "at_limit": "across_first" if remedy else "cut"}
+        return {**self.values, "at_limit": "across_first" if remedy else "cut"}
 
     def experiment(self, remedy: bool) -> Experiment:
         """The experiment of a trial."""
@@ -106,6 +109,11 @@ class Result:
     reason: str | Message = ""
     shown: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 4)))
 
+    @property
+    def row(self) -> Row:
+        """The row of the table that it belongs to."""
+        return self.law, self.remedy
+
 
 STEPS = {
     "force_N": 0.01,
@@ -117,8 +125,6 @@ STEPS = {
 """Measure -> resolution to which it is shown and ranked."""
 MEASURES = tuple(STEPS)
 LARGER_IS_BETTER = ("force_N",)
-Row = tuple[str, "bool | None"]
-"""A row of the table: a law, and whether the remedy acts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -178,7 +184,7 @@ def _trial(
         path=path,
         obstruction=obstruction,
         condition=condition,
-        values=tuple(given.items()),
+        values=given,
         released=released,
     )
 
@@ -284,18 +290,12 @@ def run_under(experiment: Experiment, law: str) -> Trajectory:
     return run(experiment, law, _loop)
 
 
-_LOOPS = dict[int, tuple[Kernel, Loop]]()
-
-
+@lru_cache(maxsize=MOST_LOOPS)
 def _loop(kernel: Kernel) -> Loop:
-    """The fastest loop of a kernel; the last ones are kept."""
+    """The fastest loop of a kernel."""
     from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
 
-    if id(kernel) not in _LOOPS:
-        if len(_LOOPS) >= MOST_LOOPS:
-            del _LOOPS[next(iter(_LOOPS))]
-        _LOOPS[id(kernel)] = kernel, fastest_loop(kernel)
-    return _LOOPS[id(kernel)][1]
+    return fastest_loop(kernel)
 
 
 def results_of(row: Row, trials: Sequence[Trial]) -> list[Result]:
@@ -398,17 +398,17 @@ def complete(
 
 def stopped(row: Row, results: Sequence[Result]) -> int:
     """How many runs of a row were stopped."""
-    return sum(each.stopped_at_s is not None for each in results if (each.law, each.remedy) == row)
+    return sum(each.stopped_at_s is not None for each in results if each.row == row)
 
 
 def _worst(
     row: Row, name: str, results: Sequence[Result]
 ) -> tuple[float | None, float | None, int | None]:
     """The worst value of a measure in a row, its median, and the number of the worst result."""
-    runs = [(i, each) for i, each in enumerate(results) if (each.law, each.remedy) == row]
-    values = [(getattr(each, name), i) for i, each in runs if getattr(each, name) is not None]
+    runs = {i: getattr(each, name) for i, each in enumerate(results) if each.row == row}
+    values: dict[int, float] = {i: value for i, value in runs.items() if value is not None}
     if not values:
         return None, None, None
-    size: Callable[[tuple[float, int]], float] = lambda pair: abs(pair[0])  # noqa: E731
-    value, of = (min if name in LARGER_IS_BETTER else max)(values, key=size)
-    return value, float(np.median([each for each, _ in values])), of
+    choose = min if name in LARGER_IS_BETTER else max
+    of = choose(values, key=lambda i: abs(values[i]))
+    return values[of], float(np.median([*values.values()])), of

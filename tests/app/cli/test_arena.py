@@ -165,7 +165,7 @@ def test_everything_that_the_page_names_has_words(language: str) -> None:
 def test_a_trial_is_described_with_its_numbers(language: str) -> None:
     words, found = Words(language), set[str]()
     for trial in chain.from_iterable(trials_of(("five_bar", "seven_axes", "rod_gantry"), 12, 1)):
-        told, values = described(trial, words), dict(trial.values)
+        told, values = described(trial, words), trial.values
         found |= {trial.obstruction, trial.condition}
         if trial.released is not None:
             assert words.number(trial.released) in str(told["obstruction"])
