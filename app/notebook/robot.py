@@ -22,9 +22,9 @@ def robot(
 ) -> RobotEntry:
     """A robot from a URDF file, or from an MJCF file, for which MuJoCo must be installed.
 
-    It can be given to `onpath.simulate`, `onpath.parameters` and `onpath.figure`. The joints on the
-    way from the base to the tip move, at most 8; all others are locked. Two outputs if the tip can
-    only move in a plane, else three.
+    It can be given to `onpath.simulate`, `onpath.parameters`, `onpath.figure` and `onpath.arena`.
+    The joints on the way from the base to the tip move, at most 8; all others are locked. Two
+    outputs if the tip can only move in a plane, else three.
 
     Args:
         file: the file.
