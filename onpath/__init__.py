@@ -9,7 +9,8 @@ In Python, without a browser:
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
 arguments. `onpath.path_from("logo.svg")` reads a path from a file. A law of one's own is given as
-`law=`; one in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`.
+`law=`; one in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`, and
+`onpath.arena` compares it with all others.
 Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
 in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
@@ -21,6 +22,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
+    from onpath.app.notebook.arena import ArenaResult as ArenaResult
+    from onpath.app.notebook.arena import arena as arena
     from onpath.app.notebook.figure import figure as figure
     from onpath.app.notebook.identify import identify as identify
     from onpath.app.notebook.own_law import followed as followed
@@ -42,7 +45,9 @@ if TYPE_CHECKING:
 
 __all__ = (
     "NEWCOMER",
+    "ArenaResult",
     "Run",
+    "arena",
     "check_path",
     "circle",
     "ellipse",
@@ -63,6 +68,8 @@ __all__ = (
 )
 
 _MODULES = {
+    "ArenaResult": "arena",
+    "arena": "arena",
     "figure": "figure",
     "identify": "identify",
     "robot": "robot",

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import gc
-import re
 import signal
 from collections.abc import Callable, Iterator
-from functools import _lru_cache_wrapper
 
 import numpy as np
 import pytest
@@ -26,26 +23,14 @@ signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from
 # when a shell has started the tests in the background
 
 
-KEEPS_LOOPS = re.compile(r"onpath\.(app|lessons|models\.(closed_loop|control|studies))\.")
-
-
 @pytest.fixture(scope="module", autouse=True)
 def only_our_laws() -> Iterator[None]:
-    """Remove the laws that a file of tests has added: tests over all laws mean OnPath's own.
-
-    Every loop has all gains in its settings, so those that have been built meanwhile go, too, and
-    everything else that is kept but the robots.
-    """
+    """Remove the laws that a file of tests has added: tests over all laws mean OnPath's own."""
     laws, gains = set(LAWS), set(OWN_GAINS)
     yield
-    if laws == LAWS.keys():
-        return
     for known, before in ((LAWS, laws), (OWN_GAINS, gains)):
         for name in known.keys() - before:
             known.pop(name)
-    for each in gc.get_objects():
-        if isinstance(each, _lru_cache_wrapper) and KEEPS_LOOPS.match(str(each.__module__)):
-            each.cache_clear()
 
 
 @pytest.fixture(scope="session")

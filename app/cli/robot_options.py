@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -54,11 +55,22 @@ class RobotOptions:
         Raises:
             ValueError: the file is refused, or there are options for a file, but no file.
         """
-        if not is_file(robot):
-            if self != NO_OPTIONS:
-                options = "--tip, --pose, --lock, --armature and --package"
-                raise ValueError(f"{options} need --robot FILE")
-            return robot
+        (name,) = self.names_of([robot])
+        return name
+
+    def names_of(self, robots: Sequence[str]) -> list[str]:
+        """The names of several robots, as `name_of`; the options are those of every file.
+
+        Raises:
+            ValueError: see `name_of`.
+        """
+        if self != NO_OPTIONS and not any(map(is_file, robots)):
+            options = "--tip, --pose, --lock, --armature and --package"
+            raise ValueError(f"{options} need --robot FILE")
+        return [self._added(robot) if is_file(robot) else robot for robot in robots]
+
+    def _added(self, robot: str) -> str:
+        """The name of the robot of a file, which is added."""
         from onpath.app.notebook.robot import robot as robot_from
 
         with warnings.catch_warnings(record=True) as caught:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
@@ -34,7 +34,10 @@ def law_given(law: Any) -> str:
         return add_law(_watched(python_law(law))).name
     if found := IN_FILE.fullmatch(law):
         name = add_law(_watched(law_in(law))).name
-        _FILES[name] = f"{Path(found['file']).resolve()}:{found['name']}"
+        given = f"{Path(found['file']).resolve()}:{found['name']}"
+        for earlier in [each for each, text in _FILES.items() if text == given]:
+            del _FILES[earlier]  # of the file as it was
+        _FILES[name] = given
         return name
     return law_name(law)
 
@@ -54,20 +57,29 @@ def compiled_law(law: Any) -> str:
 _FILES = dict[str, str]()  # by name
 
 
-def laws_of_files() -> list[str]:
-    """The laws that have been added from files, for another process: `add_laws`."""
-    return list(_FILES.values())
+def laws_of_files() -> dict[str, str]:
+    """The laws that have been added from files, as they are now, for another process: `add_laws`.
+
+    Returns:
+        name -> FILE.py:NAME.
+    """
+    return dict(_FILES)
+
+
+def only_here(law: str) -> bool:
+    """Whether a law is known in this process alone: an object, or of a file that has changed."""
+    return law_named(law).origin is not None and law not in _FILES
 
 
 def as_given(law: str) -> str:
-    """A law as the command line takes it: its name or text, or FILE.py:NAME."""
+    """A law that is not `only_here`, as the command line takes it: name, text or FILE.py:NAME."""
     return _FILES.get(law, law)
 
 
-def add_laws(laws: list[str]) -> None:
-    """Add the laws of `laws_of_files` of another process; they get the same names."""
-    for law in laws:
-        law_given(law)
+def add_laws(laws: Mapping[str, str]) -> None:
+    """Add the laws of `laws_of_files` of another process, under the same names."""
+    for name, law in laws.items():
+        add_law(_watched(law_in(law)), name)
 
 
 def _watched(law: Law) -> Law:

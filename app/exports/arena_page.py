@@ -6,15 +6,20 @@ import math
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 
-from onpath.app.common.own_laws import as_given
+from onpath.app.common.own_laws import as_given, only_here
+from onpath.app.common.robot_files import robot_arguments
 from onpath.app.common.templates import render
-from onpath.lessons.labels import path_label, robot_label
+from onpath.lessons.labels import parameter_label, parameter_unit, path_label, robot_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
-from onpath.models.control.laws.registry import law_named
+from onpath.models.arrays import Array
+from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.registry import SHARED_GAINS, law_named
+from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.studies.arena import (
     LARGER_IS_BETTER,
@@ -28,6 +33,8 @@ from onpath.models.studies.arena import (
     table,
 )
 from onpath.models.studies.path_text import curve_from_text
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import Spec
 
 SHOWN: dict[str, tuple[float, str, int]] = {
     "force_N": (1.0, "N", 2),
@@ -37,6 +44,9 @@ SHOWN: dict[str, tuple[float, str, int]] = {
     "overshoot_m": (1e3, "mm", 2),
 }
 """Measure -> factor, unit and decimals with which it is shown."""
+BETTER = {name: "larger" for name in LARGER_IS_BETTER} | {"delay_s": "near_zero"}
+"""What is better, if it is not a smaller value."""
+NO_BREAK = "\N{NO-BREAK SPACE}"
 WIDTH, HEIGHT, MARGIN = 460, 150, 4  # of the picture over time
 SIDE = 150  # of the picture of the plane
 
@@ -66,36 +76,26 @@ def arena_page(contents: Contents, words: Words) -> str:
     robots, runs = list[dict[str, object]](), list[dict[str, object]]()
     trials = dict[int, Trial]()
     for robot, results in contents.results.items():
-        shown, marks = table(contents.rows[robot], results), dict[int, str]()
-        lines = list[dict[str, object]]()
-        for row in contents.rows[robot]:
-            cells = [_cell(robot, name, shown[row][name], marks, words) for name in MEASURES]
-            count = sum((each.law, each.remedy) == row for each in results)
-            stops = [i for i, each in enumerate(results) if _stopped_in(each, row)]
-            links = [marks.setdefault(i, f"{robot}-{i}") for i in stops[:3]]
-            told = words("arena.of", stops=len(stops), runs=count)
-            lines.append(
-                {
-                    "law": titles[row[0]],
-                    "own": law_named(row[0]).origin is not None or "=" in row[0],
-                    "limit": words(f"arena.{_limit(row)}"),
-                    "cells": cells,
-                    "stops": told,
-                    "links": links,
-                }
-            )
-        number = len({each.trial.number for each in results})
-        robots.append({"label": robot_label(robot, words), "lines": lines, "trials": number})
+        marks, tried = dict[int, str](), {each.trial.number: each.trial for each in results}
+        robots.append(
+            {
+                "label": robot_label(robot, words),
+                "settings": _settings(robot, words),
+                "lines": _lines(robot, contents, titles, marks, words),
+                "trials": len(tried),
+            }
+        )
         runs += [
             _run(results[i], mark, titles, contents, words) for i, mark in sorted(marks.items())
         ]
-        trials |= {each.trial.number: each.trial for each in results}
+        trials |= tried
     return render(
         "arena/page.html",
         words=words,
         measures=[
             {
                 "title": f"{words(f'arena.{name}')}  [{SHOWN[name][1]}]",
+                "better": words(f"arena.better_{BETTER.get(name, 'smaller')}"),
                 "text": words(f"arena.{name}_text"),
             }
             for name in MEASURES
@@ -103,10 +103,18 @@ def arena_page(contents: Contents, words: Words) -> str:
         robots=robots,
         runs=runs,
         laws=[
-            {"label": titles[law], "text": law_text(law, words), "source": law_named(law).source}
+            {
+                "label": titles[law],
+                "text": law_text(law, words),
+                "source": law_named(law).source,
+                "gains": ", ".join(
+                    _setting(gain.name, gain.spec, gain.default, words)
+                    for gain in law_named(law).own_gains
+                ),
+            }
             for law in titles
         ],
-        trials=[_described(trial, words) for trial in trials.values()],
+        trials=[described(trial, words) for trial in trials.values()],
         done=len(trials),
         planned=contents.planned,
         command=contents.command,
@@ -117,8 +125,32 @@ def _limit(row: Row) -> str:
     return {None: "torques", False: "cut", True: "remedy"}[row[1]]
 
 
-def _stopped_in(result: Result, row: Row) -> bool:
-    return (result.law, result.remedy) == row and result.stopped_at_s is not None
+def _lines(
+    robot: str,
+    contents: Contents,
+    titles: Mapping[str, str],
+    marks: dict[int, str],
+    words: Words,
+) -> list[dict[str, object]]:
+    """The rows of a robot's table, whose runs are marked to be shown."""
+    results, lines = contents.results[robot], list[dict[str, object]]()
+    for row, cells in table(contents.rows[robot], results).items():
+        own = {i: each for i, each in enumerate(results) if each.row == row}
+        stops = [i for i, each in own.items() if each.stopped_at_s is not None]
+        lines.append(
+            {
+                "law": titles[row[0]],
+                "own": law_named(row[0]).origin is not None or is_text(row[0]),
+                "limit": words(f"arena.{_limit(row)}"),
+                "cells": [_cell(robot, name, cells[name], marks, words) for name in MEASURES],
+                "stops": words("arena.of", stops=len(stops), runs=len(own)),
+                "links": [
+                    {"mark": marks.setdefault(i, f"{robot}-{i}"), "trial": own[i].trial.number}
+                    for i in stops[:3]
+                ],
+            }
+        )
+    return lines
 
 
 def _cell(
@@ -140,30 +172,77 @@ def _number(name: str, value: float, words: Words) -> str:
     if math.isinf(value):
         return words("arena.never" if name in LARGER_IS_BETTER else "arena.not_back")
     factor, _, decimals = SHOWN[name]
-    return words.written(f"{factor * value + 0.0:.{decimals}f}".replace("-", "−"))
+    return words.written(f"{round(factor * value, decimals) + 0.0:.{decimals}f}".replace("-", "−"))
 
 
 def _told(name: str, value: float, words: Words) -> str:
     """A measure with its name and unit."""
-    unit = "" if math.isinf(value) else f"\N{NO-BREAK SPACE}{SHOWN[name][1]}"
+    unit = "" if math.isinf(value) else f"{NO_BREAK}{SHOWN[name][1]}"
     return f"{words(f'arena.{name}')}: {_number(name, value, words)}{unit}"
 
 
-def _described(trial: Trial, words: Words) -> dict[str, object]:
+def described(trial: Trial, words: Words) -> dict[str, object]:
+    """What happens in a trial, in words with numbers."""
+    values, sizes = trial.values, np.ptp(_outline(trial), axis=0)
+    width, height = (f"{1e3 * size:.0f}" for size in sizes)
+    said = {name: words.number(value) for name, value in values.items()}
+    begin, end = (words.number(time) for time in _acting(trial))
+    if trial.obstruction == "hand":
+        place = np.array([values["push_z1"], values["push_z2"]])
+        said["away"] = f"{1e3 * np.linalg.norm(_outline(trial) - place, axis=1).min():.0f}"
+    limit = specs(ROBOTS[trial.robot].parameters)["torque_limit"]
+    unit = parameter_unit("torque_limit", limit, words).replace(" ", NO_BREAK)
+    path = path_label(trial.path, words)
     return {
         "number": trial.number,
         "robot": robot_label(trial.robot, words),
-        "path": path_label(trial.path, words),
-        "obstruction": words(f"arena.{trial.obstruction}"),
-        "condition": words(f"arena.{trial.condition}"),
+        "path": words("arena.sized", path=path, width=width, height=height),
+        "obstruction": words(f"arena.{trial.obstruction}", begin=begin, end=end, **said),
+        "condition": words(f"arena.{trial.condition}", **said),
+        "torque_limit": f"{words.number(values['torque_limit'], 3)}{NO_BREAK}{unit}",
     }
 
 
+def _outline(trial: Trial) -> Array:
+    """Points of the path in its plane, (n, 2), [m]."""
+    return curve_from_text(trial.path).at(np.linspace(-np.pi, np.pi, 121))
+
+
+def _acting(trial: Trial) -> tuple[float, float]:
+    """The interval in which an obstruction acts, [s]; (0, 0) for weak motors."""
+    values = trial.values
+    name = {"pull": "pull", "brake": "hold", "hand": "push", "wall": "wall"}.get(trial.obstruction)
+    return (values[f"{name}_from"], values[f"{name}_to"]) if name else (0.0, 0.0)
+
+
+def _settings(robot: str, words: Words) -> str:
+    """The settings that all laws have."""
+    parameters = ROBOTS[robot].parameters()
+    known = specs(parameters)
+    gains = [_setting(n, known[n], getattr(parameters, n), words) for n in SHARED_GAINS]
+    return words(
+        "arena.settings",
+        speed=words.number(parameters.speed),
+        lap=words.number(2 * np.pi / abs(parameters.speed), 3),
+        rate=f"{parameters.control_rate:g}",
+        gains=", ".join(gains),
+    )
+
+
+def _setting(name: str, spec: Spec, value: float, words: Words) -> str:
+    """A setting with its value and unit."""
+    unit = parameter_unit(name, spec, words)
+    told = f"{parameter_label(name, spec, words)} = {words.number(value)}"
+    return f"{told}{NO_BREAK}{unit}" if unit else told
+
+
 def command_of(result: Result) -> str:
-    """The command that repeats a run."""
+    """The command that repeats a run; "" if its law is only known in this process."""
     trial = result.trial
-    given = ["onpath", "experiment", "obstruction", "--robot", trial.robot, "--path", trial.path]
-    given += ["--law", as_given(result.law)]
+    if only_here(result.law):
+        return ""
+    given = ["onpath", "experiment", "obstruction", *robot_arguments(trial.robot)]
+    given += ["--path", trial.path, "--law", as_given(result.law)]
     for name, value in trial.settings(bool(result.remedy)).items():
         given += ["--set", f"{name}={value}"]
     return shlex.join(given)
@@ -182,24 +261,24 @@ def _run(
     return {
         "mark": mark,
         "law": titles[result.law],
-        "limit": words(f"arena.{_limit((result.law, result.remedy))}"),
-        **_described(trial, words),
+        "limit": words(f"arena.{_limit(result.row)}"),
+        **described(trial, words),
         "values": values,
         "command": command_of(result),
         "figure": contents.figures.get((trial.robot, result.law), ""),
         "recorded": law_named(result.law).called is not None,
-        **_pictures(result),
+        **_pictures(result, words),
     }
 
 
-def _pictures(result: Result) -> dict[str, object]:
+def _pictures(result: Result, words: Words) -> dict[str, object]:
     """Coordinates of the pictures of a run: the distance over time, and the path in its plane."""
-    values, trial = dict(result.trial.values), result.trial
-    lasts, shown = values["duration"], result.shown
+    trial, shown = result.trial, result.shown
+    lasts = trial.values["duration"]
     most = max(1.5 * OFF, float(shown[:, 1].max()) if len(shown) else 0.0)
     t = shown[:, 0] / lasts * WIDTH
     d = HEIGHT - MARGIN - shown[:, 1] / most * (HEIGHT - 2 * MARGIN)
-    curve = curve_from_text(trial.path).at(np.linspace(-np.pi, np.pi, 121))
+    curve = _outline(trial)
     both = np.concatenate([curve, shown[:, 2:]])
     low, size = both.min(0), float(np.ptp(both, axis=0).max()) or 1.0
     scale = (SIDE - 2 * MARGIN) / size
@@ -208,8 +287,7 @@ def _pictures(result: Result) -> dict[str, object]:
         moved = MARGIN + (points - low) * scale
         return _points(moved[:, 0], SIDE - moved[:, 1])
 
-    acting = [name for name in ("hold", "push", "pull", "wall") if values.get(f"{name}_to")]
-    begin, end = [values[f"{acting[0]}_{at}"] for at in ("from", "to")] if acting else (0.0, 0.0)
+    begin, end = _acting(trial)
     z = MARGIN + (shown[:, 2:] - low) * scale
     return {
         "width": WIDTH,
@@ -217,8 +295,10 @@ def _pictures(result: Result) -> dict[str, object]:
         "side": SIDE,
         "distance": _points(t, d),
         "off": f"{HEIGHT - MARGIN - OFF / most * (HEIGHT - 2 * MARGIN):.1f}",
-        "most": f"{1e3 * most:.1f}",
-        "lasts": f"{lasts:g}",
+        "seconds": f"{lasts:g}",
+        "scale": words(
+            "arena.scale", lasts=words.number(lasts, 3), most=words.number(1e3 * most, 3)
+        ),
         "begin": f"{begin / lasts * WIDTH:.1f}",
         "span": f"{(end - begin) / lasts * WIDTH:.1f}",
         "path_points": placed(curve),
@@ -232,22 +312,45 @@ def _points(x: np.ndarray, y: np.ndarray) -> str:
     return " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
 
 
-COLUMNS = ("trial", "robot", "path", "obstruction", "condition", "law", "at_limit", *MEASURES)
+def run_rows(contents: Contents) -> Iterator[dict[str, object]]:
+    """A row for each run: its trial, measures in SI units and stop; None where there is none."""
+    for each in chain.from_iterable(contents.results.values()):
+        trial = each.trial
+        yield {
+            "trial": trial.number,
+            "robot": trial.robot,
+            "path": trial.path,
+            "obstruction": trial.obstruction,
+            "condition": trial.condition,
+            "law": each.law,
+            "at_limit": _limit(each.row),
+            **{name: getattr(each, name) for name in MEASURES},
+            "stopped_at_s": each.stopped_at_s,
+            "reason": str(each.reason),
+            "command": command_of(each),
+        }
 
 
 def csv_rows(contents: Contents) -> Iterator[list[object]]:
     """The header and a row for each run; infinity is written as inf."""
-    yield [*COLUMNS, "stopped_at_s", "reason", "command"]
-    for results in contents.results.values():
-        for each in results:
-            trial = each.trial
-            yield [
-                *(trial.number, trial.robot, trial.path, trial.obstruction, trial.condition),
-                *(each.law, _limit((each.law, each.remedy))),
-                *("" if (x := getattr(each, name)) is None else f"{x:.9g}" for name in MEASURES),
-                "" if each.stopped_at_s is None else f"{each.stopped_at_s:.9g}",
-                *(str(each.reason), command_of(each)),
-            ]
+    for number, row in enumerate(run_rows(contents)):
+        if number == 0:
+            yield list(row)
+        yield [f"{each:.9g}" if isinstance(each, float) else each for each in row.values()]
+
+
+def table_rows(contents: Contents) -> Iterator[dict[str, object]]:
+    """A row for each robot, law and reaction at the limit: worst value, median and rank."""
+    for robot, results in contents.results.items():
+        for row, cells in table(contents.rows[robot], results).items():
+            found: dict[str, object] = {"robot": robot, "law": row[0], "at_limit": _limit(row)}
+            for name, cell in cells.items():
+                found |= {
+                    name: cell.worst,
+                    f"{name}_median": cell.median,
+                    f"{name}_rank": cell.rank,
+                }
+            yield {**found, "stops": stopped(row, results)}
 
 
 def markdown(contents: Contents, words: Words) -> str:
@@ -255,18 +358,25 @@ def markdown(contents: Contents, words: Words) -> str:
     blocks = list[str]()
     units = [f"{words(f'arena.{name}')} [{SHOWN[name][1]}]" for name in MEASURES]
     for robot, results in contents.results.items():
-        rows = contents.rows[robot]
-        cells = table(rows, results)
-        number = len({each.trial.number for each in results})
-        lines = [f"{robot_label(robot, words)}, {words('arena.trials', count=number)}", ""]
-        lines += ["| " + " | ".join([words("arena.law"), "", *units, words("arena.stops")]) + " |"]
-        lines += ["|" + "---|" * (len(units) + 3)]
-        for row in rows:
+        cells = table(contents.rows[robot], results)
+        lines = [[words("arena.law"), "", *units, words("arena.stops")]]
+        for row in contents.rows[robot]:
             shown = [_plain(name, cells[row][name], words) for name in MEASURES]
             law = [f"`{row[0]}`", words(f"arena.{_limit(row)}")]
-            lines.append("| " + " | ".join([*law, *shown, str(stopped(row, results))]) + " |")
-        blocks.append("\n".join(lines))
+            lines.append([*law, *shown, str(stopped(row, results))])
+        number = len({each.trial.number for each in results})
+        title = f"{robot_label(robot, words)}, {words('arena.trials', count=number)}"
+        blocks.append("\n".join([title, "", *_aligned(lines)]))
     return "\n\n".join(blocks)
+
+
+def _aligned(lines: Sequence[Sequence[str]]) -> Iterator[str]:
+    """A table in Markdown whose columns are aligned in plain text, too."""
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    ruled = [lines[0], ["-" * width for width in widths], *lines[1:]]
+    for line in ruled:
+        cells = (cell.ljust(width) for cell, width in zip(line, widths, strict=True))
+        yield f"| {' | '.join(cells)} |"
 
 
 def _plain(name: str, cell: Cell, words: Words) -> str:

@@ -9,11 +9,11 @@ from pathlib import Path
 from queue import SimpleQueue
 from typing import Any
 
-from onpath.app.exports.export_process import ExportError, ExportProcess, ExportStopped
+from onpath.app.exports.export_process import ExportDied, ExportProcess
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.lessons.words import Words
-from onpath.models.studies.arena import PATHS, Result, Row, Trial, results_of
+from onpath.models.studies.arena import Result, Row, Trial, paths_of, results_of
 from onpath.models.studies.path_text import curve_from_text
 
 LONGEST = 900.0  # [s] for a job
@@ -25,6 +25,11 @@ class Job:
 
     rows: tuple[Row, ...]
     trials: tuple[Trial, ...]
+
+    @property
+    def law(self) -> str:
+        """Its name."""
+        return self.rows[0][0]
 
     def failed(self, reason: str) -> list[Result]:
         """The results if the process has failed: all runs are stopped."""
@@ -69,12 +74,10 @@ class Processes:
             process = free.get()
             try:
                 return process.call(LONGEST, work, job)
-            except ExportStopped:
-                raise
-            except ExportError as error:
-                if error.__cause__ is None or not isinstance(job, Job):
+            except ExportDied as error:
+                if not isinstance(job, Job):
                     raise
-                return job.failed(str(error))  # the process has died, or has been killed
+                return job.failed(str(error))
             finally:
                 free.put(process)
 
@@ -99,14 +102,15 @@ def simulate(job: Job) -> list[Result]:
     return [result for row in job.rows for result in results_of(row, job.trials)]
 
 
-def write_figure(job: FigureJob) -> None:
-    """Write a figure: the robot of a trial under a law, on each of the arena's paths."""
-    values = {"torque_limit": dict(job.trial.values)["torque_limit"]}
+def write_figure(job: FigureJob) -> FigureJob:
+    """Write a figure: the robot of a trial under a law, on each of its paths; return the job."""
+    values = {"torque_limit": job.trial.values["torque_limit"]}
     figure = chosen(
         job.trial.robot,
         laws=[job.law],
-        paths={name: curve_from_text(name) for name in PATHS},
+        paths={name: curve_from_text(name) for name in paths_of(job.trial.robot)},
         values=values,
     )
     job.file.parent.mkdir(parents=True, exist_ok=True)
     job.file.write_text(figure_page(figure, Words(job.language)), encoding="utf-8")
+    return job

@@ -43,7 +43,7 @@ class ExportProcess:
     def __init__(self, idle: float = IDLE) -> None:
         self._idle = idle
         self._process: subprocess.Popen[bytes] | None = None
-        self._added = list[tuple[Callable[[Any], None], list[Any]]]()
+        self._added = list[tuple[Callable[[Any], None], Any]]()
         self._calls, self._stops = threading.Lock(), 0
         self._rest: threading.Timer | None = None
 

@@ -6,9 +6,8 @@ import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
-from onpath.models.systems.catalogue import add_robot
+from onpath.app.common.robot_files import robot_of_file
 from onpath.models.systems.file_chain import Options
-from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 
 
@@ -23,9 +22,9 @@ def robot(
 ) -> RobotEntry:
     """A robot from a URDF file, or from an MJCF file, for which MuJoCo must be installed.
 
-    It can be given to `onpath.simulate`, `onpath.parameters` and `onpath.figure`. The joints on the
-    way from the base to the tip move, at most 8; all others are locked. Two outputs if the tip can
-    only move in a plane, else three.
+    It can be given to `onpath.simulate`, `onpath.parameters`, `onpath.figure` and `onpath.arena`.
+    The joints on the way from the base to the tip move, at most 8; all others are locked. Two
+    outputs if the tip can only move in a plane, else three.
 
     Args:
         file: the file.
@@ -61,7 +60,7 @@ def robot(
         armature=armature,
         packages={name: Path(folder) for name, folder in (packages or {}).items()},
     )
-    read = read_robot(Path(file), options)
-    for remark in read.remarks:
+    entry, remarks = robot_of_file(Path(file), options)
+    for remark in remarks:
         warnings.warn(str(remark), UserWarning, stacklevel=2)
-    return add_robot(read.entry)
+    return entry

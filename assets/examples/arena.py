@@ -1,12 +1,11 @@
-"""A law of one's own against path following: the same trials for both, a page and a CSV file."""
+"""A law of one's own against path following: the same trials for both, and a page with the runs."""
 
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
+from own_law import SlidingMode
 
-law, folder = Path(__file__).with_name("own_law.py"), Path(tempfile.mkdtemp())
-arena = [sys.executable, "-m", "onpath", "arena", f"{law}:SlidingMode", "path_following", "--only"]
-short = ["--robot", "five_bar", "--rounds", "1", "--no-figures"]  # the first table alone
-subprocess.run([*arena, *short], cwd=folder, check=True)
-print(f"open {folder / 'arena.html'}")
+import onpath
+
+laws = [SlidingMode, "path_following"]
+result = onpath.arena(laws, only=True, robot="five_bar", rounds=1, html="arena.html", figures=False)
+print(result)
+for row in result.table:
+    print(row["law"], row["at_limit"], row["force_N"], "N")

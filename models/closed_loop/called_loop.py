@@ -184,7 +184,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
     """(state, settings, table @ basis, calls so far, interval) -> the argument of the function."""
     system = robot.system
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
-    settings_symbol, settings = settings_layout(system).symbols("settings")
+    settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     frame = robot.frame if not kind.space or robot.frame.space is None else robot.frame.space
     values, h = ca.SX.sym("values", kind.table_shape[0], 1), settings["look_ahead"]
     q, v, _ = measure(system, kind, state, settings)

@@ -171,7 +171,7 @@ def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
 def _bases(system: MechanicalSystem, kind: Kind, law: Law) -> ca.Function:
     """(state, settings) -> basis at the predicted closest point and at the law's reference."""
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
-    settings_symbol, settings = settings_layout(system).symbols("settings")
+    settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     columns = basis(predicted(state, settings), kind.closed)
     if law.reference is not None:
         reference = law.reference(clock_at(kind, law, state, settings, settings["look_ahead"]))
@@ -194,7 +194,7 @@ def _advance(
         bases: from `_bases`.
     """
     state_symbol, state = kept_layout(system, kind, law.memory).symbols("state")
-    settings_symbol, settings = settings_layout(system).symbols("settings")
+    settings_symbol, settings = settings_layout(system, kind).symbols("settings")
     plane = frame.at(settings["plane"])
     values = ca.SX.sym("values", kind.table_shape[0], 1 if law.reference is None else 2)
     measured_q, measured_v, reading = measure(system, kind, state, settings)

@@ -29,6 +29,8 @@ class Kind:
         delay: whether a torque takes effect some time after the measurement (delay.py).
         stiction: whether joints stick, by Karnopp's model (stiction.py).
         noise: whether sensors are noisy (noise.py).
+        further_gains: names of gains of other laws that the settings have besides the law's own:
+            the laws of a figure share one vector.
     """
 
     controller: str
@@ -43,6 +45,7 @@ class Kind:
     noise: bool = False
     space: bool = False
     level: ImplicitLevel | None = None
+    further_gains: tuple[str, ...] = ()
 
     @property
     def table_shape(self) -> tuple[int, int]:

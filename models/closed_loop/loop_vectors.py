@@ -9,7 +9,7 @@ from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control import composite_control as composite
 from onpath.models.control.laws.law import PLAN, Memory
-from onpath.models.control.laws.registry import OWN_GAINS, law_named
+from onpath.models.control.laws.registry import law_named
 from onpath.models.layout import Layout
 from onpath.models.systems.system import MechanicalSystem
 
@@ -46,7 +46,7 @@ def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
     memory = law_named(kind.controller).memory
     return LoopLayouts(
         state=state_layout(system, memory),
-        settings=settings_layout(system),
+        settings=settings_layout(system, kind),
         log=log_layout(system),
         changed=kept_layout(system, kind, memory).size,
         table_shape=kind.table_shape,
@@ -101,20 +101,22 @@ def kept_layout(system: MechanicalSystem, kind: Kind, memory: Memory = ()) -> La
     return _layout(tuple(each for each in fields if each[0] not in unused))
 
 
-def settings_layout(system: MechanicalSystem) -> Layout:
+def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
     """Everything that may change between ticks, except for the curve.
 
     Units as in models/systems/parameters.py; "plant" and "model" are the system's parameters as
-    they are and as the controller assumes them.
+    they are and as the controller assumes them. Of the gains of single laws it has those of the
+    loop's law, and `Kind.further_gains`.
     """
     p, k = system.p, len(system.parameter_names)
+    own = {gain.name for gain in law_named(kind.controller).own_gains}
     scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
     flexible = (*composite.GAINS, "strain_noise") if system.modes else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
     realism += ("stiction", "torque_step", "look_ahead", "delay_ticks", "sensor_noise", "seed")
     return _layout(
         (
-            *((name, 1) for name in (*scalars, *OWN_GAINS, *flexible)),
+            *((name, 1) for name in (*scalars, *sorted(own.union(kind.further_gains)), *flexible)),
             ("plane", 3),  # see `Frame.numbers`
             ("level_centre", 2),
             ("level_weights", 3),

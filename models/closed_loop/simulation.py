@@ -153,13 +153,10 @@ def settings_vector(
     p, dt = robot.system.p, time_step(parameters)
     centre, weights, constant = _conic(curve) or (np.zeros(2), np.array([1.0, 1.0, 0.0]), 1.0)
     counts = parameters.encoder_counts
+    known = layouts.settings.slices
     return layouts.settings.pack(
         {name: getattr(parameters, name) for name in GAINS}
-        | {
-            name: gain.of(parameters)
-            for name, gain in OWN_GAINS.items()
-            if name in layouts.settings.slices  # not if its law was added after this loop was built
-        }
+        | {name: gain.of(parameters) for name, gain in OWN_GAINS.items() if name in known}
         | {
             "tracker_integral": float(parameters.tracker_integral == "on"),
             "position": float(parameters.task == "position"),

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -26,6 +26,7 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message, message_of
+from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.studies.experiments import Experiment, experiments, run
 from onpath.models.studies.path_text import curve_from_text
 from onpath.models.systems.catalogue import ROBOTS
@@ -41,6 +42,9 @@ LASTS, RATE = 5.0, 2.0  # duration of a pull, [s], and growth of its force, [N/s
 ACTS, AFTER = 1.0, 2.0  # duration of the other obstructions, and of the run after them, [s]
 EVERY = 20  # [ms] between the points of a run that is shown
 MOST_LOOPS = 16
+
+Row = tuple[str, bool | None]
+"""A row of the table: a law, and whether the remedy acts; None if it commands torques."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +63,12 @@ class Trial:
     path: str
     obstruction: str
     condition: str
-    values: tuple[tuple[str, float], ...]
+    values: Mapping[str, float]
     released: float | None
 
     def settings(self, remedy: bool) -> dict[str, Any]:
         """The values, with what happens at the torque limit."""
-        return {**dict(self.values), "at_limit": "across_first" if remedy else "cut"}
+        return {**self.values, "at_limit": "across_first" if remedy else "cut"}
 
     def experiment(self, remedy: bool) -> Experiment:
         """The experiment of a trial."""
@@ -105,6 +109,11 @@ class Result:
     reason: str | Message = ""
     shown: Array = dataclasses.field(default_factory=lambda: np.zeros((0, 4)))
 
+    @property
+    def row(self) -> Row:
+        """The row of the table that it belongs to."""
+        return self.law, self.remedy
+
 
 STEPS = {
     "force_N": 0.01,
@@ -116,8 +125,6 @@ STEPS = {
 """Measure -> resolution to which it is shown and ranked."""
 MEASURES = tuple(STEPS)
 LARGER_IS_BETTER = ("force_N",)
-Row = tuple[str, "bool | None"]
-"""A row of the table: a law, and whether the remedy acts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +156,7 @@ def trials_of(robots: Sequence[str], rounds: int, seed: int) -> list[list[Trial]
         seed: 0 or more.
 
     Raises:
-        ValueError: a robot that has no circle to follow.
+        ValueError: a robot that can follow none of the paths.
     """
     found, number = list[list[Trial]](), 0
     for round_number in range(rounds):
@@ -167,8 +174,8 @@ def _trial(
     number: int, robot: str, obstruction: str, draw: np.random.Generator, plain: bool
 ) -> Trial:
     """A random trial; a plain one is on the circle, with an exact model."""
-    possible = _possible(robot, obstruction)
-    path = PATHS[0 if plain else int(draw.integers(len(PATHS)))]
+    possible, paths = _possible(robot, obstruction), paths_of(robot)
+    path = paths[0 if plain else int(draw.integers(len(paths)))]
     condition = "exact" if plain else possible[int(draw.integers(len(possible)))]
     given, released = _drawn(robot, path, obstruction, condition, draw)
     return Trial(
@@ -177,9 +184,22 @@ def _trial(
         path=path,
         obstruction=obstruction,
         condition=condition,
-        values=tuple(given.items()),
+        values=given,
         released=released,
     )
+
+
+def paths_of(robot: str) -> list[str]:
+    """The paths of `PATHS` that a robot can follow.
+
+    Raises:
+        ValueError: there is none.
+    """
+    margin = ROBOTS[robot].make(ROBOTS[robot].parameters()).margin
+    paths = [each for each in PATHS if not curve_faults(margin, curve_from_text(each))]
+    if not paths:
+        raise ValueError(f"{robot}: it can follow none of {', '.join(PATHS)}")
+    return paths
 
 
 def _possible(robot: str, obstruction: str) -> list[str]:
@@ -270,18 +290,12 @@ def run_under(experiment: Experiment, law: str) -> Trajectory:
     return run(experiment, law, _loop)
 
 
-_LOOPS = dict[int, tuple[Kernel, Loop]]()
-
-
+@lru_cache(maxsize=MOST_LOOPS)
 def _loop(kernel: Kernel) -> Loop:
-    """The fastest loop of a kernel; the last ones are kept."""
+    """The fastest loop of a kernel."""
     from onpath.models.closed_loop.translated_loop import fastest_loop  # loads LLVM
 
-    if id(kernel) not in _LOOPS:
-        if len(_LOOPS) >= MOST_LOOPS:
-            del _LOOPS[next(iter(_LOOPS))]
-        _LOOPS[id(kernel)] = kernel, fastest_loop(kernel)
-    return _LOOPS[id(kernel)][1]
+    return fastest_loop(kernel)
 
 
 def results_of(row: Row, trials: Sequence[Trial]) -> list[Result]:
@@ -384,17 +398,17 @@ def complete(
 
 def stopped(row: Row, results: Sequence[Result]) -> int:
     """How many runs of a row were stopped."""
-    return sum(each.stopped_at_s is not None for each in results if (each.law, each.remedy) == row)
+    return sum(each.stopped_at_s is not None for each in results if each.row == row)
 
 
 def _worst(
     row: Row, name: str, results: Sequence[Result]
 ) -> tuple[float | None, float | None, int | None]:
     """The worst value of a measure in a row, its median, and the number of the worst result."""
-    runs = [(i, each) for i, each in enumerate(results) if (each.law, each.remedy) == row]
-    values = [(getattr(each, name), i) for i, each in runs if getattr(each, name) is not None]
+    runs = {i: getattr(each, name) for i, each in enumerate(results) if each.row == row}
+    values: dict[int, float] = {i: value for i, value in runs.items() if value is not None}
     if not values:
         return None, None, None
-    size: Callable[[tuple[float, int]], float] = lambda pair: abs(pair[0])  # noqa: E731
-    value, of = (min if name in LARGER_IS_BETTER else max)(values, key=size)
-    return value, float(np.median([each for each, _ in values])), of
+    choose = min if name in LARGER_IS_BETTER else max
+    of = choose(values, key=lambda i: abs(values[i]))
+    return values[of], float(np.median([*values.values()])), of

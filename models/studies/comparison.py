@@ -269,13 +269,9 @@ def _runs(
     tables, rows = [curve.table()] * len(places), list[Array]()
     for seconds, parameters, obstructed in legs:
         loop = _loop(robot, kind_of(law, parameters, curve))
-        free = settings_vector(robot, loop.layouts, parameters, curve, FREE)
+        free = settings_vector(robot, kernel, parameters, curve, FREE)
         settings = [
-            pushed(
-                loop.layouts,
-                free,
-                _push(contest, kernel, state, obstruction) if obstructed else FREE,
-            )
+            pushed(kernel, free, _push(contest, kernel, state, obstruction) if obstructed else FREE)
             for state in states
         ]
         states, log = loop.run_many(states, settings, tables, round(seconds / dt))

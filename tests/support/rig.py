@@ -14,7 +14,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.law import PLAN
-from onpath.models.control.laws.registry import LAWS, OWN_GAINS
+from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Plane
 from onpath.models.systems.five_bar import FiveBarLinks
@@ -37,7 +37,6 @@ DEFAULTS: dict[str, Any] = {
     "level_centre": (0, 0),
     "level_weights": (1, 1, 0),
     "level_constant": 0.05**2,
-    **{name: gain.default for name, gain in OWN_GAINS.items()},
     "plan": np.zeros(PLAN),
     "torque_limit": 1e3,
     "coulomb": 0,
@@ -94,6 +93,8 @@ class Rig:
         values = {"plant": self.balanced, "model": self.balanced, **DEFAULTS, **changes}
         values.setdefault("look_ahead", values["dt"] / 2)
         values.setdefault("plane", Plane().numbers)
+        own = law_named(kind.controller).own_gains
+        values = {gain.name: gain.default for gain in own} | values
         return self.kernel(kind).settings.pack(values)
 
     def state(self, kind: Kind, y: Array, y_rate: Array | None = None, **changes: Any) -> Array:

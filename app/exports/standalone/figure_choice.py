@@ -77,8 +77,10 @@ class FigureChoice:
         return self.entry.make(self.parameters)
 
     def kind(self, law: str, curve: Curve) -> Kind:
-        """The kind of a side's loop."""
-        return kind_of(law, self.parameters, raised(curve, self.parameters))
+        """The kind of a side's loop, whose settings have the gains of all laws of the figure."""
+        kind = kind_of(law, self.parameters, raised(curve, self.parameters))
+        own = {gain.name for each in self.every_law for gain in law_named(each).own_gains}
+        return dataclasses.replace(kind, further_gains=tuple(sorted(own)))
 
     def kernel(self, law: str, curve: Curve) -> Kernel:
         """The loop of a side on a path."""

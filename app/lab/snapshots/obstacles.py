@@ -106,7 +106,8 @@ def _lifted(session: Session) -> tuple[Array, Array] | None:
 
 def _lifted_then(robot: Robot, past: Segment) -> tuple[Array, Array] | None:
     """Point and normal of the wall during a segment; None if there was none."""
-    settings = settings_layout(robot.system).unpack(past.drives[LEFT].settings)
+    drive = past.drives[LEFT]
+    settings = settings_layout(robot.system, drive.kind).unpack(drive.settings)
     if not settings["wall_active"][0]:
         return None
     return settings["wall_place"], settings["wall_normal"]

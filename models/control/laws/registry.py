@@ -65,10 +65,13 @@ def law_named(name: str) -> Law:
     return LAWS[name]
 
 
-def add_law(law: Law) -> Law:
+def add_law(law: Law, name: str = "") -> Law:
     """Add a law of one's own, which its name then finds; a second law of a name gets a number.
 
     In a lab, call it before the server listens: pages expect that the laws stay the same.
+
+    Args:
+        name: the name that another process has given it.
 
     Returns:
         The law, with the name that it has got.
@@ -80,7 +83,8 @@ def add_law(law: Law) -> Law:
     base, number = law.name, 1
     if base in _FOUND or is_text(base):
         raise CodedError("error.law_same_name", law=base)
-    while _ADDED.get(law.name, law) != law:
+    law = replace(law, name=name or base)
+    while not name and _ADDED.get(law.name, law) != law:
         number += 1
         law = replace(law, name=f"{base}_{number}")
     versions = {base, *_versions(base)}

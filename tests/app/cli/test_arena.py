@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import csv
 import re
+import shlex
+from collections import Counter
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from onpath.app.cli.main import run_command
+from onpath.app.exports.arena_page import described
 from onpath.app.exports.arena_work import Processes
 from onpath.lessons.words import Words
-from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS
+from onpath.models.studies.arena import CONDITIONS, MEASURES, OBSTRUCTIONS, trials_of
+from onpath.models.studies.path_text import curve_from_text
 from tests.support.catalogues import COMPLETE
 from tests.support.checkout import ROOT
+from tests.support.robot_files import PLANAR, urdf
 
 EXAMPLES = ROOT / "assets" / "examples"
 LAWS = [f"{EXAMPLES / 'own_function.py'}:Patient", f"{EXAMPLES / 'own_law.py'}:SlidingMode"]
@@ -56,11 +63,34 @@ def test_an_arena_of_laws_of_ones_own(files: list[str], tmp_path: Path, capsys: 
     assert all(abs(float(x)) < 1e4 for x in re.findall(r'points="([-\d.]+),', page))
 
 
+def test_a_robot_from_a_file_enters_beside_another(
+    files: list[str], tmp_path: Path, capsys: Any
+) -> None:
+    """Its processes, its figure and the commands of its runs know it."""
+    arm = tmp_path / "own.urdf"
+    arm.write_text(urdf("own", PLANAR), "utf-8")
+    given = ["--robot", str(arm), "--armature", "0.001", "--robot", "five_bar"]
+    law = ["path_following", "--only", "--rounds", "1"]
+    assert run_command(["arena", *law, *given, *files]) == 0
+    rows = list(csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8", newline="")))
+    robots = Counter(row["robot"] for row in rows)
+    (name,) = robots.keys() - {"five_bar"}
+    assert robots == {name: 10, "five_bar": 10} and name.startswith("own_")
+    assert not any(row["reason"] for row in rows)
+    page = (tmp_path / "a.html").read_text("utf-8")
+    assert f"a-figures/{name}-path_following.html" in page and f"--robot {arm} --armature" in page
+    (row,) = [
+        r for r in rows if (r["robot"], r["obstruction"], r["at_limit"]) == (name, "wall", "cut")
+    ]
+    capsys.readouterr()
+    assert run_command(shlex.split(row["command"])[1:]) == 0
+    (shown,) = re.findall(r"max distance +([\d.]+) mm", capsys.readouterr().out)
+    assert float(shown) == pytest.approx(1e3 * float(row["distance_m"]), abs=0.01)
+
+
 def test_the_command_behind_a_number_gives_that_number(
     files: list[str], tmp_path: Path, capsys: Any
 ) -> None:
-    import shlex
-
     given = ["arena", LAWS[1], "--only", "--robot=five_bar", "--rounds=1", "--no-figures", *files]
     assert run_command(given) == 0
     rows = list(csv.DictReader((tmp_path / "a.csv").open(encoding="utf-8", newline="")))
@@ -99,9 +129,15 @@ def test_an_interrupted_arena_has_what_all_laws_have_finished(
         (["--robot", "five_bat"], "did you mean five_bar"),
         (["--rounds", "0"], "too small"),
         (["--only"], "give laws"),
-        (["set_point"], "does not suit five_bar, or is not for motion"),
+        (["set_point"], "set_point: it does not move along a path"),
+        (
+            ["velocity_field", "--robot", "seven_axes"],
+            "velocity_field: it does not suit",
+        ),
         (["--language", "xx"], "there are de, en"),
         (["nothing.py:Law"], "there is no file"),
+        (["--robot", "nothing.urdf"], "nothing.urdf"),
+        (["--robot", "five_bar", "--tip", "tip"], "need --robot FILE"),
     ],
 )
 def test_an_impossible_option_is_refused(options: list[str], words: str, capsys: Any) -> None:
@@ -119,10 +155,29 @@ def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", COMPLETE)
 def test_everything_that_the_page_names_has_words(language: str) -> None:
     words = Words(language)
-    for name in (*OBSTRUCTIONS, *CONDITIONS, *MEASURES, "cut", "remedy", "torques"):
+    for name in (*MEASURES, "cut", "remedy", "torques"):
         assert words(f"arena.{name}")
     for name in (*MEASURES, "stops"):
         assert words(f"arena.{name}_text")
+
+
+@pytest.mark.parametrize("language", COMPLETE)
+def test_a_trial_is_described_with_its_numbers(language: str) -> None:
+    words, found = Words(language), set[str]()
+    for trial in chain.from_iterable(trials_of(("five_bar", "seven_axes", "rod_gantry"), 12, 1)):
+        told, values = described(trial, words), trial.values
+        found |= {trial.obstruction, trial.condition}
+        if trial.released is not None:
+            assert words.number(trial.released) in str(told["obstruction"])
+        if trial.condition == "payload":
+            assert words.number(values["payload"]) in str(told["condition"])
+        if trial.obstruction == "hand":
+            (away,) = re.findall(r"(\d+) mm", str(told["obstruction"]))
+            hand = np.array([[values["push_z1"], values["push_z2"]]])
+            curve = curve_from_text(trial.path)
+            near = np.linalg.norm(curve.at(np.linspace(-np.pi, np.pi, 5000)) - hand, axis=1).min()
+            assert float(away) == pytest.approx(1e3 * near, abs=1.0)
+    assert found == {*OBSTRUCTIONS, *CONDITIONS}
 
 
 @pytest.mark.thorough
@@ -132,4 +187,9 @@ def test_the_table_of_our_laws_is_what_the_arena_gives(
     assert run_command(["arena", "--no-figures", *files]) == 0
     text = (ROOT / "models" / "studies" / "README.md").read_text("utf-8")
     shown = text.partition("<!-- made by `onpath arena` -->")[2].partition("<!-- end -->")[0]
-    assert shown.strip() == capsys.readouterr().out.strip()
+    assert unaligned(shown) == unaligned(capsys.readouterr().out)
+
+
+def unaligned(table: str) -> str:
+    """A table without what aligns its columns."""
+    return re.sub(" +", "", re.sub("-{3,}", "---", table)).strip()

@@ -58,7 +58,7 @@ def in_coordinates(system: MechanicalSystem, matrix: Array) -> MechanicalSystem:
 def stepper(system: MechanicalSystem, plant: Array) -> Step:
     """(q, v, u) -> (q, v) a millisecond later, with the torques u and static friction."""
     q, v, u = ca.SX.sym("q", system.n), ca.SX.sym("v", system.n), ca.SX.sym("u", system.m)
-    layout = settings_layout(system)
+    layout = settings_layout(system, Kind("path_following"))
     symbol, settings = layout.symbols("settings")
     parts, kind = ((u, ca.SX(1)),), Kind("path_following", stiction=True)
     after = move(system, kind, {"q": q, "v": v}, settings, parts, (1, Grip()))[2]

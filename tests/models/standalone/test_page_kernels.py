@@ -13,6 +13,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.closed_loop.wasm_loop import Scan
@@ -235,7 +236,7 @@ def test_poles_are_those_of_the_lab(
         parameters = changed(parameters, name, gain)
     for name, value in zip(("K4", "K5", "task"), along, strict=True):
         parameters = changed(parameters, name, value)
-    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system)
+    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system, Kind("path_following"))
     numbers = np.zeros(layout.size)
     for gain in ("K1", "K2", "K3", "K4", "K5"):
         numbers[layout.slices[gain]] = getattr(parameters, gain)
@@ -263,7 +264,7 @@ def test_poles_are_those_of_the_lab(
 @pytest.mark.thorough
 def test_the_poles_of_a_new_lab_are_the_double_ones_of_the_text() -> None:
     parameters = replace(FiveBarParameters(), K1=400.0, K2=40.0, K3=0.0)
-    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system)
+    layout = settings_layout(ROBOTS["five_bar"].make(parameters).system, Kind("path_following"))
     numbers = np.zeros(layout.size)
     numbers[layout.slices["K1"]], numbers[layout.slices["K2"]] = 400.0, 40.0
     functions, scan = pole_functions(parameters, layout), roots_scan(parameters)

@@ -50,6 +50,16 @@ def test_the_trials_of_a_robot_do_not_depend_on_others() -> None:
         assert mine == [dataclasses.replace(trial, number=0) for trial in other]
 
 
+def test_a_robot_is_given_only_paths_that_it_can_follow(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As a small arm from a file, for which some are too large."""
+    monkeypatch.setattr("onpath.models.studies.arena.PATHS", ("circle 0.9", "circle", "ellipse"))
+    given = [trial.path for trials in trials_of(("five_bar",), 8, 1) for trial in trials]
+    assert set(given) == {"circle", "ellipse"} and set(given[:5]) == {"circle"}
+    monkeypatch.setattr("onpath.models.studies.arena.PATHS", ("circle 0.9",))
+    with pytest.raises(ValueError, match="five_bar: it can follow none"):
+        trials_of(("five_bar",), 1, 1)
+
+
 def test_all_laws_have_the_same_conditions_but_for_the_remedy() -> None:
     for trial in trials_of(("five_bar",), 2, 1)[1]:
         cut, remedy = trial.settings(False), trial.settings(True)
@@ -72,7 +82,7 @@ def test_a_growing_pull_has_the_force_that_it_says() -> None:
     """F = rate (t - from) across the path, whatever the speed along it."""
     (trial,) = [each for each in trials_of(("five_bar",), 1, 1)[0] if each.obstruction == "pull"]
     moved = run_under(trial.experiment(True), "path_following")
-    values = dict(trial.values)
+    values = trial.values
     acts = (moved.t > values["pull_from"] + 0.02) & (moved.t < values["pull_from"] + 0.5)
     wanted = np.abs(values["pull_rate"]) * (moved.t[acts] - values["pull_from"])
     force = np.linalg.norm(moved.fields["force"][acts], axis=1)
@@ -101,7 +111,7 @@ def test_the_measures_are_what_they_say() -> None:
     pulled = results_of(("path_following", False), [trials["pull"]])[0]
     assert pulled.distance_m is None and pulled.force_N is not None
     far = int((pulled.shown[:, 1] > OFF).argmax())
-    at = pulled.shown[far, 0] - dict(trials["pull"].values)["pull_from"]
+    at = pulled.shown[far, 0] - trials["pull"].values["pull_from"]
     assert pulled.force_N == pytest.approx(2.0 * at, abs=0.06)
 
 
@@ -131,8 +141,7 @@ def test_ranks_follow_the_worst_value_and_stops_come_last(seed: int) -> None:
             for other in rows:
                 mine, its = cells[one][name], cells[other][name]
                 stops = [
-                    any(r.stopped_at_s for r in results if (r.law, r.remedy) == row)
-                    for row in (one, other)
+                    any(r.stopped_at_s for r in results if r.row == row) for row in (one, other)
                 ]
                 if stops == [False, True]:
                     assert mine.rank < its.rank

@@ -1,0 +1,43 @@
+"""Robots from files: they are added to the catalogue, and the command line is told of them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from onpath.models.errors import Message
+from onpath.models.systems.catalogue import add_robot
+from onpath.models.systems.file_chain import Options
+from onpath.models.systems.robot_file import read_robot
+from onpath.models.systems.robots import RobotEntry
+
+
+def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:
+    """The robot of a file, which is added to the catalogue, and what to tell of it.
+
+    Raises:
+        ValueError: see `read_robot`.
+    """
+    read = read_robot(file, options)
+    entry = add_robot(read.entry)
+    _FILES[entry.name] = file.resolve(), options
+    return entry, read.remarks
+
+
+_FILES = dict[str, tuple[Path, Options]]()  # by name
+
+
+def robot_arguments(robot: str) -> list[str]:
+    """`--robot` as the command line takes it: a name, or a file with its options."""
+    if robot not in _FILES:
+        return ["--robot", robot]
+    file, options = _FILES[robot]
+    given = ["--robot", str(file)]
+    given += ["--tip", options.tip] if options.tip else []
+    for option, pairs in (
+        ("--pose", options.pose),
+        ("--lock", options.lock),
+        ("--package", {name: folder.resolve() for name, folder in options.packages.items()}),
+    ):
+        for name, value in pairs.items():
+            given += [option, f"{name}={value}"]
+    return given + (["--armature", str(options.armature)] if options.armature else [])
