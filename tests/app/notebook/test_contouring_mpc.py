@@ -61,7 +61,7 @@ def test_its_programmes_are_solved() -> None:
         )
         free = np.linalg.solve(root.T, g) @ np.linalg.solve(root.T, g)
 
-        def cost(x: Any, h: Any = h, g: Any = g, free: float = free) -> float:
+        def cost(x: Any, h: Any = h, g: Any = g, free: Any = free) -> Any:
             """Above that of the optimum without limits."""
             return x @ h @ x + 2 * g @ x + free
 
