@@ -1,7 +1,8 @@
 # make run   creates the environment, installs, starts the lab and prints its address
 # make test  the tests, headless Chromium included; adds what they need to the environment
-# make thorough  the other tests: most pages in Chromium, the numbers that lessons state, whole servers
-#            and crowds, processes that hang, a minute of attacks (.ci/run runs these, too)
+# make thorough  tests that need minutes: the numbers that lessons state, whole servers and crowds,
+#            processes that hang, a minute of attacks (.ci/run runs these, too)
+# make pages the other tests in Chromium, of every page and dialog: an hour
 # make fuzz  the property tests with random inputs; make test has the same ones every time
 # make check lint, format, types      make bench  the speed tables
 #            (make bench ARGS="--clients 60": a class of sixty)
@@ -16,9 +17,10 @@ TOOLS   = $(VENV)/.tools
 # would compile all of OnPath again, each of them.
 KEPT    = env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(abspath $(VENV))/bytecode
 # In order, so that the longest test begins early: it would be the last one otherwise.
+QUICK   = "not thorough and not soak"
 PYTEST  = $(KEPT) $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: run test thorough fuzz check format bench soak picture wheel clean
+.PHONY: run test thorough pages fuzz check format bench soak picture wheel clean
 .DEFAULT_GOAL := run
 
 # What running needs; --clear takes the tools away, too, and their stamp with them.
@@ -37,19 +39,18 @@ run: $(LAB)
 
 # Both parts run, whatever the first says: Playwright keeps a running event loop in its thread, with
 # which other tests cannot share it.
-define BOTH_PARTS
-@failed=0; \
-$(PYTEST) -m $(1) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
-$(PYTEST) -m $(1) tests/in_browser $(ARGS) || failed=$$?; \
-exit $$failed
-endef
-
 test: $(TOOLS)
-	$(call BOTH_PARTS,"not thorough and not soak")
+	@failed=0; \
+	$(PYTEST) -m $(QUICK) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
+	$(PYTEST) -m $(QUICK) tests/in_browser $(ARGS) || failed=$$?; \
+	exit $$failed
 
 thorough: $(TOOLS)
-	$(call BOTH_PARTS,thorough)
+	$(PYTEST) -m thorough --ignore=tests/in_browser $(ARGS)
 	$(PYTEST) -n 0 -m soak tests/bench $(ARGS)
+
+pages: $(TOOLS)
+	$(PYTEST) -m thorough tests/in_browser $(ARGS)
 
 fuzz: $(TOOLS)
 	$(PYTEST) -m hypothesis --hypothesis-profile fuzz $(ARGS)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import casadi as ca
@@ -18,7 +18,7 @@ from typing_extensions import override
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
-from onpath.models.closed_loop.kernel import Kernel
+from onpath.models.closed_loop.kernel import Kernel, wanted_torque
 from onpath.models.closed_loop.law_view import beam_estimate, law_view
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, kept_layout, settings_layout
@@ -27,7 +27,7 @@ from onpath.models.closed_loop.sensing import look_ahead, measure
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.law_error import error_in
-from onpath.models.control.laws.python_law import CALLED, Now
+from onpath.models.control.laws.python_law import CALLED, MOST, Now
 from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
@@ -193,6 +193,11 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
     plane = frame.at(settings["plane"])
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     output, gains = view.output, view.gains
+    command = ca.SX.sym("command", MOST)
+    clock = replace(view.clock, memory={CALLED: command})
+    action, uncut = law.command(replace(view, clock=clock)), replace(kind, across_first=False)
+    torque, _ = wanted_torque(uncut, state, settings, view, action, beam)
+    gain = ca.jacobian(torque, command)[:, : system.p]
     found = {
         "q": view.q,
         "v": view.v,
@@ -203,6 +208,9 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
         "xi": output.xi,
         "xi_rate": output.xi_rate,
         "speed": view.task.speed,
+        "torque": ca.substitute(torque, command, ca.SX.zeros(MOST)),
+        "torque_gain": ca.vec(ca.substitute(gain, command, ca.SX.zeros(MOST))),
+        "torque_limit": system.torque_limits(settings["torque_limit"]) * ca.SX.ones(system.m),
         **dict(zip(GAINS, (gains.k1, gains.k2, gains.k3, gains.k4, gains.k5), strict=True)),
     }
     layout = Layout(tuple((name, ca.SX(value).numel()) for name, value in found.items()))
@@ -215,6 +223,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
         given: dict[str, Any] = {
             name: float(each[0]) if name in scalars else each for name, each in fields.items()
         }
+        given["torque_gain"] = given["torque_gain"].reshape(system.m, system.p, order="F")
         return Now(t=calls * span, interval=span, **given)
 
     return seen

@@ -203,7 +203,7 @@ def _advance(
     beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = commanded(law, view)
-    wanted, memory = _wanted(kind, state, settings, view, command, beam)
+    wanted, memory = wanted_torque(kind, state, settings, view, command, beam)
     fresh, acts, saturated = held_torque(system, kind, state, settings, wanted)
     drive = driven(kind, state, settings, fresh, acts)
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
@@ -227,7 +227,7 @@ def _advance(
     return ca.Function("advance", [state_symbol, settings_symbol, values], ca.cse(outputs))
 
 
-def _wanted(
+def wanted_torque(
     kind: Kind,
     state: Fields,
     settings: Fields,

@@ -43,6 +43,9 @@ class Now:
         theta, theta_rate: parameter of the closest point, [rad], and its rate, [rad/s].
         xi, xi_rate: distances from the path and their rates, each shape (p - 1,), [m], [m/s].
         speed: wanted rate of theta, [rad/s].
+        torque, torque_gain: the torques of a command are torque + torque_gain @ command, shapes
+            (m,), [N m], and (m, p).
+        torque_limit: the largest of each, shape (m,), [N m].
         K1, K2, K3, K4, K5: the gains as they are set.
     """
 
@@ -57,6 +60,9 @@ class Now:
     xi: Array
     xi_rate: Array
     speed: float
+    torque: Array
+    torque_gain: Array
+    torque_limit: Array
     K1: float
     K2: float
     K3: float
