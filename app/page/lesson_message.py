@@ -14,7 +14,6 @@ from onpath.app.common.templates import part_of_page
 from onpath.app.page.lesson_end import end_html, ended_charts
 from onpath.app.page.lesson_html import route_line
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_controls import has_controls
 from onpath.app.page.step_navigation import ways_of
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
@@ -73,7 +72,6 @@ def _head(lesson: Lesson, run: LessonView) -> str:
         "lesson/head.html",
         title=title,
         route=route_line(run),
-        controls=not run.ended and has_controls(run.setup),
         run=run,
         lesson=lesson,
         words=run.words,

@@ -2,7 +2,7 @@
 
 import type { LabMessage, RemoteEngine } from "./channel"
 import type { Verdict } from "./checks"
-import { made } from "./controls"
+import { isTyped, made } from "./controls"
 import { Legend } from "./legend"
 import type { BlockData, PageData, Script, SketchData, StepData, TaskData } from "./lesson_data"
 import type { Answer, Curves, Notes } from "./notes"
@@ -268,10 +268,10 @@ export class Column implements Robots {
         for (const command of [commands].flat()) this.engine.send(command)
     }
 
-    /** The keys that turn pages do so in a lesson, wherever the focus is. */
+    /** The keys that turn pages do so in a lesson, unless they are typed into a field. */
     private key(event: KeyboardEvent): void {
         const by = { PageDown: 1, PageUp: -1 }[event.key]
-        if (!by || !this.open || document.querySelector("[role=dialog]")) return
+        if (!by || !this.open || isTyped(event) || document.querySelector("[role=dialog]")) return
         event.preventDefault()
         this.engine.send({ do: "GoToStep", by })
     }

@@ -31,7 +31,7 @@ class Pupil(Keyboard):
         assert run.lesson is not None
         title = run.lesson.steps[index].title
         self.tab.page.get_by_role("heading", name=title, exact=True).wait_for()
-        wait_for(self.tab.is_built)
+        self.tab.wait_until_built()
 
     def sketch(self, *keys: str) -> None:
         """Draw a curve with the sliders on the chart, one key for each."""
@@ -90,7 +90,9 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
     pupil.act("Next")
 
     pupil.arrive(1)
-    pupil.sketch("ArrowUp", "ArrowUp", "ArrowUp", "End", "End", "End", "PageUp", "ArrowUp", "ArrowUp")
+    pupil.sketch(
+        "ArrowUp", "ArrowUp", "ArrowUp", "End", "End", "End", "PageUp", "ArrowUp", "ArrowUp"
+    )
     pupil.reach(tab.page.get_by_label("How sure are you? (optional)"))
     pupil.press("ArrowDown")
     pupil.press("ArrowDown")

@@ -155,7 +155,8 @@ def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place
         placed = settled_camera(tab)
         turn_the_view(tab)
         if place == "lesson":
-            tab.page.get_by_role("tab", name="The lab").click()
+            tab.page.locator("#op-column .turn").click()  # the controls instead of the text
+            tab.page.get_by_role("tab", name="All controls").click()
         tab.button("Reset view").first.click()
         wait_for(lambda: np.allclose(camera(tab), placed, atol=1e-4))
 

@@ -35,6 +35,9 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context.close()
 
 
+AWAY = np.array([-0.01, -0.05])  # [m], so that the wall's end is not where the end-points are
+
+
 def wall_of(tab: Tab) -> Wall:
     wall = tab.session.wall
     assert wall is not None
@@ -48,8 +51,8 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
     wait_for(lambda: session.wall is not None)
     wall = wall_of(tab)
     inside = wall.place - 0.025 * wall.normal + [0.03, 0.0]  # on its solid side
-    with tab.dragging(tab.placed(LEFT, inside), tab.placed(LEFT, inside + [0.02, -0.03])):
-        wait_for(lambda: np.linalg.norm(wall_of(tab).place - wall.place - [0.02, -0.03]) < NEAR)
+    with tab.dragging(tab.placed(LEFT, inside), tab.placed(LEFT, inside + AWAY)):
+        wait_for(lambda: np.linalg.norm(wall_of(tab).place - wall.place - AWAY) < NEAR)
     now = wall_of(tab)
     assert now.angle == wall.angle
     end = now.place + ARM * np.array([-now.normal[1], now.normal[0]])
