@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from math import inf
-from time import perf_counter
+from time import thread_time
 from typing import ClassVar
 
 import numpy as np
@@ -136,13 +136,14 @@ class Lab:
         """Apply the queued commands. If one is refused, the user is told why.
 
         Args:
-            most: computing time after which the remaining commands wait, [s].
+            most: processor time after which the remaining commands wait, [s].
 
         Returns:
-            Computing time of the commands, [s].
+            Processor time of the commands in this thread, [s]; what it waits for others is not
+            the user's doing.
         """
-        begun = perf_counter()
-        while self._inbox and perf_counter() - begun < most:
+        begun = thread_time()
+        while self._inbox and thread_time() - begun < most:
             command = self._inbox.popleft()
             if not command.from_teacher:
                 self.asked += 1
@@ -152,7 +153,7 @@ class Lab:
                 if self.breakdown.interrupt(self.session):
                     self.clear_message()
             self._apply(command)
-        taken = perf_counter() - begun
+        taken = thread_time() - begun
         if not self.frozen:
             self._play()
         self._adopt_identified()

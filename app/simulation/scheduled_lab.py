@@ -14,9 +14,10 @@ from onpath.app.simulation.display_rate import AT_EASE
 from onpath.app.simulation.frame_length import FRAME
 from onpath.app.simulation.slow_updates import Updated
 
-FORGETTING = 1 / 600  # low-pass gain of the computing time of a lab's commands, per frame
+FORGETTING = 1 / 600  # low-pass gain of the processor time of a lab's commands, per frame
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
 COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
+DEBT = 0.25  # [s], at most: also after very long ones the next is applied within about a second
 LONGEST = 4  # maximum number of frames that are simulated together
 NEVER = -1_000_000  # number of a frame in the distant past
 
@@ -74,7 +75,7 @@ class ScheduledLab(Updated):
         lab: the lab.
         session: its simulated part.
         view: its viewer, or None.
-        used: computing time of its commands in about the last ten seconds, [s].
+        used: processor time of its commands in about the last ten seconds, [s].
         refreshed: see `Updated`.
     """
 
@@ -100,15 +101,15 @@ class ScheduledLab(Updated):
         """Apply commands, and do whatever else a lab does before a frame.
 
         Args:
-            share: computing time per frame, [s]; a command that takes longer delays the next.
+            share: processor time per frame, [s]; a command that takes longer delays the next.
             may_begin: whether commands may be applied in this frame.
 
         Returns:
-            Computing time of the commands, [s].
+            Processor time of the commands, [s].
         """
         self._credit = min(self._credit, 0.0) + share
         taken = self.lab.drain(self._credit if may_begin else 0.0)
-        self._credit -= taken
+        self._credit = max(self._credit - taken, -DEBT)
         self.used += taken - FORGETTING * self.used
         return taken
 

@@ -7,20 +7,25 @@ import itertools
 import logging
 import sys
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from math import ceil
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from onpath.app.common.on_time import wait_until_on_time
 from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import Frame
+from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.simulation.display_rate import LATE, STRIDES, is_turn
 from onpath.app.simulation.frame_length import frame_length
-from onpath.app.simulation.scheduled_lab import ScheduledLab
+from onpath.app.simulation.scheduled_lab import COMMANDS, DEBT, ScheduledLab
 from onpath.app.simulation.simulation_thread import (
     ALL_COMMANDS,
     BEHIND,
@@ -366,6 +371,30 @@ def test_long_work_for_many_labs_takes_a_part_of_each_frame_and_no_other_lab_wai
     assert honest.begun[1:] == list(range(honest.begun[1], frames + 1)) and honest.begun[1] < 60
     turns = [len(lab.lab.begun) for lab in labs[:-1]]
     assert min(turns) > 0 and max(turns) <= 2 * min(turns) + 2  # all get their turn
+
+
+@given(st.floats(0.01, 1e3))
+def test_however_long_a_command_took_the_next_one_is_applied_within_about_a_second(
+    cost: float,
+) -> None:
+    lab = Asked(cost)
+    for _ in range(200):
+        apply_commands([lab], ALL_COMMANDS)
+    waits = np.diff(lab.lab.begun)
+    assert len(waits) > 1 and waits.max() <= 1 + min(cost, DEBT) / COMMANDS
+
+
+def test_a_command_that_waits_for_others_is_not_counted_as_long() -> None:
+    lab = new_lab()
+    lab.post(Sleeping())
+    assert lab.drain() < 0.01
+
+
+class Sleeping(Command):
+    """Waits without computing."""
+
+    def apply(self, lab: Lab) -> None:
+        time.sleep(0.03)
 
 
 def test_commands_take_what_is_left_of_a_frame() -> None:
