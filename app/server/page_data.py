@@ -89,6 +89,7 @@ class PageData:
             page.exporter.report()
         if not self._stream.is_open or self._stream.is_busy:
             return
+        page.has_script = True
         messages = list[Message]()
         state, known = page.state(snapshot), self._state
         news = {key: value for key, value in state.items() if known.get(key, _NOTHING) != value}

@@ -21,8 +21,9 @@
   const TYPED = "input, textarea, select, [contenteditable]";
   const TICKED = 'input[type="checkbox"], input[type="radio"]';
 
-  // In a box of several lines, Enter presses the button below it, and Shift+Enter begins a new line. viser
+  // In viser's boxes of several lines, Enter presses the button below it, and Shift+Enter begins a new line. viser
   // sends only the newest message of every 50 ms, so the text must be sent before the press.
+  const LINES = "textarea:not(#op-column *)";
   const TYPED_GOES = 60;  // [ms]
 
   function pressBelow(box) {
@@ -57,7 +58,7 @@
     const control = event.target;
     if (!(control instanceof Element)) return;
     const begins = event.shiftKey || event.isComposing;
-    if (control.matches("textarea") && event.key === "Enter" && !begins) {
+    if (control.matches(LINES) && event.key === "Enter" && !begins) {
       event.preventDefault();
       if (!event.repeat) pressBelow(control);
     } else if (isOwn(control, event.key)) event.stopImmediatePropagation();

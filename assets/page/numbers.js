@@ -1,4 +1,4 @@
-// Number boxes that keep what is typed, and say what is wrong with it. viser's boxes drop characters
+// viser's number boxes keep what is typed, and say what is wrong with it. They drop characters
 // that they do not know, so that 1e9 becomes 19; they use every digit at once, so that 4 takes effect on
 // the way to 400; and they stay empty once they are emptied.
 //
@@ -8,7 +8,7 @@
 (() => {
   "use strict";
 
-  const BOX = "input[inputmode]";
+  const BOX = "input[inputmode]:not(#op-column *)";
   const SOON = 100;  // [ms], by which a box has changed what it does not accept
 
   const field = document.createElement("input"), note = document.createElement("div");

@@ -54,6 +54,9 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         else input.value = block.kind === "number" ? String(own).replace(".", page.words["point"]!) : String(own)
         show()
     }
+    input.addEventListener("keydown", event => {
+        if (block.kind === "number" && (event as KeyboardEvent).key === "Enter") button.click()
+    })
     button.addEventListener("click", () => {
         if (block.kind === "quiz") {
             const chosen = element.querySelector<HTMLInputElement>("input:checked")

@@ -208,7 +208,7 @@ export class Column implements Robots {
         ;[...words.children].filter(each => !isOurs(each)).forEach((each, i) => {
             known.set(before[i]!, [...(known.get(before[i]!) ?? []), each as HTMLElement])
         })
-        const focused = document.activeElement
+        const focused = document.activeElement, { scrollTop } = words
         const kept = parts.map(part => known.get(part.outerHTML)?.shift() ?? part)
         const gone = [...known.values()].flat()
         const at = gone.find(each => each.contains(focused))
@@ -218,6 +218,7 @@ export class Column implements Robots {
             if (next !== each) words.insertBefore(each, next ?? null)
         })
         for (const each of gone) each.remove()
+        words.scrollTop = scrollTop // the browser has lost what it would keep in its place
         for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
         const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])
         if (successor) (controlsOf(successor)[place] ?? successor.querySelector<HTMLElement>("summary, button"))?.focus({ preventScroll: true })

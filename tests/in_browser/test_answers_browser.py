@@ -76,12 +76,14 @@ def test_how_sure_why_a_number_and_a_text_are_typed_and_kept(
     tab.press("Check")
     page.get_by_text("this is not a number").wait_for()
     number.fill("60.25")
-    tab.press("Check")
+    number.press("Enter")
     wait_for(lambda: list(run.notes.numbers.values()) == [60.25])
     page.get_by_text("Both poles are then at −30 per second").wait_for()
     tab.ask(c.TakeStep(WAITS, 8))
     field = page.get_by_label("Your answer, in your own words")
     field.fill("It waits. <b>So</b> what?")
+    field.press("Enter")  # a new line, like anywhere
+    field.press("Backspace")
     tab.ask(c.ShowHint("throw-it-off"))  # renews what has changed, and nothing else
     page.get_by_text("Which jump would be larger?", exact=False).first.wait_for()
     expect(field).to_have_value("It waits. <b>So</b> what?")

@@ -16,7 +16,6 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.sides import SIDES
-from tests.in_browser.test_pointer_browser import ARROWS, SCENES
 from tests.support.browser import WAIT, Tab, wait_for
 
 pytestmark = pytest.mark.thorough
@@ -24,9 +23,11 @@ pytestmark = pytest.mark.thorough
 LESSON = "01-path-or-timetable"
 expect.set_options(timeout=WAIT * 1e3)
 
-PRIMARY = """() => [...document.querySelectorAll(".mantine-Button-root, #op-strip .main")]
-    .filter((each) => each.checkVisibility() && (each.matches(".main") || getComputedStyle(each)
-        .backgroundColor === "rgb(0, 114, 178)")).map((each) => each.textContent.trim())"""
+PRIMARY = """() => [...document.querySelectorAll(
+    ".mantine-Button-root, #op-strip .main, #op-column .main",
+)].filter((each) => each.checkVisibility({ visibilityProperty: true }) && !each.disabled
+    && (each.matches(".main") || getComputedStyle(each).backgroundColor === "rgb(0, 114, 178)"))
+    .map((each) => each.textContent.trim())"""
 UNDER_SCROLLBAR = """() => {
     const bars = [...document.querySelectorAll(".mantine-ScrollArea-scrollbar")]
         .filter((bar) => bar.checkVisibility()).map((bar) => bar.getBoundingClientRect())
@@ -44,7 +45,6 @@ NARROW_PLOTS = """() => [...document.querySelectorAll(".uplot canvas")].filter((
 @pytest.fixture(scope="module")
 def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     context = browser.new_context(viewport={"width": 1280, "height": 800})
-    context.add_init_script(SCENES)
     tab = Tab(server, context, draws=False)
     tab.ask(c.SetRunning(False))
     yield tab
@@ -87,19 +87,8 @@ def test_a_plot_is_as_wide_as_its_panel_in_another_language_too(tab: Tab) -> Non
 def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab: Tab) -> None:
     take(tab, 4)
     assert tab.page.evaluate(PRIMARY) == []
-    tab.page.locator("[data-answer]").first.click()
-    wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit to this prediction: A"])
-
-
-def test_no_arrow_of_viser_covers_what_is_sketched(tab: Tab) -> None:
-    take(tab, 1)
-    box = tab._canvas()
-    way = [(box["x"] + x * box["width"], box["y"] + 0.5 * box["height"]) for x in (0.2, 0.5, 0.8)]
-    with tab.dragging(*way):
-        tab.settle()
-        shown = tab.page.evaluate(ARROWS)
-        assert len(shown) > 0 and not any(shown)
-    tab.page.get_by_text("Draw again, or commit").wait_for()
+    tab.page.locator("#op-column .step.open").get_by_role("radio").first.click()
+    wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit"])
 
 
 def test_going_through_a_lesson_leaves_no_error_in_the_console(tab: Tab) -> None:

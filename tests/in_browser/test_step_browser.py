@@ -134,10 +134,11 @@ def test_on_a_telephone_the_column_makes_room_for_the_controls_of_a_step(
     tab = Tab(server, context, draws=False)
     tab.ask(TakeStep(LESSON, 6))
     wait_for(lambda: is_seen(tab, 6))
-    tab.button("Controls").tap()
+    turn = tab.page.locator("#op-column").get_by_role("button", name="Controls")
+    turn.tap()
     wait_for(lambda: not is_seen(tab, 6))
     expect(tab.slider("K1")).to_be_in_viewport()
-    tab.button("Controls").tap()
+    turn.tap()
     wait_for(lambda: is_seen(tab, 6))
     context.close()
 

@@ -69,11 +69,8 @@ def finger(browser: Browser, server: LabServer) -> Iterator[Hands]:
 def go_to(tab: Tab, lesson: str, index: int) -> None:
     """Open a step unless it is open, and pause the lab."""
     run = tab.lab.lessons
-    if run.lesson is None or run.lesson.name != lesson:
-        tab.ask(c.OpenLesson(lesson))
-    if run.index != index:
-        step = c.GoToStep(1 if index > run.index else -1)
-        tab.ask(*[step] * abs(index - run.index))
+    if run.lesson is None or (run.lesson.name, run.index) != (lesson, index):
+        tab.ask(c.TakeStep(lesson, index))
     tab.ask(c.SetRunning(False))
     title = COURSE.lesson(lesson, "en").steps[index].title
     tab.page.get_by_role("heading", name=title, exact=True).wait_for()
@@ -141,5 +138,5 @@ def test_a_curve_is_drawn_on_the_board(browser: Browser, server: LabServer, touc
     """In a tab of its own: a prediction counts as skipped once a later step has been opened."""
     with opened(browser, server, touch) as hands:
         go_to(hands.tab, "01-path-or-timetable", 1)
-        hands.tab.page.get_by_text("Draw on the board with the mouse or a finger").wait_for()
+        hands.tab.page.get_by_text("Draw in the chart with the mouse or a finger").wait_for()
         sketch(hands)

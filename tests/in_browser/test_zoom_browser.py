@@ -123,7 +123,21 @@ def test_a_step_of_a_lesson_is_whole(tab: Tab, index: int) -> None:
 def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 6))
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for()
-    tab.page.locator("#op-bar").get_by_role("button", name="Hold back").click()
+    tab.button("Hold both back").click()
     wait_for(lambda: tab.session.forces.held)
+    expect(tab.page.get_by_role("heading", name="Hold it yourself")).to_be_in_viewport()
+    expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
     expect(tab.slider("K1")).to_be_in_viewport()
     tab.ask(c.Hold(False))
+
+
+def test_a_board_is_large_enough_to_draw_on_beside_its_question(tab: Tab) -> None:
+    tab.ask(TakeStep(LESSON, 0), TakeStep(LESSON, 1))
+    tab.page.get_by_role("heading", name="Draw what the tracker does").wait_for()
+    tab.wait_until_built()
+    for each in (tab.button("Commit to this prediction"), tab.button("Skip the prediction")):
+        expect(each).to_be_in_viewport(ratio=0.99)
+    expect(tab.page.locator(".asked.sketch .question")).to_be_in_viewport()
+    box = tab.page.locator(".board").bounding_box()
+    assert box is not None and box["height"] > 120 and box["width"] > 250
+    assert box["y"] + box["height"] <= 400
