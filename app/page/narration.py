@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 from msgspec import Struct
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.page.first_minute import INVITATIONS, Invitation
+from onpath.app.page.first_minute import INVITATIONS, FirstMinute
 from onpath.app.scene.captions import Captions, spoken
 from onpath.lessons.labels import parameter_label, path_label, value_label
 from onpath.lessons.sides import side_titles
@@ -57,9 +57,9 @@ class Narration:
     Args:
         preferences: the browser's `Preferences`.
         captions: of the scene, which is updated with each snapshot first.
-        invitation: what a newcomer is invited to do now, if anything.
 
     Attributes:
+        first_minute: what invites newcomers, if anything.
         said: for the latest snapshot.
     """
 
@@ -68,10 +68,9 @@ class Narration:
         words: Words,
         preferences: Mapping[str, bool],
         captions: Captions,
-        invitation: Callable[[], Invitation | None] = lambda: None,
     ) -> None:
-        self._words, self._preferences = words, preferences
-        self._captions, self._invitation = captions, invitation
+        self._words, self._preferences, self._captions = words, preferences, captions
+        self.first_minute: FirstMinute | None = None
         self._asked, self._summaries, self._summary = False, 0, ""
         self._spoken, self._spoken_at = "", 0.0
         self.said = Said()
@@ -89,7 +88,7 @@ class Narration:
             self._summary = summary(snapshot, captions, self._words)
         stopped = bool(snapshot.stopped) and level == "error"
         shows_remedy = (stopped or level == "replay") and not _in_lesson(snapshot)
-        invitation = self._invitation()
+        invitation = None if self.first_minute is None else self.first_minute.shown
         self.said = Said(
             voice=self._voice(snapshot, captions) if self._preferences["speaks"] else "",
             summary=self._summary,

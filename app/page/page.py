@@ -14,7 +14,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.lab.snapshots.snapshot import Motion
 from onpath.app.page.build_queue import in_turn, one_at_a_time
-from onpath.app.page.first_minute import FirstMinute, Invitation, end_first_minute
+from onpath.app.page.first_minute import FirstMinute, end_first_minute
 from onpath.app.page.lesson_column import LessonColumn
 from onpath.app.page.lesson_menu import LessonMenu
 from onpath.app.page.narration import Narration
@@ -84,6 +84,7 @@ class Page:
         self._narrow: bool | None = None  # not laid out yet
         self._folded = True  # perhaps by the page before, in the same browser
         self._wants_folded = self.has_script = False
+        self._step: StepControls | None = None
         self._wanted_narrow = self._is_narrow()
         with in_turn(), client.atomic():  # the browser gets no widget without its callbacks
             self._build(first)
@@ -174,7 +175,7 @@ class Page:
 
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
-        self._built = self._key(first)
+        self._built, self._step = self._key(first), None
         self._lay_out(self._is_folded(first))
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
@@ -199,10 +200,7 @@ class Page:
                 parts=strip_words(words),
             )
         )
-        self._first_minute: FirstMinute | None = None
-        self._narration = Narration(
-            words, self._preferences, self._scene.captions, self._invitation
-        )
+        self._narration = Narration(words, self._preferences, self._scene.captions)
         self._parts.append(
             StepDrawings(self._overlays, self._context.course, words, self._switched)
         )
@@ -216,9 +214,6 @@ class Page:
         add_keys(self._client.gui, words, post, page_actions)
         self._parts.append(self._narration)  # the invitations come before it
         self._building = self.is_outdated = False
-
-    def _invitation(self) -> Invitation | None:
-        return None if self._first_minute is None else self._first_minute.shown
 
     def _column(self, first: PageSnapshot, words: Words) -> LessonColumn | None:
         """What the data channel tells of the lessons."""
@@ -246,7 +241,8 @@ class Page:
         self._build_navigation(first, words, post)
         tabs = gui.add_tab_group()
         step_tab = tabs.add_tab(words("lesson.this_step"), viser.Icon.ADJUSTMENTS)
-        self._parts.append(self._step_controls(step_tab, words, controls.of_step, first))
+        self._step = self._step_controls(step_tab, words, controls.of_step, first)
+        self._parts.append(self._step)
         if not first.key.presenting:
             with tabs.add_tab(words("lesson.all_controls"), viser.Icon.ADJUSTMENTS_HORIZONTAL):
                 self._parts += controls.beside_strip(first)
@@ -270,7 +266,6 @@ class Page:
             build=build,
             change=self._rebuilds.change,
             first=first,
-            fold=lambda away: self._fold(away or first.key.presenting),
         )
 
     def _build_free_lab(
@@ -280,8 +275,8 @@ class Page:
         self._build_navigation(first, words, post)
         self._parts += controls.beside_strip(first)
         lesson = next(iter(self._context.course.lessons), "")
-        self._first_minute = FirstMinute(self._client, lesson)
-        self._parts.append(self._first_minute)
+        self._narration.first_minute = FirstMinute(self._client, lesson)
+        self._parts.append(self._narration.first_minute)
 
     def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
         """Build the window with the plot of a lesson's step."""
@@ -336,21 +331,18 @@ class Page:
         self._narrow = self._wanted_narrow
         if self._folded:
             panel.expand()
-        self._folded = False
-        self._fold(folded)
-
-    def _fold(self, away: bool) -> None:
-        """Have viser's panel folded away, or shown; then it stays until the user does otherwise."""
-        self._wants_folded = away
+        self._folded, self._wants_folded = False, folded
 
     def _follow_fold(self) -> None:
         """Fold the panel, or show it, once the page's script has read in it what it needs.
 
-        A folded panel is not in the document; see panel/page.html.
+        It then stays until another step is opened, unless the user does otherwise. A folded panel
+        is not in the document; see panel/page.html.
         """
+        folds = self._wants_folded or (self._step is not None and self._step.is_empty)
         stands = self.has_script and self._settling < SETTLING - STANDS
-        if self._wants_folded != self._folded and stands:
-            self._folded = self._wants_folded
+        if folds != self._folded and stands:
+            self._folded = folds
             panel = self._client.gui.main_panel
             (panel.minimize if self._folded else panel.expand)()
 

@@ -46,7 +46,9 @@ class StepControls:
 
     Args:
         change: changes widgets in another thread; see `RebuildThread.change`.
-        fold: folds the panel away, or shows it; called whenever another step is opened.
+
+    Attributes:
+        is_empty: whether the open step has no controls.
     """
 
     def __init__(
@@ -58,11 +60,9 @@ class StepControls:
         build: Build,
         change: Callable[[Callable[[], None]], None],
         first: PageSnapshot,
-        fold: Callable[[bool], None],
     ) -> None:
         self._gui, self._build, self._change = gui, build, change
         self._tab, self._words, self._course = tab, words, course
-        self._fold = fold
         self._folder: viser.GuiFolderHandle | None = None
         self._scene: StepSetup | None = None
         self._parts: list[Part] = []
@@ -82,7 +82,7 @@ class StepControls:
             self._folder.remove()
             self._folder = None
         self._scene = scene
-        self._fold(not has_controls(scene))
+        self.is_empty = not has_controls(scene)
         with self._tab:
             self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:

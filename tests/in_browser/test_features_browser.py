@@ -87,6 +87,9 @@ ROWS = {
         ("[role=status]", ".title .caption")
     ),
     "runs of the lessons, links that set numbers": Row(said=("lesson.play", "lesson.replay")),
+    "what to watch in a run; symbols of a text, shown on the robots": Row(
+        (".op-watch", ".symbols")
+    ),
     "predictions as choice or curve, confidence and reason, truth over the curve": Row(
         (".choice input", ".board", ".sure", ".compared canvas"), ("lesson.commit",)
     ),
@@ -201,8 +204,8 @@ def _every_step(reader: SiteReader) -> Iterator[SiteReader]:
             reader.page.evaluate("document.querySelector('.step.open .play button').click()")
             reader.played(10)
             yield reader
-        elif reader.page.evaluate("Boolean(site.prediction(site.index))"):
-            reader.page.locator(".step.open .leave").click()
+        elif reader.page.evaluate("site.view.waits"):
+            reader.page.evaluate("() => { site.go(1) }")  # skips it
             yield reader
     reader.page.evaluate("site.stage.run(true)")
     yield reader
