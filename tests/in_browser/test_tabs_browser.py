@@ -140,8 +140,12 @@ def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
 ) -> None:
     context = fresh(browser, viewport={"width": 820, "height": 1180}, has_touch=True)
     tab = Tab(server, context, draws=False)
-    places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
-    assert places[1][0] - places[0][0] > 0.4 * 820
+
+    def apart() -> float:
+        places = [tab.pixel(name, np.zeros(3)) for name in (TRACKER, FOLLOWER)]
+        return places[1][0] - places[0][0]
+
+    wait_for(lambda: apart() > 0.4 * 820)
     for name in (TRACKER, FOLLOWER):
         for point in tab.session.editor.points():
             x, y = tab.placed(name, point)
