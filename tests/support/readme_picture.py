@@ -22,8 +22,7 @@ FRAMES_A_SECOND = 12
 SHOTS = (("free", 1.25), ("held", 3.75), ("free", 1.25))
 """What happens, and for how long [s]."""
 WINDOW: ViewportSize = {"width": 1280, "height": 800}
-CROP = (0, 96, 946, 716)  # of the window, [px]
-WIDTH = 760  # of the picture, [px]
+WIDTH = 880  # of the picture, [px]
 QUALITY = 72
 
 
@@ -35,7 +34,7 @@ def photograph(tab: Tab) -> list[Image.Image]:
         for _ in range(round(seconds * FRAMES_A_SECOND)):
             tab.elapse(1.0 / FRAMES_A_SECOND)
             tab.settle()
-            picture = Image.open(io.BytesIO(tab.page.screenshot())).convert("RGB").crop(CROP)
+            picture = Image.open(io.BytesIO(tab.page.screenshot())).convert("RGB")
             height = round(WIDTH * picture.height / picture.width)
             pictures.append(picture.resize((WIDTH, height), Image.Resampling.LANCZOS))
     return pictures
