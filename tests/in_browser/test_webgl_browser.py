@@ -114,7 +114,7 @@ def test_a_page_that_is_darkened_by_force_has_readable_axes(
     arguments = (*PLAIN, "--force-dark-mode", "--enable-features=WebContentsForceDark")
     forced = browser.browser_type.launch(executable_path=CHROMIUM, args=arguments)
     tab = Tab(server, forced.new_context(color_scheme="null"), draws=False)
-    plot = tab.page.locator(".uplot canvas").first
+    plot = tab.page.locator("#op-strip .plot canvas").first
     plot.scroll_into_view_if_needed()
     tab.settle()
     picture = Image.open(BytesIO(plot.screenshot())).convert("L")
