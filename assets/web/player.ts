@@ -85,7 +85,7 @@ export class Player implements Robots {
     private go(by: number): void {
         const { view } = this
         if (by > 0 && view?.waits) {
-            elementOf(view.prediction!).dispatchEvent(new Event("skip"))
+            this.views[view.prediction!.step]!.form!.skip()
             if (this.page.steps[this.index]!.kind === "run") return
         }
         void this.open(this.index + by, true)

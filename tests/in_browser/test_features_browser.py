@@ -91,7 +91,7 @@ ROWS = {
         (".op-watch", ".symbols")
     ),
     "predictions as choice or curve, confidence and reason, truth over the curve": Row(
-        (".choice input", ".board", ".sure", ".compared canvas"), ("lesson.commit",)
+        (".choice input", ".board", ".compared canvas"), ("lesson.commit", "answer.how_sure")
     ),
     "tasks, hints, quizzes, numbers, own words": Row((".task", ".quiz input", ".task details")),
     "marks and arrows in the scene, start beside the path": Row(
