@@ -63,6 +63,7 @@ def test_an_arena_of_laws_of_ones_own(files: list[str], tmp_path: Path, capsys: 
     assert all(abs(float(x)) < 1e4 for x in re.findall(r'points="([-\d.]+),', page))
 
 
+@pytest.mark.thorough
 def test_a_robot_from_a_file_enters_beside_another(
     files: list[str], tmp_path: Path, capsys: Any
 ) -> None:
@@ -145,6 +146,7 @@ def test_an_impossible_option_is_refused(options: list[str], words: str, capsys:
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.thorough
 def test_the_page_in_german(files: list[str], tmp_path: Path) -> None:
     given = ["arena", "path_following", "--only", "--robot=five_bar", "--rounds=1", "--no-figures"]
     assert run_command([*given, "--language", "de", *files]) == 0

@@ -60,6 +60,7 @@ def test_its_table_has_the_worst_value_of_the_runs() -> None:
             assert row[name] == worst and row[f"{name}_rank"] in (1, 2)
 
 
+@pytest.mark.thorough
 def test_a_law_of_this_process_has_the_numbers_that_it_has_in_a_file(tmp_path: Path) -> None:
     source = "class Here:\n    gains = ('K5',)\n    def command(self, view):\n" + (
         "        across = -300 * view.output.xi - 30 * view.output.xi_rate\n"
@@ -92,6 +93,7 @@ class Law:
 """
 
 
+@pytest.mark.thorough
 def test_a_file_may_have_changed_since_its_law_was_added(tmp_path: Path) -> None:
     """Also with a law of the same name in another file, and with other gains."""
     changing, other = tmp_path / "changing.py", tmp_path / "other.py"

@@ -26,11 +26,13 @@ from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import changed, specs
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.cases import some
 from tests.support.figure_runs import PythonFigure
 from tests.support.lab import do, new_lab, store
 from tests.support.some_setups import CALM
 
 SECONDS = 0.2
+QUICK = ("five_bar", "flexible", "cart_pendulum")
 FEW = settings(CALM, max_examples=3)
 PATHS = ("circle", "ellipse", "clover")
 NUMBERS = (
@@ -136,7 +138,7 @@ def in_a_figure(choice: FigureChoice, own: dict[str, Any]) -> np.ndarray:
     return page.sides[0].y
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
 def test_same_arguments_same_motion(
     robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -156,7 +158,7 @@ def test_same_arguments_same_motion(
     check()
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
 def test_the_newcomers_motion_has_a_name(
     robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -172,7 +174,7 @@ def test_the_newcomers_motion_has_a_name(
     assert choice.parameters == lab.session.parameters == run.experiment.parameters
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
 def test_a_robot_has_one_set_of_defaults(
     robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
