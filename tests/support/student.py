@@ -40,6 +40,7 @@ class Student:
         moving: number of updates of the poses.
         received: amount of data, [B].
         lesson: the last message of the data channel about the lessons; see `lesson_message`.
+        message: what the lab tells its user, from that channel.
     """
 
     def __init__(
@@ -53,6 +54,7 @@ class Student:
         self._lessons, self._ticket = lessons, ""
         self._data: ClientConnection | None = None
         self.lesson: dict[str, Any] = {}
+        self.message = ""
 
     def __enter__(self) -> Self:
         return self
@@ -75,8 +77,8 @@ class Student:
     def open(self) -> None:
         """Open the page, or open it again."""
         self.widgets.clear()
-        self.lesson, self._ticket = {}, ""
-        way = socket.create_connection(("127.0.0.1", self._through)) if self._through else None
+        self.lesson, self.message, self._ticket = {}, "", ""
+        way = self._way()
         self._socket = connect(
             self.address,
             subprotocols=[Subprotocol(SUBPROTOCOL)],
@@ -125,6 +127,7 @@ class Student:
         with suppress(TimeoutError):
             while True:
                 self._take_frame(self._socket.recv(timeout=0))
+        self._hear()
 
     def wait_until_closed(self) -> None:
         """Wait until the server has closed the connection."""
@@ -176,8 +179,10 @@ class Student:
     def sees(self, text: str) -> bool:
         """Whether the page shows a text."""
         parts = ("content", "_markdown")
-        return text in self.column or any(
-            text in str(w.get(part)) for w in self.widgets.values() for part in parts
+        return (
+            text in self.column
+            or text in self.message
+            or any(text in str(w.get(part)) for w in self.widgets.values() for part in parts)
         )
 
     @property
@@ -218,6 +223,7 @@ class Student:
             self._ticket = found[1]
             self._data = connect(
                 self.address,
+                sock=self._way(),
                 subprotocols=[Subprotocol(DATA)],
                 additional_headers=self.headers,
                 compression=None,
@@ -231,6 +237,11 @@ class Student:
                 message = json.loads(self._data.recv(timeout=0))
                 if message["is"] == "lesson":
                     self.lesson = message
+                elif message["is"] == "state":
+                    self.message = message.get("message", self.message)
+
+    def _way(self) -> socket.socket | None:
+        return socket.create_connection(("127.0.0.1", self._through)) if self._through else None
 
     def _labels(self) -> dict[str, dict[str, Any]]:
         shown = [w for w in self.widgets.values() if w["value"] is not None]
