@@ -71,7 +71,7 @@ class ArenaCommand:
         arena, words = Arena(options), Words(self.language)
 
         def show_first(number: int) -> None:
-            if number == 0 < self.rounds - 1:
+            if number == 0 and self.rounds > 1:
                 told = words("arena.first", seconds=f"{time.monotonic() - began:.0f}")
                 print(f"onpath: {told}\n\n{arena.text}\n", file=sys.stderr)
 

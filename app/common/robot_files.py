@@ -1,4 +1,4 @@
-"""Robots from files: they are added to the catalogue, and the command line is told of them."""
+"""Adds robots from files to the catalogue, and gives their arguments on a command line."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
 
+_FILES = dict[str, tuple[Path, Options]]()  # by name
+
 
 def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Message, ...]]:
-    """The robot of a file, which is added to the catalogue, and what to tell of it.
+    """Add the robot of a file to the catalogue; return it, with remarks for the user.
 
     Raises:
         ValueError: see `read_robot`.
@@ -21,9 +23,6 @@ def robot_of_file(file: Path, options: Options) -> tuple[RobotEntry, tuple[Messa
     entry = add_robot(read.entry)
     _FILES[entry.name] = file.resolve(), options
     return entry, read.remarks
-
-
-_FILES = dict[str, tuple[Path, Options]]()  # by name
 
 
 def robot_arguments(robot: str) -> list[str]:

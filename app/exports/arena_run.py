@@ -1,4 +1,4 @@
-"""An arena: its rounds one after the other, and the files with what has been found."""
+"""Runs the rounds of an arena, and writes its page, table and figures."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ NO_MOTION = "it does not move along a path, as laws in an arena do"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArenaOptions:
-    """What the command line and Python ask for.
+    """The arguments of an arena, from the command line or from Python.
 
     Attributes:
         laws: names of the laws that enter besides OnPath's.
         robots: their names.
-        only: whether OnPath's laws stay away that were not asked for.
-        rounds: how many, 1 or more.
+        only: whether OnPath's laws that were not asked for are left out.
+        rounds: their number, 1 or more.
         seed: of the random numbers, 0 or more.
-        processes: how many simulate; 0: one for each processor.
+        processes: number of processes; 0: one for each processor.
         html: the page; its live figures are in a folder beside it. None: no page.
         csv: all runs, one per line; None: no such file.
         figures: whether there are live figures.
         language: of the page and of the tables.
-        command: what has been called, as the page shows it.
+        command: the call or command line, as the page shows it.
     """
 
     laws: Sequence[str]
@@ -60,7 +60,7 @@ class ArenaOptions:
 
 
 class Arena:
-    """The trials of an arena, and what is known of them so far.
+    """The trials of an arena, with the results so far.
 
     Raises:
         ValueError: an option is not possible.
@@ -96,13 +96,13 @@ class Arena:
         return rows
 
     def run(self, after_round: Callable[[int], None] = lambda _: None) -> bool:
-        """Run all rounds; the files are written after each, and if it is interrupted.
+        """Run all rounds, and write the files after each, and on Ctrl-C.
 
         Args:
             after_round: called with the number of each round, from 0.
 
         Returns:
-            Whether it has come to its end.
+            Whether it was finished, not interrupted.
         """
         processes = Processes(self._options.processes or os.cpu_count() or 1)
         try:
@@ -122,7 +122,7 @@ class Arena:
 
     @property
     def contents(self) -> Contents:
-        """What is known: of the trials that all rows of a robot have finished."""
+        """The results of the trials that all rows of a robot have finished."""
         return Contents(
             rows=self._rows,
             results=complete(self._rows, self._results),
@@ -148,7 +148,10 @@ class Arena:
     def _each(
         self, processes: Processes, work: Callable[[Any], Any], jobs: Sequence[Any], title: str
     ) -> Iterator[Any]:
-        """The results of jobs as they come, with a bar; laws that are only here run here."""
+        """The results of jobs as they come, with a progress bar.
+
+        Laws that only this process knows run in it.
+        """
         here = [job for job in jobs if only_here(job.law)]
         others = [job for job in jobs if not only_here(job.law)]
         yield from track(

@@ -18,7 +18,7 @@ from onpath.models.systems.robots import RobotEntry
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class ArenaResult:
-    """What an arena has found, of the trials that all laws have finished; printed as tables.
+    """The results of an arena, for the trials that all laws have finished; printed as tables.
 
     Attributes:
         contents: the results.
@@ -89,7 +89,7 @@ def arena(
             error, or a file that cannot be written.
 
     Warns:
-        UserWarning: it was interrupted.
+        UserWarning: the arena was interrupted.
     """
     laws = law if isinstance(law, list | tuple) else [law]
     robots = [robot] if isinstance(robot, str | RobotEntry) else robot

@@ -141,7 +141,7 @@ class Bars:
         ]
 
 
-class Body:
+class BodyNode:
     """One moving body of all robots, as copies of its mesh.
 
     Args:
@@ -196,7 +196,7 @@ class RobotNodes:
         self._force_scale = stage.force_scale
         self._drawn = poses
         bodies = [
-            Body(scene, number, mesh, list(bases), poses)
+            BodyNode(scene, number, mesh, list(bases), poses)
             for number, mesh in enumerate(stage.bodies)
         ]
         self._bars = [] if bodies else self._add_bars(scene, counts, poses)

@@ -23,7 +23,7 @@ EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
 
 class PageData:
-    """What one page is told through its data channel.
+    """The data channel of one page.
 
     Call everything but `close` in the simulation thread.
 

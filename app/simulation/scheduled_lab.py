@@ -43,7 +43,7 @@ class Elapsed(Struct, frozen=True):
 NOTHING = Elapsed(0.0, 0.0, 0)
 
 
-class Display(Protocol):
+class LabDisplay(Protocol):
     """Shows a lab; called by the simulation thread only."""
 
     @property
@@ -81,7 +81,7 @@ class ScheduledLab(Updated):
 
     def __init__(self, lab: Lab) -> None:
         self.lab, self.session = lab, lab.session
-        self.view: Display | None = None
+        self.view: LabDisplay | None = None
         self.refreshed = NEVER
         self._credit = self.used = 0.0
         self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second

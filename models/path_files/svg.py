@@ -43,7 +43,7 @@ def strokes_of_svg(data: bytes) -> list[Stroke]:
     """
     if find_spec("svgpathtools") is None:
         raise CodedError("error.svg_not_installed")
-    root = _Reader().read(data)
+    root = _DrawingReader().read(data)
     if root.tag != "svg":
         raise CodedError("error.svg_no_drawing")
     unit, strokes, count = _unit(root), list[Stroke](), 0
@@ -56,7 +56,7 @@ def strokes_of_svg(data: bytes) -> list[Stroke]:
     return strokes
 
 
-class _Reader:
+class _DrawingReader:
     """Reads XML to elements that know their line; see the module."""
 
     def __init__(self) -> None:

@@ -53,7 +53,7 @@ class FileChain:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Place:
+class RigidTransform:
     """A frame in another one: x' = R x + p.
 
     Attributes:
@@ -64,9 +64,9 @@ class Place:
     rotation: Array = field(default_factory=lambda: np.eye(3))
     translation: Array = field(default_factory=lambda: np.zeros(3))
 
-    def __matmul__(self, other: Place) -> Place:
+    def __matmul__(self, other: RigidTransform) -> RigidTransform:
         turned = self.rotation @ other.translation
-        return Place(exact(self.rotation @ other.rotation), self.translation + turned)
+        return RigidTransform(exact(self.rotation @ other.rotation), self.translation + turned)
 
 
 @dataclass(slots=True, eq=False)
@@ -75,7 +75,7 @@ class Group:
 
     name: str
     joint: Joint | None = None
-    place: Place = field(default_factory=Place)
+    place: RigidTransform = field(default_factory=RigidTransform)
     mass: float = 0.0
     moment: Array = field(default_factory=lambda: np.zeros(3))
     inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))

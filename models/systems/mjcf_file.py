@@ -18,14 +18,14 @@ from onpath.models.systems.file_chain import (
     FileChain,
     Group,
     Options,
-    Place,
+    RigidTransform,
     aligned,
     exact,
     many_joints,
     turn,
 )
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, Fault, shown
+from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, FileFault, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
 SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms
@@ -43,13 +43,13 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
         root: its outermost element.
 
     Raises:
-        Fault: something in the file is refused.
+        FileFault: something in the file is refused.
         CodedError: MuJoCo is not installed or cannot read the file, or an option names a joint or
             tip that does not exist.
     """
     for element in _all(root):
         if element.tag in REFUSED:
-            raise Fault(element, Message("robot_file.refused", {"element": element.tag}))
+            raise FileFault(element, Message("robot_file.refused", {"element": element.tag}))
         _check_numbers(element)
     try:
         mujoco: Any = import_module("mujoco")
@@ -91,7 +91,7 @@ def _check_numbers(element: Element) -> None:
             continue
         if not all(abs(number) <= LARGEST_NUMBER for number in numbers):
             reason = Message("robot_file.large", {"field": field, "value": shown(value)})
-            raise Fault(element, reason)
+            raise FileFault(element, reason)
 
 
 class _Model:
@@ -118,7 +118,7 @@ class _Model:
         while body:
             self._way.add(body)
             body = int(model.body_parentid[body])
-        groups, frames = [Group("world")], [(0, Place())]
+        groups, frames = [Group("world")], [(0, RigidTransform())]
         for body in range(1, model.nbody):
             number, before = frames[int(model.body_parentid[body])]
             here = before @ _place(model.body_pos[body], model.body_quat[body])
@@ -132,7 +132,7 @@ class _Model:
             groups[number].shapes += self._shapes(geom, here)
         number, here = frames[tip]
         if number == 0:
-            raise Fault(self._root, Message("robot_file.still_tip"))
+            raise FileFault(self._root, Message("robot_file.still_tip"))
         here = here @ place
         chain = Chain(
             bodies=tuple(group.body() for group in groups[1:]),
@@ -143,8 +143,8 @@ class _Model:
         return FileChain(chain=chain, home=self._home(), remarks=tuple(self._remarks()))
 
     def _joined(
-        self, body: int, on_way: bool, number: int, here: Place, groups: list[Group]
-    ) -> tuple[int, Place]:
+        self, body: int, on_way: bool, number: int, here: RigidTransform, groups: list[Group]
+    ) -> tuple[int, RigidTransform]:
         """The group of a body behind its joints, and its place in that."""
         model = self._model
         first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
@@ -156,19 +156,19 @@ class _Model:
                     reason = Message(
                         "robot_file.free", {"type": "free" if kind == FREE else "ball"}
                     )
-                    raise Fault(self._element(name), reason)
+                    raise FileFault(self._element(name), reason)
                 continue
-            anchor = Place(translation=np.array(model.jnt_pos[i]))
-            back = Place(translation=-anchor.translation)
+            anchor = RigidTransform(translation=np.array(model.jnt_pos[i]))
+            back = RigidTransform(translation=-anchor.translation)
             axis = np.array(model.jnt_axis[i])
             if not on_way or name in self._options.lock:
                 here = here @ anchor @ _moved(kind, axis, self._locked(i, name)) @ back
                 continue
-            frame = Place(aligned(axis))
+            frame = RigidTransform(aligned(axis))
             groups.append(Group(model.body(body).name, self._joint(i, name), here @ anchor @ frame))
             if len(groups) - 1 > MOST_JOINTS:
-                raise Fault(self._element(name), many_joints(self._moving_names()))
-            number, here = len(groups) - 1, Place(frame.rotation.T) @ back
+                raise FileFault(self._element(name), many_joints(self._moving_names()))
+            number, here = len(groups) - 1, RigidTransform(frame.rotation.T) @ back
         return number, here
 
     def _element(self, joint: str) -> Element:
@@ -191,12 +191,14 @@ class _Model:
         if written[0] > written[1]:  # MuJoCo takes them for no limits
             low, high = (f"{end:g}" for end in written)
             reason = Message("robot_file.limits", {"low": low, "high": high})
-            raise Fault(self._element(name), reason)
+            raise FileFault(self._element(name), reason)
         damping = float(np.ravel(model.dof_damping[dof])[0])
         armature = float(model.dof_armature[dof])
         for field, value in {"damping": damping, "armature": armature}.items():
             if value < 0:
-                raise Fault(self._element(name), Message("robot_file.negative", {"field": field}))
+                raise FileFault(
+                    self._element(name), Message("robot_file.negative", {"field": field})
+                )
         return Joint(
             name=name,
             slides=int(model.jnt_type[i]) == SLIDE,
@@ -225,7 +227,7 @@ class _Model:
         reference = float(self._model.qpos0[at])
         return options.lock.get(name, options.pose.get(name, reference)) - reference
 
-    def _shapes(self, geom: int, body: Place) -> Iterator[Shape]:
+    def _shapes(self, geom: int, body: RigidTransform) -> Iterator[Shape]:
         """What is drawn of a geom: nothing of planes, height fields and what is invisible."""
         model, kind = self._model, int(self._model.geom_type[geom])
         if model.geom_group[geom] >= HIDDEN or not model.geom_rgba[geom][3]:
@@ -271,7 +273,7 @@ class _Model:
         at = {name: int(model.jnt_qposadr[i]) for name, i in turning.items()}
         return {name: float(values[k] - model.qpos0[k]) for name, k in at.items()}
 
-    def _tip(self) -> tuple[int, Place]:
+    def _tip(self) -> tuple[int, RigidTransform]:
         """The body of the tip, and the tip in it."""
         model, wanted = self._model, self._options.tip
         sites = {model.site(i).name: i for i in range(model.nsite) if model.site(i).name}
@@ -290,7 +292,7 @@ class _Model:
         if wanted not in bodies:
             names = ", ".join([*sites, *bodies])
             raise CodedError("robot_file.no_tip", tip=shown(wanted), names=names)
-        return bodies[wanted], Place()
+        return bodies[wanted], RigidTransform()
 
     def _remarks(self) -> Iterator[Message]:
         model = self._model
@@ -300,15 +302,19 @@ class _Model:
             yield Message("robot_file.left_out", {"parts": ", ".join(left)})
 
 
-def _place(position: Any, quaternion: Any) -> Place:
+def _place(position: Any, quaternion: Any) -> RigidTransform:
     """A frame from a position and a unit quaternion, its scalar first."""
     w, x, y, z = (float(part) for part in quaternion)
     vector = np.array([x, y, z])
     sine = float(np.linalg.norm(vector))
     if sine == 0:
-        return Place(translation=np.array(position))
-    return Place(exact(turn(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
+        return RigidTransform(translation=np.array(position))
+    return RigidTransform(exact(turn(vector / sine, 2 * math.atan2(sine, w))), np.array(position))
 
 
-def _moved(kind: int, axis: Array, value: float) -> Place:
-    return Place(translation=value * axis) if kind == SLIDE else Place(turn(axis, value))
+def _moved(kind: int, axis: Array, value: float) -> RigidTransform:
+    return (
+        RigidTransform(translation=value * axis)
+        if kind == SLIDE
+        else RigidTransform(turn(axis, value))
+    )

@@ -31,7 +31,7 @@ from onpath.models.systems.rigid_chain import Chain, ChainSource, chain_frames, 
 from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import Fault, file_bytes, root_of
+from onpath.models.systems.xml_elements import FileFault, file_bytes, root_of
 
 POSES = 100  # random ones at which masses and friction are checked
 LEAST_CIRCLE = 0.05  # [m], of paths that must be possible
@@ -70,7 +70,7 @@ def read_robot(file: Path, options: Options) -> RobotFile:
             read = read_mjcf(file, root, options)
         else:
             read = read_urdf(file, root, options)
-    except Fault as fault:
+    except FileFault as fault:
         raise fault.in_file(file) from None
     stem = _STRANGE.sub("_", file.stem.lower()).strip("_")[:24] or "robot"
     said = (sorted(options.lock.items()), sorted(options.pose.items()), options.armature)

@@ -21,14 +21,14 @@ from onpath.models.systems.file_chain import (
     FileChain,
     Group,
     Options,
-    Place,
+    RigidTransform,
     aligned,
     exact,
     many_joints,
     turn,
 )
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.xml_elements import Element, Fault, shown
+from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 64
 MESHES = (".stl", ".obj", ".dae")
@@ -44,7 +44,7 @@ def read_urdf(file: Path, root: Element, options: Options) -> FileChain:
         root: its outermost element.
 
     Raises:
-        Fault: something in the file is refused.
+        FileFault: something in the file is refused.
         CodedError: an option names a link or joint that does not exist.
     """
     tree = _Tree(file, root, options)
@@ -56,7 +56,7 @@ class _Tree:
 
     def __init__(self, file: Path, root: Element, options: Options) -> None:
         if root.tag != "robot":
-            raise Fault(root, Message("robot_file.root"))
+            raise FileFault(root, Message("robot_file.root"))
         _refuse_xacro(root)
         self.remarks = list[Message]()
         self._folders = _Folders(file, options.packages)
@@ -80,11 +80,13 @@ class _Tree:
             for end in ("parent", "child"):
                 named = joint.need(end)
                 if named.name("link") not in self._links:
-                    raise Fault(named, Message("robot_file.no_link", {"name": named.name("link")}))
+                    raise FileFault(
+                        named, Message("robot_file.no_link", {"name": named.name("link")})
+                    )
             child = joint.need("child").name("link")
             if child in before:
                 other = before[child].name()
-                raise Fault(
+                raise FileFault(
                     joint, Message("robot_file.two_parents", {"name": child, "other": other})
                 )
             before[child] = joint
@@ -94,7 +96,7 @@ class _Tree:
         """The link from which all others can be reached."""
         roots = [name for name in self._links if name not in self._before]
         if not roots:
-            raise Fault(self._root, Message("robot_file.loop"))
+            raise FileFault(self._root, Message("robot_file.loop"))
         reached, waiting = set[str](), [roots[0]]
         while waiting:
             name = waiting.pop()
@@ -102,9 +104,9 @@ class _Tree:
             waiting += [j.need("child").name("link") for j in self._after.get(name, [])]
         for name, link in self._links.items():
             if name not in reached and name in roots:
-                raise Fault(link, Message("robot_file.apart", {"name": roots[0]}))
+                raise FileFault(link, Message("robot_file.apart", {"name": roots[0]}))
             if name not in reached:
-                raise Fault(link, Message("robot_file.loop"))
+                raise FileFault(link, Message("robot_file.loop"))
         return roots[0]
 
     def _tip_link(self) -> str:
@@ -137,8 +139,8 @@ class _Tree:
 
     def chain(self) -> Chain:
         """The moving bodies, from the base to the tip."""
-        groups, tip = [Group(self._base)], Place()
-        waiting = [(self._base, 0, Place())]
+        groups, tip = [Group(self._base)], RigidTransform()
+        waiting = [(self._base, 0, RigidTransform())]
         while waiting:
             name, number, place = waiting.pop()
             if name == self._tip:
@@ -154,11 +156,11 @@ class _Tree:
                 if moving is None:
                     waiting.append((child, number, origin @ self._locked(joint)))
                     continue
-                frame = Place(aligned(_axis(joint)))
+                frame = RigidTransform(aligned(_axis(joint)))
                 groups.append(Group(child, moving, origin @ frame))
                 if len(groups) - 1 > MOST_JOINTS:
-                    raise Fault(joint, many_joints(self._moving_names()))
-                waiting.append((child, len(groups) - 1, Place(frame.rotation.T)))
+                    raise FileFault(joint, many_joints(self._moving_names()))
+                waiting.append((child, len(groups) - 1, RigidTransform(frame.rotation.T)))
         return Chain(
             bodies=tuple(group.body() for group in groups[1:]),
             tip=tip.translation,
@@ -176,42 +178,42 @@ class _Tree:
         """The joint if it is on the way to the tip and moves; None if it is locked."""
         kind, name = joint.text("type"), joint.name()
         if kind not in (*TURNING, *SLIDING, *STILL, *FREE):
-            raise Fault(joint, Message("robot_file.type", {"type": shown(kind)}))
+            raise FileFault(joint, Message("robot_file.type", {"type": shown(kind)}))
         data = _joint(joint, kind, self._options.armature)
         if name not in self._way or kind in STILL:
             return None
         if kind in FREE:
-            raise Fault(joint, Message("robot_file.free", {"type": kind}))
+            raise FileFault(joint, Message("robot_file.free", {"type": kind}))
         if name in self._options.lock:
             return None
         if joint.first("mimic") is not None:
-            raise Fault(joint, Message("robot_file.mimic"))
+            raise FileFault(joint, Message("robot_file.mimic"))
         if data.low == data.high:
             self.remarks.append(Message("robot_file.still", {"joint": name}))
             return None
         return data
 
-    def _locked(self, joint: Element) -> Place:
+    def _locked(self, joint: Element) -> RigidTransform:
         """The motion of a joint that stays where it is."""
         kind, name = joint.text("type"), joint.name()
         if kind in (*STILL, *FREE):
-            return Place()
+            return RigidTransform()
         data = _joint(joint, kind, 0.0)
         options = self._options
         wanted = options.lock.get(name, options.pose.get(name, 0.0))
         value = min(max(wanted, data.low), data.high)
         if name in (*options.lock, *options.pose) and value != wanted:
             low, high = f"{data.low:.3g}", f"{data.high:.3g}"
-            raise Fault(
+            raise FileFault(
                 joint,
                 Message("robot_file.outside", {"value": f"{wanted:.3g}", "low": low, "high": high}),
             )
         axis = _axis(joint)
         if data.slides:
-            return Place(translation=value * axis)
-        return Place(turn(axis, value))
+            return RigidTransform(translation=value * axis)
+        return RigidTransform(turn(axis, value))
 
-    def _add_link(self, group: Group, link: Element, place: Place) -> None:
+    def _add_link(self, group: Group, link: Element, place: RigidTransform) -> None:
         inertial = link.first("inertial")
         if inertial is not None:
             mass, centre, inertia = self._inertial(link, inertial)
@@ -222,22 +224,24 @@ class _Tree:
             if shape is not None:
                 group.shapes.append(shape)
 
-    def _inertial(self, link: Element, inertial: Element) -> tuple[float, Place, Array]:
+    def _inertial(self, link: Element, inertial: Element) -> tuple[float, RigidTransform, Array]:
         mass = inertial.need("mass").number("value")
         if mass < 0:
-            raise Fault(inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"}))
+            raise FileFault(
+                inertial.need("mass"), Message("robot_file.mass", {"value": f"{mass:g}"})
+            )
         element = inertial.need("inertia")
         xx, xy, xz = (element.number(key, 0.0) for key in ("ixx", "ixy", "ixz"))
         yy, yz, zz = (element.number(key, 0.0) for key in ("iyy", "iyz", "izz"))
         inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
         least, middle, most = np.linalg.eigvalsh(inertia)
         if least < -1e-6 * abs(most):
-            raise Fault(element, Message("robot_file.inertia"))
+            raise FileFault(element, Message("robot_file.inertia"))
         if least + middle < 0.99 * most:
             self.remarks.append(Message("robot_file.triangle", {"link": link.name()}))
         return mass, _origin(inertial), inertia
 
-    def _shape(self, visual: Element, place: Place) -> Shape | None:
+    def _shape(self, visual: Element, place: RigidTransform) -> Shape | None:
         geometry = visual.first("geometry")
         here = place @ _origin(visual)
         for element in geometry.children if geometry is not None else ():
@@ -263,7 +267,7 @@ class _Tree:
             else:
                 continue
             if kind != "mesh" and not 0 < min(size) <= max(size) < 100:
-                raise Fault(element, Message("robot_file.shape"))
+                raise FileFault(element, Message("robot_file.shape"))
             return Shape(
                 kind=kind,
                 file=file,
@@ -320,12 +324,12 @@ def _named(root: Element, tag: str, most: int) -> dict[str, Element]:
     for element in root.all(tag):
         name = element.name()
         if name in found:
-            raise Fault(element, Message("robot_file.twice", {"line": found[name].line}))
+            raise FileFault(element, Message("robot_file.twice", {"line": found[name].line}))
         found[name] = element
         if len(found) > most:
-            raise Fault(element, Message("robot_file.many", {"most": most}))
+            raise FileFault(element, Message("robot_file.many", {"most": most}))
     if tag == "link" and not found:
-        raise Fault(root, Message("robot_file.without", {"what": "<link>"}))
+        raise FileFault(root, Message("robot_file.without", {"what": "<link>"}))
     return found
 
 
@@ -335,14 +339,14 @@ def _refuse_xacro(root: Element) -> None:
         element = waiting.pop()
         values = element.values.values()
         if element.tag.startswith("xacro:") or any("${" in v or "$(" in v for v in values):
-            raise Fault(element, Message("robot_file.xacro"))
+            raise FileFault(element, Message("robot_file.xacro"))
         waiting += element.children
 
 
 def _check_last(link: Element, number: int, groups: list[Group]) -> None:
     """Check that a joint moves the tip."""
     if number == 0 or len(groups) < 2:
-        raise Fault(link, Message("robot_file.still_tip"))
+        raise FileFault(link, Message("robot_file.still_tip"))
 
 
 def _joint(joint: Element, kind: str, armature: float) -> Joint:
@@ -352,18 +356,18 @@ def _joint(joint: Element, kind: str, armature: float) -> Joint:
     if limit is not None:
         effort = limit.number("effort", 0.0) or math.inf
         if effort < 0:
-            raise Fault(limit, Message("robot_file.negative", {"field": "effort"}))
+            raise FileFault(limit, Message("robot_file.negative", {"field": "effort"}))
     if kind in ("revolute", *SLIDING):
         if limit is None:
-            raise Fault(joint, Message("robot_file.without", {"what": "<limit>"}))
+            raise FileFault(joint, Message("robot_file.without", {"what": "<limit>"}))
         low, high = limit.number("lower", 0.0), limit.number("upper", 0.0)
         if low > high:
-            raise Fault(
+            raise FileFault(
                 limit, Message("robot_file.limits", {"low": f"{low:g}", "high": f"{high:g}"})
             )
     damping = 0.0 if dynamics is None else dynamics.number("damping", 0.0)
     if dynamics is not None and damping < 0:
-        raise Fault(dynamics, Message("robot_file.negative", {"field": "damping"}))
+        raise FileFault(dynamics, Message("robot_file.negative", {"field": "damping"}))
     return Joint(
         name=joint.name(),
         slides=kind in SLIDING,
@@ -381,16 +385,16 @@ def _axis(joint: Element) -> Array:
     axis = np.array((1.0, 0.0, 0.0) if element is None else element.numbers("xyz", 3))
     length = np.linalg.norm(axis)
     if not length > 1e-6:
-        raise Fault(joint if element is None else element, Message("robot_file.axis"))
+        raise FileFault(joint if element is None else element, Message("robot_file.axis"))
     return axis / length
 
 
-def _origin(element: Element) -> Place:
+def _origin(element: Element) -> RigidTransform:
     """The place that an <origin> in an element gives."""
     origin = element.first("origin")
     if origin is None:
-        return Place()
+        return RigidTransform()
     roll, pitch, yaw = origin.numbers("rpy", 3, "0 0 0")
     x, y, z = np.eye(3)
     rotation = turn(z, yaw) @ turn(y, pitch) @ turn(x, roll)
-    return Place(exact(rotation), np.array(origin.numbers("xyz", 3, "0 0 0")))
+    return RigidTransform(exact(rotation), np.array(origin.numbers("xyz", 3, "0 0 0")))

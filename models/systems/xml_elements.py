@@ -47,39 +47,39 @@ class Element:
         """The first child with this name.
 
         Raises:
-            Fault: there is none.
+            FileFault: there is none.
         """
         child = self.first(tag)
         if child is None:
-            raise Fault(self, Message("robot_file.without", {"what": f"<{tag}>"}))
+            raise FileFault(self, Message("robot_file.without", {"what": f"<{tag}>"}))
         return child
 
     def text(self, key: str) -> str:
         """An attribute.
 
         Raises:
-            Fault: it is absent.
+            FileFault: it is absent.
         """
         if key not in self.values:
-            raise Fault(self, Message("robot_file.without", {"what": key}))
+            raise FileFault(self, Message("robot_file.without", {"what": key}))
         return self.values[key]
 
     def name(self, key: str = "name") -> str:
         """An attribute that names something.
 
         Raises:
-            Fault: it is absent, or has other characters than letters, digits, "_", "-" and ".".
+            FileFault: it is absent, or has other characters than letters, digits, "_", "-" and ".".
         """
         text = self.text(key)
         if not _NAME.fullmatch(text):
-            raise Fault(self, Message("robot_file.name", {"field": key, "value": shown(text)}))
+            raise FileFault(self, Message("robot_file.name", {"field": key, "value": shown(text)}))
         return text
 
     def number(self, key: str, default: float | None = None) -> float:
         """An attribute that is a number.
 
         Raises:
-            Fault: it is not finite, or absent without a default.
+            FileFault: it is not finite, or absent without a default.
         """
         if default is not None and key not in self.values:
             return default
@@ -89,22 +89,22 @@ class Element:
         """An attribute that consists of numbers with spaces between them.
 
         Raises:
-            Fault: it does not, or there are more or fewer, or one is not finite.
+            FileFault: it does not, or there are more or fewer, or one is not finite.
         """
         text = self.text(key) if default is None else self.values.get(key, default)
         words = text.split(maxsplit=count)
         if len(words) != count or not all(len(w) < 40 and _NUMBER.fullmatch(w) for w in words):
-            raise Fault(
+            raise FileFault(
                 self,
                 Message("robot_file.numbers", {"field": key, "count": count, "value": shown(text)}),
             )
         numbers = tuple(float(word) for word in words)
         if any(not math.isfinite(x) or abs(x) > LARGEST_NUMBER for x in numbers):
-            raise Fault(self, Message("robot_file.large", {"field": key, "value": shown(text)}))
+            raise FileFault(self, Message("robot_file.large", {"field": key, "value": shown(text)}))
         return numbers
 
 
-class Fault(Exception):
+class FileFault(Exception):
     """Something in a file that is refused.
 
     Args:
@@ -161,8 +161,8 @@ def root_of(data: bytes) -> Element:
     """The outermost element of an XML file.
 
     Raises:
-        Fault: it is not well-formed, has a document type, which could define entities, or has too
-            many elements, or too many within each other.
+        FileFault: it is not well-formed, has a document type, which could define entities, or has
+            too many elements, or too many within each other.
     """
     parser, top = expat.ParserCreate(), Element("", {}, 1)
     path, count = [top], 0
@@ -172,14 +172,14 @@ def root_of(data: bytes) -> Element:
         element = Element(tag, values, parser.CurrentLineNumber)
         count += 1
         if count > MOST_ELEMENTS or len(path) > DEEPEST:
-            raise Fault(
+            raise FileFault(
                 element, Message("robot_file.elements", {"most": MOST_ELEMENTS, "deepest": DEEPEST})
             )
         path[-1].children.append(element)
         path.append(element)
 
     def doctype(name: str, *_: object) -> None:
-        raise Fault(
+        raise FileFault(
             Element("!DOCTYPE", {}, parser.CurrentLineNumber), Message("robot_file.doctype")
         )
 
@@ -190,11 +190,11 @@ def root_of(data: bytes) -> Element:
         parser.Parse(data, True)
     except expat.ExpatError as error:
         reason = expat.ErrorString(error.code)
-        raise Fault(
+        raise FileFault(
             Element("", {}, error.lineno), Message("robot_file.xml", {"reason": reason})
         ) from None
     except (ValueError, LookupError) as error:  # an unknown or unsuitable encoding
-        raise Fault(
+        raise FileFault(
             Element("", {}, 1), Message("robot_file.xml", {"reason": shown(str(error))})
         ) from None
     return top.children[0]

@@ -15,7 +15,7 @@ from onpath.models.errors import CodedError, Message
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.urdf_file import read_urdf
-from onpath.models.systems.xml_elements import Fault, root_of
+from onpath.models.systems.xml_elements import FileFault, root_of
 from tests.support.robot_files import PLANAR, urdf
 from tests.support.some_chains import random_arm
 
@@ -225,7 +225,7 @@ def test_a_mangled_file_is_read_or_refused(tmp_path: Path, data: bytes) -> None:
     tracemalloc.start()
     try:
         read_urdf(tmp_path / "arm.urdf", root_of(data), Options(tip="tip"))
-    except (Fault, CodedError):
+    except (FileFault, CodedError):
         pass
     finally:
         assert tracemalloc.get_traced_memory()[1] < 30e6
