@@ -15,7 +15,7 @@ from typing import Protocol
 
 import viser
 
-from onpath.app.simulation.scheduled_lab import Display, ScheduledLab
+from onpath.app.simulation.scheduled_lab import LabDisplay, ScheduledLab
 from onpath.app.viser_adapter.camera import ask_for_camera
 
 QUESTION_INTERVAL = 2.0  # [s] between questions, while anything is sent to the browser
@@ -23,7 +23,7 @@ PATIENCE = 4.0  # [s] to wait for the reply; a browser that draws in software ma
 TICK = 0.5  # [s] between checks
 
 
-class CountingDisplay(Display, Protocol):
+class CountingDisplay(LabDisplay, Protocol):
     """A view that counts its updates."""
 
     @property
