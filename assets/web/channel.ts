@@ -158,8 +158,6 @@ export class RemoteEngine implements Engine {
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
-    /** Called with the reason why the page must be loaded anew. */
-    outdated: () => void = () => {}
     private samples: Sample[] = [] // the last one is the present
     private running = false
     private past: number | null = null
@@ -320,7 +318,6 @@ export class RemoteEngine implements Engine {
     private closed(code: number): void {
         this.socket = null
         this.connected = false
-        if (code === OTHER_VERSION) this.outdated()
         if (code === STALE || code === OTHER_VERSION) this.refused = this.ticket
         this.again = performance.now() + PATIENCE[Math.min(this.tries++, PATIENCE.length - 1)]!
         this.tell("state")

@@ -14,7 +14,6 @@ const LOW = 220, OCTAVE = 25 // [Hz], [mm]
 const LOUD = 0.08, SOON = 0.06 // [s]
 const TONES = 100 // [ms] between changes of the tones
 const CALM = matchMedia("(prefers-reduced-motion: reduce)")
-const UPRIGHT = matchMedia("(max-width: 36em), (max-aspect-ratio: 4/5)")
 
 type Command = Record<string, unknown>
 const ACTS: Record<string, Command> = {
@@ -45,7 +44,7 @@ export class Voice {
     private offered = ""
     private skipped = false
 
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly ended: AbortSignal) {
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
         const { said: now, message } = this.lab
         this.element.id = "op-said"
         this.region.id = "op-voice"
@@ -113,7 +112,7 @@ export class Voice {
         const { message } = this
         this.text.textContent = text
         message.dataset["level"] = level
-        message.dataset["place"] = level === "replay" && UPRIGHT.matches ? "top" : "bottom"
+        message.dataset["place"] = level === "replay" && this.isUpright() ? "top" : "bottom"
         message.hidden = text === ""
         clearTimeout(this.leaving)
         if (level === "info" || level === "warning") this.leave(STAYS + PER_LETTER * text.length)
