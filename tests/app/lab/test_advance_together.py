@@ -16,6 +16,7 @@ from onpath.models.control.sides import SIDES
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import FOLLOWER, FRAME, do, finish, new_lab, store
+from tests.support.waiting import wait_for
 
 WILD = [("K1", 5000), ("K2", 0), ("control_rate", 50)]
 """Settings with which a robot diverges once it is held."""
@@ -94,9 +95,15 @@ def vars_of(event: object) -> list[object]:
 
 def compiled_labs(count: int) -> list[Lab]:
     """Equal labs whose loops are compiled."""
-    labs = [new_lab(FRAME) for _ in range(count)]
+    wait_for(are_compiled, 60.0)
+    return [new_lab(FRAME) for _ in range(count)]
+
+
+def are_compiled() -> bool:
+    """Whether the loops of a new lab are; what is no longer asked for is not compiled."""
+    ticks = next(new_lab(FRAME).frame(FRAME))
     finish(store())
-    return labs
+    return all(isinstance(loop, CompiledLoop) for _, loop in ticks.runs)
 
 
 def test_a_frame_is_one_call_per_kind_of_loop(monkeypatch: pytest.MonkeyPatch) -> None:
