@@ -173,7 +173,7 @@ def _predicted(part: EndedPart, words: Words) -> Iterator[Predicted]:
 
 
 def _onward(run: LessonView) -> list[Way]:
-    """What one may do next: the next lesson, the test of a route, the record."""
+    """The ways on: to the next lesson, the test of a route, and the record."""
     words, ways = run.words, list[Way]()
     if (after := next_lesson(run)) is not None:
         name, title = after

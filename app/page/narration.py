@@ -29,14 +29,14 @@ class Said(Struct, frozen=True):
     Attributes:
         voice: for a screen reader; empty if the user does not want it.
         summary: a description of the screen.
-        summaries: how often it has been asked for.
+        summaries: number of requests for it so far.
         stopped: whether the message says why a robot has stopped.
         replays: whether its last moments are to be shown, unless the user wants less motion.
         earlier: label of the button that restores the last good settings; empty if there are none.
         sounds: whether the distances are to be heard.
         invitation: name of what a newcomer is invited to do; empty: nothing.
         act: the command that follows it, as JSON; None: it is followed in the scene itself.
-        invitations: how many there are.
+        invitations: number of all invitations.
     """
 
     voice: str = ""
@@ -80,7 +80,7 @@ class Narration:
         self._asked = True
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Say what there is to say of a snapshot."""
+        """Update `said` from a snapshot."""
         level = snapshot.message_level if snapshot.message else ""
         captions = self._captions.shown
         if self._asked:

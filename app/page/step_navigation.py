@@ -24,7 +24,7 @@ class Way:
     Attributes:
         name: its whole name.
         send: the commands that it sends.
-        main: whether it is what to do now.
+        main: whether it is the step to take now.
         short: what is written on it; the whole name if empty.
     """
 
@@ -42,7 +42,7 @@ class Ways:
         remark: a sentence above them; may be empty.
         forward: on the right.
         back: on the left, if one can go there.
-        others: less important ones, above the others.
+        others: less important ones, in a row above.
     """
 
     remark: str
