@@ -61,9 +61,6 @@ typedef struct {
 typedef struct { Real M11, M22, M12, G1, G2, b1, b2, l1, l4; } Plant;
 typedef struct {
   Real K1, K2, K3, K4, K5, position, target, speed, ramp, speed_limit, tracker_integral;
-  /* of other laws: */
-  Real clock_gain, contour_ratio, field_circulation, field_energy, field_gain, maneuver_gain;
-  Real observer_bound, observer_rate, orbit_swing;
   Real plane[3]; /* of paths in space */
   Vec level_centre;
   Real level_weights[3];

@@ -31,7 +31,7 @@ class Student:
     Args:
         address: URL of the websocket.
         through: port on this machine to connect to, instead of that in the address.
-        lessons: whether it opens the data channel, to see lessons.
+        lessons: whether it opens the data channel, to see lessons and what the lab tells.
         headers: headers of the handshake.
 
     Attributes:
@@ -234,7 +234,9 @@ class Student:
         assert self._data is not None
         with suppress(TimeoutError, ConnectionClosed):
             while True:
-                message = json.loads(self._data.recv(timeout=0))
+                raw = self._data.recv(timeout=0)
+                self.received += len(raw)
+                message = json.loads(raw)
                 if message["is"] == "lesson":
                     self.lesson = message
                 elif message["is"] == "state":

@@ -161,7 +161,7 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
 
 @pytest.fixture
 def tab(server: LabServer) -> Iterator[Tab]:
-    with Tab(f"ws://127.0.0.1:{server.server.get_port()}") as tab:
+    with Tab(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as tab:
         tab.open()
         tab.read(lambda: tab.moving > 10)
         yield tab
@@ -194,5 +194,5 @@ def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
     paused = tab.rate(clock, 2.0)
     assert paused < min(PAUSED, 0.05 * running)
     before = tab.moving
-    tab.set("Step", "Step")
+    tab.tell({"do": "StepOnce"})
     tab.read(lambda: tab.moving > before)
