@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from typing import Any
@@ -17,6 +18,7 @@ from tests.support.site import Site
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
+RECONNECTION = 0.5  # [s] between the tries of a page that has lost its server, about
 KEYS = "k7mf2xqa9tzr", "k7mf2xqa9tzs"
 CODES = [class_code_of(key) for key in KEYS]
 
@@ -50,6 +52,8 @@ def return_to(process: LabProcess, running: Running, place: str) -> None:
             student.read(lambda: student.code)
             served = running.site.serving() is process
         quiet(running)
+        if not served:
+            time.sleep(RECONNECTION)
         return served
 
     wait_for(is_back, 60.0)
