@@ -382,7 +382,7 @@ side-left = links
 side-right = rechts
 side-title = { $law }, { $side }
 
-law-trajectory_tracking-label = Folgeregelung
+law-trajectory_tracking-label = Nachlaufregelung
 law-trajectory_tracking-text = Folgt einem Punkt, der nach der Uhr auf der Kurve läuft, was der Roboter auch tut.
 law-trajectory_tracking-good = Sie ist pünktlich: Auch nach einem Hindernis ist sie wieder dort, wo die Uhr sie haben will.
 law-trajectory_tracking-limits = Festgehalten wartet sie nicht: Losgelassen verlässt sie die Kurve, um aufzuholen.
@@ -442,7 +442,7 @@ law-time_optimal_following-text = Bahnfolge mit dem Tempo, das an jeder Stelle s
 law-time_optimal_following-good = Sie geht so schnell, wie die Grenzen der Drehmomente zulassen, und bleibt festgehalten und losgelassen nahe an der Kurve.
 law-time_optimal_following-limits = Sie ist so gut wie ihr Modell: Mit einer Nutzlast, die sie nicht kennt, erreichen ihre Drehmomente die Grenzen.
 law-time_optimal_following-objection = Ein Tempo, das allein vom Ort abhängt, nutzt kein Drehmoment, das eine Störung übrig lässt.
-law-time_optimal_tracking-label = Zeitoptimale Folgeregelung
+law-time_optimal_tracking-label = Zeitoptimale Nachlaufregelung
 law-time_optimal_tracking-text = Folgt einem Punkt, der so schnell auf der Kurve läuft, wie die Grenzen der Drehmomente zulassen.
 law-time_optimal_tracking-good = Innerhalb ihrer Drehmomente ist sie überall auf der Kurve, mit dem schnellsten Tempo, das sie zulassen.
 law-time_optimal_tracking-limits = Festgehalten verlässt sie die Kurve wie jedes Gesetz mit einer Uhr, und was sie dann verlangt, liegt jenseits ihrer Grenzen.
@@ -873,7 +873,7 @@ glossary-lesson = (Lektion { $number })
 help-close = Schließen
 help-text =
     Drücke **Beide festhalten** und sieh zu: Der linke Roboter (orange) wird mit der
-    Folgeregelung von der Bahn gerissen, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau)
+    Nachlaufregelung von der Bahn gerissen, denn sein Punkt läuft nach der Uhr weiter. Der rechte (blau)
     wartet mit der Bahnfolgeregelung auf der Bahn und geht weiter, wenn du loslässt.
 
     - **Fasse eine Spitze** und ziehe daran. Mit *Für beide* geht die andere denselben Weg.
