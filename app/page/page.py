@@ -28,7 +28,7 @@ from onpath.app.page.panels.widgets import Post
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
 from onpath.app.page.state_message import state_message
-from onpath.app.page.step_controls import Build, StepControls, StepPlot
+from onpath.app.page.step_controls import Build, StepControls
 from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.page.strip_words import strip_words
 from onpath.app.scene.mouse import SceneCallbacks
@@ -191,7 +191,6 @@ class Page:
             is_narrow=bool(self._narrow),
         )
         self._parts: list[Part] = []
-        self._step_plot: StepPlot | None = None
         self._client.gui.add_html(
             render(
                 "panel/page.html",
@@ -249,7 +248,6 @@ class Page:
         else:
             with tabs.add_tab(words("show.title"), viser.Icon.EYE):
                 self._parts.append(controls.show())
-        self._build_step_plot(controls, first, words)
 
     def _step_controls(
         self,
@@ -277,19 +275,6 @@ class Page:
         lesson = next(iter(self._context.course.lessons), "")
         self._narration.first_minute = FirstMinute(self._client, lesson)
         self._parts.append(self._narration.first_minute)
-
-    def _build_step_plot(self, controls: PanelFactory, first: PageSnapshot, words: Words) -> None:
-        """Build the window with the plot of a lesson's step."""
-        self._step_plot = StepPlot(
-            gui=self._client.gui,
-            words=words,
-            course=self._context.course,
-            build=controls.plot_of_step,
-            change=self._rebuilds.change,
-            first=first,
-            on_change=self.reset_view,
-        )
-        self._parts.append(self._step_plot)
 
     def _controls(self, words: Words, post: Post) -> PanelFactory:
         return PanelFactory(
@@ -373,10 +358,9 @@ class Page:
             self._scene.frame_camera(self._insets(width, height))
 
     def _insets(self, width: float, height: float) -> Insets:
-        """What covers the canvas: our titles, and the window with a step's plot."""
+        """What covers the canvas: our titles, and the lenses."""
         top = min(TITLES, MOST_TITLES * height)
-        below = 0.0 if self._step_plot is None else self._step_plot.share * height
-        return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top, bottom=below)
+        return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top)
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

@@ -27,7 +27,7 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
-from onpath.app.page.plots import MORE, PHASE, MorePlots, add_plot
+from onpath.app.page.plots import MORE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
@@ -101,13 +101,9 @@ class PanelFactory:
         on_press(self._gui.add_button(text, color="gray", icon=icon), self._reset_view)
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the controls of a lesson's step, and its plots without a window."""
-        parts = self.listed_by_step(scene, first)
-        return parts if has_window(scene) else parts + self.plot_of_step(scene, first)
-
-    def listed_by_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the controls listed by a lesson's step."""
-        return self._add_sliders(scene, first) + self._add_others(scene, first)
+        """Build the controls of a lesson's step, with its plots in sight below the sliders."""
+        sliders, plots = self._add_sliders(scene, first), self._plots_of_step(scene, first)
+        return sliders + plots + self._add_others(scene, first)
 
     def _add_sliders(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         names = _sliders(scene, first)
@@ -122,18 +118,10 @@ class PanelFactory:
             part for name in names if name not in IN_STRIP for part in self._add(name, first, True)
         ]
 
-    def plot_of_step(self, scene: StepSetup, first: PageSnapshot, height: int = 200) -> list[Part]:
-        """Build the plots of a lesson's step, if it has any.
-
-        Args:
-            height: of the plots over time, [px].
-        """
+    def _plots_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         fields, large = first.key.fields, first.key.presenting
         plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        return [
-            add_plot(self._gui, self._words, fields, plot, height=height, large=large)
-            for plot in plots
-        ]
+        return [add_plot(self._gui, self._words, fields, plot, large=large) for plot in plots]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""
@@ -220,11 +208,6 @@ class PanelFactory:
             hint=self._words("controls.copy_hint"),
         )
         on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
-
-
-def has_window(scene: StepSetup) -> bool:
-    """Whether a lesson's step has a plot window over the scene: for a single plot over time."""
-    return len(scene.plots) == 1 and MORE[scene.plots[0]] is not PHASE
 
 
 def _sliders(scene: StepSetup, first: PageSnapshot) -> list[str]:

@@ -136,7 +136,6 @@ class Insets:
     left: float = 0.0
     right: float = 0.0
     top: float = 0.0
-    bottom: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,10 +167,10 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
     free_x = max(width - insets.left - insets.right, 0.2 * width) / width
-    free_y = max(height - insets.top - insets.bottom, 0.2 * height) / height
+    free_y = max(height - insets.top, 0.2 * height) / height
     distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
     aside = (insets.left - insets.right) / width * tan_x * distance
-    above = (insets.bottom - insets.top) / height * tan_y * distance
+    above = -insets.top / height * tan_y * distance
     above += HIGHER * max(tan_y * free_y * (distance - reach_z) - reach_y, 0.0)
     target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)

@@ -73,11 +73,9 @@ export class Voice {
         this.show()
     }
 
-    /** Cover the scene, but not the window with a step's plot. */
+    /** Cover the scene. */
     place(left: number, top: number, width: number, height: number): void {
-        const plot = document.querySelector(".mantine-Paper-root:has([data-step-plot])")?.getBoundingClientRect().top ?? Infinity
-        const box = { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${Math.min(height, plot - top)}px` }
-        Object.assign(this.element.style, box)
+        Object.assign(this.element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 
     private get lab(): LabState { return this.engine.lab! }

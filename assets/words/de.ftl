@@ -127,7 +127,6 @@ lesson-passed_best = Geschafft; dein bester Wert: { $best } { $unit }
 lesson-hint = Hinweis (noch { $left })
 lesson-this_step = Dieser Schritt
 lesson-controls = Einstellungen
-lesson-plot = Verlauf
 lesson-all_controls = Alle Einstellungen
 lesson-language = Sprache
 lesson-presenting = Vortrag: große Schrift

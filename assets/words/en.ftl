@@ -129,7 +129,6 @@ lesson-passed_best = Passed; your best: { $best } { $unit }
 lesson-hint = Hint ({ $left } left)
 lesson-this_step = This step
 lesson-controls = Controls
-lesson-plot = Plot
 lesson-all_controls = All controls
 lesson-language = Language
 lesson-presenting = Presentation: large type

@@ -113,12 +113,12 @@ def test_what_a_step_speaks_of_is_on_the_first_screen(tab: Tab) -> None:
 
 
 def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Tab) -> None:
-    plot = tab.page.locator(".mantine-Paper-root:has([data-step-plot]) .uplot canvas").first
+    plot = tab.page.locator(".uplot canvas").first
     take(tab, 0, "04-across-and-along")
     expect(plot).to_be_in_viewport(ratio=1)
     box = plot.bounding_box()
     assert box is not None
-    wait_for(lambda: all(tab.placed(name, tab.tip(name))[1] < box["y"] for name in SIDES))
+    wait_for(lambda: all(tab.placed(name, tab.tip(name))[0] < box["x"] for name in SIDES))
     expect(tab.page.get_by_role("heading").first).to_be_in_viewport()
     take(tab, 1)
     expect(plot).to_have_count(0)
@@ -134,7 +134,7 @@ def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting:
     tab.ask(c.SetPresenting(presenting))
     tab.wait_until_built()
     take(tab, 4, "03-the-five-bar")
-    names = tab.page.locator(".mantine-Paper-root:has([data-step-plot]) .u-legend tr")
+    names = tab.page.locator(".u-legend tr")
     expect(names.filter(has_text="u2")).to_have_count(2)
     for name in names.filter(has_text="u").all():
         expect(name).to_be_in_viewport(ratio=1)  # and within what may be scrolled
