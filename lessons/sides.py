@@ -79,5 +79,13 @@ def robot_names(laws: Mapping[str, str], words: Words) -> dict[RobotName, str]:
     }
 
 
+def displayed_names(laws: Mapping[str, str], words: Words, in_lesson: bool) -> dict[str, str]:
+    """Displayed name of each side: of its robot in a lesson, else of its law."""
+    if not in_lesson:
+        return side_titles(laws, words)
+    named = robot_names(laws, words)
+    return {side: named[ROLES[side]] for side in laws}
+
+
 def _all(laws: str | tuple[str, ...]) -> tuple[str, ...]:
     return (laws,) if isinstance(laws, str) else laws

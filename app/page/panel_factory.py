@@ -121,7 +121,17 @@ class PanelFactory:
     def _plots_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         fields, large = first.key.fields, first.key.presenting
         plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        return [add_plot(self._gui, self._words, fields, plot, large=large) for plot in plots]
+        return [
+            add_plot(
+                gui=self._gui,
+                words=self._words,
+                fields=fields,
+                plot=plot,
+                large=large,
+                in_lesson=True,
+            )
+            for plot in plots
+        ]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""
@@ -139,7 +149,13 @@ class PanelFactory:
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first, expanded),
             "gains": lambda: GainsPanel(gui, words, post, first),
-            "plots": lambda: MorePlots(gui, words, first.key.fields, post),
+            "plots": lambda: MorePlots(
+                gui=gui,
+                words=words,
+                fields=first.key.fields,
+                post=post,
+                in_lesson=first.key.in_lesson,
+            ),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "export": lambda: _silent(add_exports(gui, words, exporter)),
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),

@@ -17,7 +17,7 @@ from onpath.app.page.panels.phase_plot import PhasePlot
 from onpath.app.page.panels.widgets import Post, on_user_update
 from onpath.app.viser_adapter.containers import beside
 from onpath.app.viser_adapter.frame_channel import update_gui
-from onpath.lessons.sides import side_titles
+from onpath.lessons.sides import displayed_names
 from onpath.lessons.words import Words
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT
 from onpath.models.layout import Layout
@@ -120,6 +120,7 @@ class LivePlot:
         height: of the chart, [px]; less if its legend needs a second row.
         level_set: whether ξ₁ is an area, [m²], instead of a distance.
         large: whether it is shown with a projector.
+        in_lesson: whether its lines are named after the robots of a lesson, not after their laws.
     """
 
     def __init__(
@@ -131,8 +132,10 @@ class LivePlot:
         height: int,
         level_set: bool = False,
         large: bool = False,
+        in_lesson: bool = False,
     ) -> None:
         self._gui, self._words, self._has_xi = gui, words, plot.field in XI
+        self._in_lesson = in_lesson
         in_level_set = level_set and self._has_xi
         self._shown = -1.0
         # with a level set only the first line is drawn: the others have another unit
@@ -180,9 +183,10 @@ class LivePlot:
         former.remove()
 
     def _series(self) -> tuple[uplot.Series, ...]:
-        """Time and the lines of each side, named after its law."""
+        """Time and the lines of each side."""
         series = [uplot.Series(label=self._words("plots.time"))]
-        for side, title in side_titles(self._laws, self._words).items():
+        names = displayed_names(self._laws, self._words, self._in_lesson)
+        for side, title in names.items():
             for name, dash, mark in zip(self._names, LINES, MARKS, strict=False):
                 label = f"{title} {name} {mark}" if name else title
                 width = 4 if side == LEFT else 2  # so that one line stays visible under the other
@@ -230,10 +234,11 @@ def add_plot(
     height: int = 200,
     level_set: bool = False,
     large: bool = False,
+    in_lesson: bool = False,
 ) -> LivePlot | PhasePlot:
     """Add one of the selectable plots; see `LivePlot`."""
     if plot is PHASE:
-        return PhasePlot(gui, words)
+        return PhasePlot(gui, words, in_lesson)
     return LivePlot(
         gui=gui,
         words=words,
@@ -242,6 +247,7 @@ def add_plot(
         height=height,
         level_set=level_set,
         large=large,
+        in_lesson=in_lesson,
     )
 
 
@@ -250,10 +256,14 @@ class MorePlots:
 
     Args:
         post: receives a command that says whether the phase plane is shown.
+        in_lesson: see `LivePlot`.
     """
 
-    def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post) -> None:
+    def __init__(
+        self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post, in_lesson: bool
+    ) -> None:
         self._gui, self._words, self._fields = gui, words, fields
+        self._in_lesson = in_lesson
         self._plot: LivePlot | PhasePlot | None = None
         self._plots = _shown(fields, words)
         self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
@@ -276,7 +286,12 @@ class MorePlots:
             if chosen is not None:
                 with self._folder:
                     self._plot = add_plot(
-                        self._gui, self._words, self._fields, chosen, level_set=level_set
+                        gui=self._gui,
+                        words=self._words,
+                        fields=self._fields,
+                        plot=chosen,
+                        level_set=level_set,
+                        in_lesson=self._in_lesson,
                     )
         if self._plot is not None:
             self._plot.follow(snapshot)

@@ -8,7 +8,7 @@ from typing import Any
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.narration import Said
 from onpath.app.viser_adapter.data_channel import VERSION
-from onpath.lessons.sides import ROLES, law_text, robot_names, side_titles
+from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
@@ -26,8 +26,7 @@ def state_message(
     """
     words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
-    named = robot_names(laws, words)
-    names = {side: named[ROLES[side]] for side in laws} if snapshot.key.in_lesson else titles
+    names = displayed_names(laws, words, snapshot.key.in_lesson)
     return {
         "is": "state",
         "v": VERSION,

@@ -50,7 +50,7 @@ class Face {
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal)
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
-        this.titles = indices.map(() => made("h2", "title"))
+        this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))
         this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
@@ -127,12 +127,14 @@ class Face {
     private show(): void {
         const { engine, texts, transport } = this
         const { past } = engine.state
-        engine.texts.forEach(({ title, text, caption }, i) => {
-            tell(this.titles[i]!, title)
+        engine.texts.forEach(({ title, name, text, caption }, i) => {
+            const [robot, law] = this.titles[i]!.children as unknown as [HTMLElement, HTMLElement]
+            tell(robot, name)
+            tell(law, name === title ? "" : title)
             this.titles[i]!.title = text
             tell(this.captions[i]!, past === null ? caption : "")
-            this.readings[i]!.ariaLabel = title
-            tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, title)
+            this.readings[i]!.ariaLabel = name
+            tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, name)
         })
         this.undo.hidden = !engine.lab!.undo
         transport.element.hidden = !engine.lab!.own

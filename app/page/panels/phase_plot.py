@@ -10,7 +10,7 @@ import viser
 from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.lessons.sides import side_titles
+from onpath.lessons.sides import displayed_names
 from onpath.lessons.words import Words
 from onpath.models.systems.law_parameters import LEVEL_SET
 
@@ -21,10 +21,14 @@ STEPS = (1, 2, 5, 10)  # of the ranges, times a power of ten
 
 
 class PhasePlot:
-    """One picture, redrawn when the displayed time changes."""
+    """One picture, redrawn when the displayed time changes.
 
-    def __init__(self, gui: viser.GuiApi, words: Words) -> None:
-        self._words, self._shown = words, (-1.0, "")
+    Args:
+        in_lesson: whether its lines are named after the robots of a lesson, not after their laws.
+    """
+
+    def __init__(self, gui: viser.GuiApi, words: Words, in_lesson: bool) -> None:
+        self._words, self._in_lesson, self._shown = words, in_lesson, (-1.0, "")
         self._handle = gui.add_html(phase_picture(np.zeros((0, 2, 2)), {}, words))
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -34,7 +38,8 @@ class PhasePlot:
         if shown == self._shown:
             return
         self._shown = shown
-        content = phase_picture(snapshot.phase, snapshot.laws, self._words, level_set)
+        names = displayed_names(snapshot.laws, self._words, self._in_lesson)
+        content = phase_picture(snapshot.phase, names, self._words, level_set)
         self._handle.content = content
 
     def remove(self) -> None:
@@ -43,13 +48,13 @@ class PhasePlot:
 
 
 def phase_picture(
-    phase: np.ndarray, laws: dict[str, str], words: Words, level_set: bool = False
+    phase: np.ndarray, names: dict[str, str], words: Words, level_set: bool = False
 ) -> str:
     """The phase plane as SVG.
 
     Args:
         phase: see `PageSnapshot.phase`.
-        laws: control law of each side.
+        names: displayed name of each side.
         level_set: whether ξ₁ is an area, [m²], instead of a distance.
     """
     values = phase.astype(float) * (1e6 if level_set else 1e3)
@@ -69,7 +74,7 @@ def phase_picture(
             "points": " ".join(f"{x:.1f},{y:.1f}" for x, y in places[:, i]),
             "now": places[-1, i].round(1).tolist() if len(places) else None,
         }
-        for i, (side, title) in enumerate(side_titles(laws, words).items())
+        for i, (side, title) in enumerate(names.items())
     ]
     unit = "-level_set" if level_set else ""
     return render(

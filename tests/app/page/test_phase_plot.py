@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from onpath.app.page.panels.phase_plot import HEIGHT, WIDTH, phase_picture
+from onpath.lessons.sides import side_titles
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.sides import DEFAULT_LAWS
 
+NAMES = side_titles(DEFAULT_LAWS, ENGLISH)
 values = st.floats(-0.5, 0.5) | st.just(float("nan"))
 
 
@@ -27,7 +29,7 @@ def drawn(picture: str) -> list[np.ndarray]:
 
 @given(arrays(float, st.tuples(st.integers(0, 20), st.just(2), st.just(2)), elements=values))
 def test_all_of_it_is_within_the_frame(phase: np.ndarray) -> None:
-    lines = drawn(phase_picture(phase, DEFAULT_LAWS, ENGLISH))
+    lines = drawn(phase_picture(phase, NAMES, ENGLISH))
     assert len(lines) == 2
     for i, line in enumerate(lines):
         assert line.shape == phase[:, i].shape
@@ -41,7 +43,7 @@ def test_all_of_it_is_within_the_frame(phase: np.ndarray) -> None:
 def test_its_ranges_are_round_and_its_lines_named() -> None:
     phase = np.zeros((2, 2, 2))
     phase[1, 1] = 0.0107, 0.585
-    picture = phase_picture(phase, DEFAULT_LAWS, ENGLISH)
+    picture = phase_picture(phase, NAMES, ENGLISH)
     assert "ξ₁ [mm] 20" in picture and "ξ₂ [mm/s] 1000" in picture
     assert "Path following" in picture and "Trajectory tracking" in picture
-    assert "mm²" in phase_picture(phase, DEFAULT_LAWS, ENGLISH, level_set=True)
+    assert "mm²" in phase_picture(phase, NAMES, ENGLISH, level_set=True)
