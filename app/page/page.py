@@ -46,7 +46,7 @@ from onpath.models.systems.robots import Robot
 
 SETTLING = 30  # slow updates after the page is built
 STANDS = 5  # of them, until the panel can be folded
-CONTROL_WIDTH = 330  # [px]
+CONTROL_WIDTH, LARGE_WIDTH = 330, 560  # [px], the latter for a plot on a projector
 TITLES = 44.0  # [px], of the scene, that the titles of the robots take
 MOST_TITLES = 0.1  # of its height
 ASIDE = 0.025  # of the scene's width, for the brakes, which stick out of the robots' boxes
@@ -176,7 +176,7 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
         self._built, self._step = self._key(first), None
-        self._lay_out(self._is_folded(first))
+        self._lay_out(first)
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
         self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
@@ -303,20 +303,17 @@ class Page:
         """Build the buttons for language, display and help."""
         PageMenus(self._client.gui, words, post, first=first, preferences=self._preferences)
 
-    def _lay_out(self, folded: bool) -> None:
-        """Put the panel beside the scene unless the window is narrow: it is below it then.
-
-        Args:
-            folded: whether only its bar is left.
-        """
-        panel = self._client.gui.main_panel
-        if self._narrow is not False and not self._wanted_narrow:
-            panel.dock_right()
-            panel.set_width(CONTROL_WIDTH)
+    def _lay_out(self, first: PageSnapshot) -> None:
+        """Put the panel beside the scene unless the window is narrow: it is below it then."""
+        panel, folds = self._client.gui.main_panel, self._is_folded(first)
+        if not self._wanted_narrow:
+            if self._narrow is not False:
+                panel.dock_right()
+            panel.set_width(LARGE_WIDTH if folds else CONTROL_WIDTH)
         self._narrow = self._wanted_narrow
         if self._folded:
             panel.expand()
-        self._folded, self._wants_folded = False, folded
+        self._folded, self._wants_folded = False, folds
 
     def _follow_fold(self) -> None:
         """Fold the panel, or show it, once the page's script has read in it what it needs.
@@ -324,7 +321,9 @@ class Page:
         It then stays until another step is opened, unless the user does otherwise. A folded panel
         is not in the document; see panel/page.html.
         """
-        folds = self._wants_folded or (self._step is not None and self._step.is_empty)
+        folds = self._wants_folded
+        if (step := self._step) is not None:
+            folds = step.is_empty or (folds and not step.has_plots)
         stands = self.has_script and self._settling < SETTLING - STANDS
         if folds != self._folded and stands:
             self._folded = folds

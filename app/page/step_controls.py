@@ -24,7 +24,8 @@ class StepControls:
         change: changes widgets in another thread; see `RebuildThread.change`.
 
     Attributes:
-        is_empty: whether the open step has neither controls nor plots.
+        has_plots: whether the open step has plots.
+        is_empty: whether it has neither plots nor controls.
     """
 
     def __init__(
@@ -58,7 +59,8 @@ class StepControls:
             self._folder.remove()
             self._folder = None
         self._scene = scene
-        self.is_empty = not scene.plots and not set(scene.controls) - set(IN_STRIP)
+        self.has_plots = bool(scene.plots)
+        self.is_empty = not self.has_plots and not set(scene.controls) - set(IN_STRIP)
         with self._tab:
             self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:
