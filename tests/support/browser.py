@@ -182,7 +182,8 @@ class Tab:
         camera = self.client.camera
         box = self._canvas()
         shape = camera.image_width / camera.image_height
-        same = abs(shape * box["height"] - box["width"]) < 10
+        off = camera.image_width * box["height"] - camera.image_height * box["width"]
+        same = abs(off) <= max(box["width"], box["height"])  # the browser rounds to whole pixels
         feed = self.view
         return same and isinstance(feed, LabFeed) and abs(feed.page._framed - shape) < 0.02 * shape
 
