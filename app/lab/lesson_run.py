@@ -311,7 +311,7 @@ class LessonRun(LessonState):
 
 
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
-    """Set the lab up for a step, but keep the magnification of the drawn deflection."""
+    """Set the lab up for a step."""
     lab.set_up(setup_of(lesson, index))
     lab.session.editor.select(None)
 
