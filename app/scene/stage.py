@@ -161,17 +161,19 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     up = np.array([-sa * se, ca * se, ce])
     corners = stage.corners
     centre = (corners.min(0) + corners.max(0)) / 2
-    reach_x, reach_y, reach_z = np.abs((corners - centre) @ np.stack([right, up, forward], 1)).max(
-        0
-    )
+    x, y, z = ((corners - centre) @ np.stack([right, up, forward], 1)).T
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
-    free_x = max(width - insets.left - insets.right, 0.2 * width) / width
-    free_y = max(height - insets.top, 0.2 * height) / height
-    distance = reach_z + max(reach_x / (tan_x * free_x), reach_y / (tan_y * free_y))
-    aside = (insets.left - insets.right) / width * tan_x * distance
-    above = -insets.top / height * tan_y * distance
-    above += HIGHER * max(tan_y * free_y * (distance - reach_z) - reach_y, 0.0)
+    # tangents of the angles to the margins, and of half the angle between them
+    left, side = tan_x * (1 - 2 * insets.left / width), tan_x * (1 - 2 * insets.right / width)
+    top, bottom = tan_y * (1 - 2 * insets.top / height), tan_y
+    half_x, half_y = (max(left + side, 0.4 * tan_x) / 2, max(top + bottom, 0.4 * tan_y) / 2)
+    # each corner is between the margins if the camera, moved aside, is as far away as this
+    least = (-x - left * z) / half_x, (x - side * z) / half_x, (-y - bottom * z) / half_y
+    distance = float(np.max([*least, (y - top * z) / half_y]))
+    aside, above = (side - left) / 2 * distance, (top - bottom) / 2 * distance
+    room = np.min(top * (distance + z) - y - above)
+    above += HIGHER * max(room, 0.0)
     target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)
 
