@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,7 +57,8 @@ class Stage:
 
     Attributes:
         bases: origins of the robots' frames in the world, [m], by side.
-        low, high: opposite corners of the box that the camera shows of a robot, shape (3,).
+        low, high: opposite corners of a box about a robot, shape (3,).
+        outline: points that the camera shows of a robot, shape (k, 3).
         floor: height of the floor, negative.
         elevation, azimuth: angles of the camera above the horizontal and to the right, [rad].
         path_plane: plane of the path, in which control points are dragged; its point is the home of
@@ -82,6 +82,7 @@ class Stage:
     bases: dict[str, np.ndarray]
     low: np.ndarray
     high: np.ndarray
+    outline: np.ndarray
     floor: float
     elevation: float
     azimuth: float
@@ -124,9 +125,8 @@ class Stage:
 
     @property
     def corners(self) -> np.ndarray:
-        """Corners of all robots' boxes in the world, shape (8 k, 3), [m]."""
-        box = np.array(list(product(*np.stack([self.low, self.high], axis=1))))
-        return (self.origins[:, None] + box).reshape(-1, 3)
+        """The outlines of all robots in the world, shape (k, 3), [m]."""
+        return (self.origins[:, None] + self.outline).reshape(-1, 3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,9 +159,10 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     right = np.array([ca, sa, 0.0])
     forward = np.array([-sa * ce, ca * ce, -se])
     up = np.array([-sa * se, ca * se, ce])
-    corners = stage.corners
-    centre = (corners.min(0) + corners.max(0)) / 2
-    x, y, z = ((corners - centre) @ np.stack([right, up, forward], 1)).T
+    seen = stage.corners @ np.stack([right, up, forward], 1)
+    middle = (seen.min(0) + seen.max(0)) / 2
+    centre = middle @ np.stack([right, up, forward])
+    x, y, z = (seen - middle).T
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
     # tangents of the angles to the margins, and of half the angle between them

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import product
 
 import casadi as ca
 import numpy as np
@@ -48,6 +49,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
         bases=_side_by_side(apart, drawing.azimuth),
         low=low,
         high=high,
+        outline=_outline(robot, low, high, _parts(drawing, floor, tones, shapes)),
         floor=floor,
         elevation=drawing.elevation,
         azimuth=drawing.azimuth,
@@ -88,14 +90,37 @@ def _axes(robot: Robot) -> tuple[Array, Array, Array]:
     return origin, right - origin, up - origin
 
 
-def _box(robot: Robot) -> tuple[Array, Array]:
-    """Corners of a box around the base pivot and the bars while the end-point is on a path."""
+def _outline(robot: Robot, low: Array, high: Array, fixed: Parts) -> Array:
+    """Points about a robot within its box, (k, 3); the corners of the box if seen from in front.
+
+    Seen from aside, much of a long box is empty, and the camera would stay too far away.
+
+    Args:
+        fixed: its fixed parts.
+    """
+    corners = np.array(list(product(*np.stack([low, high], axis=1))))
+    if not robot.drawing.azimuth or robot.chain is not None:
+        return corners
+    bars, _ = _bars(robot)
+    margins = np.array(list(product((-ASIDE, ASIDE), repeat=3)))
+    near = (bars[:, None] + margins).reshape(-1, 3)
+    return np.clip(np.vstack([near, *(mesh.vertices for _, mesh, _ in fixed)]), low, high)
+
+
+def _bars(robot: Robot) -> tuple[Array, Array]:
+    """Ends of the bars, shape (k, 3), [m], while the end-point is on a path, and configurations."""
     side = np.linspace(-LARGEST_PATH, LARGEST_PATH, 5)
     z = np.stack(np.meshgrid(side, side), axis=-1).reshape(-1, 2)
     q = robot.rest(robot.frame.lift(z[robot.margin(z) >= LEAST_MARGIN]))
     symbols = ca.SX.sym("q", robot.system.n)
     bars = ca.Function("bars", [symbols], [ca.densify(robot.skeleton(symbols, ca.SX(1))[0])])
-    points = np.vstack([bars(joints).full().T for joints in q] + [np.zeros((1, 3))])
+    return np.vstack([bars(joints).full().T for joints in q]), q
+
+
+def _box(robot: Robot) -> tuple[Array, Array]:
+    """Corners of a box around the base pivot and the bars while the end-point is on a path."""
+    bars, q = _bars(robot)
+    points = np.vstack([bars, np.zeros((1, 3))])
     if robot.chain is not None:
         points = np.vstack([points, body_meshes(robot.chain).corners(robot.chain, q)])
     low, high = points.min(axis=0), points.max(axis=0)
