@@ -18,8 +18,10 @@ export class Kernels {
         private readonly memory: WebAssembly.Memory,
     ) {}
 
+    /** From a module, compressed by gzip, in base64. */
     static async from(text: string): Promise<Kernels> {
-        const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
+        const packed = new Blob([Uint8Array.from(atob(text), letter => letter.charCodeAt(0))])
+        const bytes = await new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer()
         const memory = new WebAssembly.Memory({ initial: PAGES })
         const { instance } = await WebAssembly.instantiate(bytes, {
             Math: { memory, ...mathematics },

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.thorough
 
 COURSE, _ = built_in_course()
 WIDE = """() => {
-    for (const fold of document.querySelectorAll("details")) fold.open = true
+    for (const fold of document.querySelectorAll("#op-column details")) fold.open = true
     return new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done(
         [...document.querySelectorAll("math")]
             .filter((each) => each.scrollWidth > each.clientWidth + 1)
@@ -39,8 +39,10 @@ def test_every_equation_is_seen_at_once(
     for index, step in enumerate(COURSE.lesson(lesson, "en").steps):
         tab.ask(TakeStep(lesson, index), c.SetRunning(False))
         tab.page.get_by_role("heading", name=step.title, exact=True).wait_for()
-        read = tab.button("Read on without it")
         if step.kind == "run":
+            if tab.lab.lessons.waits:
+                tab.press("Skip the prediction")
+            read = tab.button("Read on without it")
             read.click()
             read.wait_for(state="hidden")
         wait_for(tab.is_built)

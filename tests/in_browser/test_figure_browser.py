@@ -444,12 +444,13 @@ def test_inside_an_iframe_of_a_web_server_s_page(browser: Browser, tmp_path: Pat
 
 @pytest.fixture
 def phone(browser: Browser, tmp_path: Path) -> Iterator[Page]:
-    """A paused figure on a phone."""
+    """A figure on a phone, paused where it begins."""
     context = browser.new_context(viewport={"width": 390, "height": 600}, has_touch=True)
     page = context.new_page()
     page.goto(written(tmp_path).as_uri())
     wait_for(lambda: page.evaluate("'onpath' in window"), WAIT)
     page.get_by_role("button", name="Pause").click()
+    page.get_by_role("button", name="Reset").click()
     page.evaluate("scrollTo(0, 0)")
     page.evaluate(THREE_FRAMES)
     yield page
@@ -477,7 +478,7 @@ def test_a_tip_is_dragged_with_a_finger_and_the_page_still_scrolls(phone: Page) 
         return [pulled, phone.evaluate("scrollY > 0")]
 
     x, y = tip_on(phone)
-    beside = 20  # a place for a finger is at least 44 px wide
+    beside = -20  # a place for a finger is at least 44 px wide; the picture ends on the right
     assert swiped(x + beside, y) == [True, False]
     assert not phone.evaluate(IS_PULLED)
     box = phone.locator("canvas").first.bounding_box()

@@ -44,7 +44,7 @@ CASES = [
     *(("five_bar", law, {}) for law in laws_for() if law not in NAMES),
     ("five_bar", TYPED, {}),
     ("flexible", "path_following", {"law": "composite", "modes": 2}),
-    ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 1.0}),
+    ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 0.002}),
 ]
 QUICK = [
     ("five_bar", "path_following", {}),
@@ -55,7 +55,7 @@ KINDS: list[dict[str, Any]] = [
     {"encoder_counts": 4000, "coulomb": 0.01},
     {"torque_limit": 0.5, "control_rate": 200},
     {"across": "level_set"},
-    {"delay": 0.5, "sensor_noise": 0.1},
+    {"delay": 0.5, "sensor_noise": 0.001},
     {"stiction": 0.02, "torque_step": 0.01},
 ]
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import math
 from base64 import b64encode
 from typing import Any
@@ -79,7 +80,7 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
             "behaviours": BEHAVIOURS,
         },
         "edit": _EDIT,
-        "module": b64encode(figure_module(figure)).decode(),
+        "module": b64encode(gzip.compress(figure_module(figure), mtime=0)).decode(),
     }
 
 
