@@ -64,7 +64,7 @@ export function drawShapes(ink: CanvasRenderingContext2D, shapes: Shape[], pixel
     for (const { kind, way } of shapes) {
         const at = way.map(pixel)
         if (kind === "ring") trace(ink, circle(at[0]!, 12), colour)
-        else if (kind === "line") trace(ink, at.length > 1 && size(at) < 3 ? circle(at[0]!, 4) : at, colour)
+        else if (kind === "line") trace(ink, at.length && size(at) < 3 ? circle(at[0]!, 4) : at, colour)
         else if (kind === "arrow") for (const part of arrowhead(at[0]!, at[1]!)) trace(ink, part, colour)
         else trace(ink, kind === "spring" ? coil(at[0]!, at[1]!) : piston(at[0]!, at[1]!), colour)
     }
