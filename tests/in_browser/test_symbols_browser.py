@@ -1,4 +1,4 @@
-"""In the lab, whoever points at a symbol of a lesson's text, or chooses it by keys, sees it on the robots."""
+"""In the lab, a symbol of a lesson's text is lit on the robots by pointing at it, and by keys."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ from tests.support.browser import Tab, wait_for
 pytestmark = pytest.mark.thorough
 LESSON = "04-across-and-along"
 SHOWN = """() => {
-    const canvas = document.querySelector("#op-stage .lit-up"), { x, y, width } = canvas.getBoundingClientRect()
+    const canvas = document.querySelector("#op-stage .lit-up"), found = []
+    const { x, y, width } = canvas.getBoundingClientRect()
     if (!canvas.width || !canvas.height) return []
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
-    const zoom = width / canvas.width, found = []
-    for (let i = 3; i < data.length; i += 4)
-        if (data[i] > 200) found.push([x + zoom * ((i >> 2) % canvas.width), y + zoom * Math.floor((i >> 2) / canvas.width)])
+    const zoom = width / canvas.width
+    for (let i = 0; i < data.length / 4; i++) {
+        const [across, down] = [i % canvas.width, Math.floor(i / canvas.width)]
+        if (data[4 * i + 3] > 200) found.push([x + zoom * across, y + zoom * down])
+    }
     return found
 }"""
 """Places in the window where something is drawn over the robots, [px]."""
