@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 import viser
 
 from onpath.app.common.palette import AZURE
@@ -33,6 +32,7 @@ from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.page.strip_words import strip_words
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
+from onpath.app.scene.projection import seen_by
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import NARROW, Insets
 from onpath.app.scene.stage_catalogue import stage_of
@@ -121,14 +121,11 @@ class Page:
 
     def state(self, snapshot: PageSnapshot) -> dict[str, Any]:
         """What the data channel tells of the snapshot that is shown; see `state_message`."""
-        camera, origins = self._client.camera, self._scene.stage.origins
-        distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
         return state_message(
             snapshot,
             captions=self._scene.captions.shown,
             said=self._narration.said,
-            height=float(2 * distance * np.tan(camera.fov / 2)),
-            apart=float(np.linalg.norm(np.ptp(origins, axis=0))),
+            seen=seen_by(self._client.camera, self._scene.stage, self._robot),
         )
 
     def settle(self) -> None:
@@ -179,6 +176,7 @@ class Page:
         self._lay_out(first)
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)
+        self._robot = robot
         self._scene = Scene(self._client, stage, _hooks(post, robot), words, titled=False)
         self._scene.build(first)
         one_at_a_time.rest()

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.narration import Said
+from onpath.app.scene.projection import Seen
 from onpath.app.viser_adapter.data_channel import VERSION
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
@@ -14,15 +17,14 @@ from onpath.models.control.laws.registry import law_named
 
 
 def state_message(
-    snapshot: PageSnapshot, captions: Mapping[str, str], said: Said, height: float, apart: float
+    snapshot: PageSnapshot, captions: Mapping[str, str], said: Said, seen: Seen
 ) -> dict[str, Any]:
     """The message of a lab's state, in the page's language; see app/viser_adapter/README.md.
 
     Args:
         captions: of the robots, by side; see `app.scene.captions.Captions`.
         said: what the page says.
-        height: that the canvas shows, see `Page.seen_height`, [m].
-        apart: distance between the robots in the picture, [m].
+        seen: how the picture shows the robots.
     """
     words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
@@ -47,7 +49,9 @@ def state_message(
         "level": snapshot.message_level if snapshot.message else "",
         "said": said,
         "presenting": snapshot.key.presenting,
-        "height": round(height, 3),
-        "apart": round(apart, 3),
+        "height": round(seen.height, 3),
+        "apart": round(seen.apart, 3),
+        "cameras": np.round(seen.cameras, 5).tolist(),
+        "arrow": seen.arrow,
         "own": not snapshot.key.student,
     }

@@ -2,6 +2,7 @@
 // The messages are described in app/viser_adapter/README.md.
 
 import type { LessonMessage, MeasuredMessage } from "./column"
+import type { Projection } from "./lit"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "./engine"
 
 const PROTOCOL = "onpath-1"
@@ -75,6 +76,10 @@ export interface LabState {
     said: Said
     height: number
     apart: number
+    /** How the picture shows the robots. */
+    cameras: Projection[]
+    /** Length of the arrow of a force [m/N]. */
+    arrow: number
 }
 
 interface Refusal { is: "refused"; why: string }

@@ -90,7 +90,8 @@ export class Column implements Robots {
     private view: StepView | null = null
     private tasks: Task[] = []
 
-    constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean, ended: AbortSignal) {
+    constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
+        light: (symbol: string) => void, ended: AbortSignal) {
         this.student = new RemoteStudent(engine)
         this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
         this.element.id = "op-column"
@@ -98,7 +99,7 @@ export class Column implements Robots {
         this.pager.ariaLabel = said(texts, "lesson.lessons")
         this.live.setAttribute("role", "status")
         this.element.append(this.live)
-        this.legend = new Legend(this.page, () => {})
+        this.legend = new Legend(this.page, light, ended)
         this.element.addEventListener("click", event => this.press(event))
         addEventListener("keydown", event => this.key(event), { signal: ended })
         addEventListener("resize", () => this.view?.formulas(), { signal: ended })
@@ -157,6 +158,7 @@ export class Column implements Robots {
 
     private leave(place: string): void {
         this.place = place
+        this.legend.clear()
         this.element.classList.remove("turned")
         this.view = null
         this.tasks = []

@@ -7,6 +7,7 @@ import { made, tell } from "./controls"
 import { shown } from "./engine"
 import { retone } from "./ink"
 import { Lens } from "./lens"
+import { Overlay } from "./lit"
 import { Strip } from "./strip"
 import { Transport } from "./transport"
 import { Voice } from "./voice"
@@ -25,6 +26,7 @@ class Face {
     private readonly ended = new AbortController()
     private readonly strip: Strip
     private readonly lenses: Lens[]
+    private readonly overlay: Overlay
     private readonly titles: HTMLElement[]
     private readonly captions: HTMLElement[]
     private readonly numbers: HTMLElement[]
@@ -50,6 +52,7 @@ class Face {
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal)
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
+        this.overlay = new Overlay(engine, signal)
         this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))
@@ -59,14 +62,14 @@ class Face {
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
         this.sides = indices.map(i => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))
-        this.stage = made("div", "", made("h1", "op-unseen", "OnPath"), ...this.sides)
+        this.stage = made("div", "", made("h1", "op-unseen", "OnPath"), this.overlay.element, ...this.sides)
         this.stage.id = "op-stage"
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo)
         const title = made("h2", "", said(texts, "chart.title"))
         const head = made("div", "head", title, this.clock, this.lost, this.transport.element)
-        this.column = new Column(texts, engine, () => !UPRIGHT.matches, signal)
+        this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
@@ -143,6 +146,11 @@ class Face {
         this.read = 0
     }
 
+    /** Show on the robots and in the lenses what a symbol means. */
+    private light(symbol: string): void {
+        for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
+    }
+
     /** Give each robot's half of the stage the width that the robot has in the picture. */
     private spread(apart: number): void {
         if (Math.abs(apart - this.apart) < 1) return
@@ -160,6 +168,7 @@ class Face {
         if (this.ended.signal.aborted) return
         const { engine, strip, lenses, texts } = this
         strip.draw(now)
+        this.overlay.draw()
         for (const lens of lenses) {
             lens.scale = this.height / engine.lab!.height / lens.sheet.zoom || lens.scale
             lens.draw(now)

@@ -11,9 +11,9 @@ export class Legend {
     private readonly meaning = made("p", "meaning")
 
     /** `light` shows a symbol on the robots; none if it is empty. */
-    constructor(private readonly page: PageData, private readonly light: (symbol: string) => void) {
+    constructor(private readonly page: PageData, private readonly light: (symbol: string) => void, ended?: AbortSignal) {
         this.meaning.setAttribute("aria-hidden", "true") // the list says it
-        document.addEventListener("pointerdown", event => this.show(nameAt(event)))
+        document.addEventListener("pointerdown", event => this.show(nameAt(event)), ended ? { signal: ended } : {})
     }
 
     /** Let the symbols of a step be shown, and list them below its text. */
@@ -26,6 +26,11 @@ export class Legend {
         const entries = names.map(name => made("li", "", this.button(words, name)))
         const summary = made("summary", "", said(this.page, "site.symbols"))
         words.append(made("details", "symbols script-only", summary, made("ul", "", ...entries)))
+    }
+
+    /** Show no symbol: the step is left. */
+    clear(): void {
+        this.show("")
     }
 
     private button(words: HTMLElement, name: string): HTMLElement {

@@ -26,8 +26,7 @@ type View = readonly [Vector, Vector]
 
 export class Lens {
     readonly element: HTMLElement
-    /** The symbol that is shown; may be empty. */
-    lit = ""
+    private symbol = ""
     /** Pixels of the picture around the lens for a metre, of which factors are multiples. */
     scale = 1000
     readonly sheet: Sheet
@@ -46,6 +45,13 @@ export class Lens {
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
         engine.on(() => (this.stale = true), ended)
         this.read(shown(engine).sides[side]!)
+    }
+
+    /** The symbol that is shown; may be empty. */
+    get lit(): string { return this.symbol }
+    set lit(symbol: string) {
+        this.symbol = symbol
+        this.stale = true
     }
 
     draw(now = performance.now()): void {

@@ -64,7 +64,7 @@ export function drawShapes(ink: CanvasRenderingContext2D, shapes: Shape[], pixel
     for (const { kind, way } of shapes) {
         const at = way.map(pixel)
         if (kind === "ring") trace(ink, circle(at[0]!, 12), colour)
-        else if (kind === "line") trace(ink, at.length > 1 && size(at) < 3 ? circle(at[0]!, 4) : at, colour)
+        else if (kind === "line") trace(ink, at.length && size(at) < 3 ? circle(at[0]!, 4) : at, colour)
         else if (kind === "arrow") for (const part of arrowhead(at[0]!, at[1]!)) trace(ink, part, colour)
         else trace(ink, kind === "spring" ? coil(at[0]!, at[1]!) : piston(at[0]!, at[1]!), colour)
     }
@@ -78,10 +78,12 @@ function trace(ink: CanvasRenderingContext2D, way: Point[], colour: string): voi
 
 /** The path from θ = 0, or from its beginning if it is open, to a point on it. */
 function along({ outline, closed }: Seen, to: Point): Point[] {
-    const from = closed ? (outline.length - 1) >> 1 : 0
+    if (!outline.length) return []
+    const from = closed ? (outline.length - 1) / 2 : 0
+    const [before, after] = [outline[Math.floor(from)]!, outline[Math.ceil(from)]!]
     const until = nearest(outline, to)
-    const part = outline.slice(Math.min(from, until), Math.max(from, until) + 1)
-    return until < from ? part.reverse() : part
+    const part = outline.filter((_, i) => (i - from) * (i - until) < 0)
+    return [beside(before, after, 0.5, 0), ...(until < from ? part.reverse() : part), to]
 }
 
 /** The direction of the path at the closest point, in which θ grows. */

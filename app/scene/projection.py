@@ -1,0 +1,60 @@
+"""How a page's camera shows the robots, for what is drawn over the picture."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import viser
+from viser.transforms import SO3
+
+from onpath.app.scene.stage import Stage
+from onpath.models.systems.robots import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """How the picture shows the robots.
+
+    Attributes:
+        height: that the canvas shows at the distance of the robots, [m].
+        apart: distance between the robots, [m].
+        cameras: one for each robot, shape (k, 3, p + 1); see `projections`.
+        arrow: length of the arrow of a force [m/N].
+    """
+
+    height: float
+    apart: float
+    cameras: np.ndarray
+    arrow: float
+
+
+def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Seen:
+    """How a camera shows the robots of a stage."""
+    distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
+    return Seen(
+        height=float(2 * distance * np.tan(camera.fov / 2)),
+        apart=float(np.linalg.norm(np.ptp(stage.origins, axis=0))),
+        cameras=projections(camera.position, camera.wxyz, camera.fov, stage.origins, robot),
+        arrow=stage.force_scale,
+    )
+
+
+def projections(
+    position: np.ndarray, wxyz: np.ndarray, fov: float, origins: np.ndarray, robot: Robot
+) -> np.ndarray:
+    """Matrices of the perspective of the robots' end-points, shape (k, 3, p + 1).
+
+    Applied to (y, 1), a matrix gives (x, y, z): x / z and y / z are right and down from the middle
+    of the picture, as shares of its height; z is the distance along the camera's axis, [m].
+
+    Args:
+        position: of the camera, shape (3,), [m].
+        wxyz: its orientation, a quaternion: it looks along its z axis, y is down.
+        fov: its vertical field of view, [rad].
+        origins: of the robots' frames, shape (k, 3), [m].
+    """
+    onto = SO3(np.asarray(wxyz)).as_matrix().T
+    onto[:2] /= 2 * np.tan(fov / 2)
+    offsets = origins + np.array(robot.home) - position
+    return np.stack([np.column_stack([onto @ robot.axes.T, onto @ each]) for each in offsets])

@@ -1,0 +1,62 @@
+// What a symbol of a lesson's text means, drawn over the robots on the stage of the lab.
+
+import type { RemoteEngine } from "./channel"
+import { shown, type SideSample, type Vector } from "./engine"
+import type { Point } from "./figure_data"
+import { Sheet, tones } from "./ink"
+import { drawShapes, shapesOf } from "./symbols"
+
+/** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
+ * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
+ * coordinate, and a constant. */
+export type Projection = readonly Vector[]
+
+export class Overlay {
+    /** The symbol that is shown; may be empty. */
+    lit = ""
+    private drawn = ""
+    private readonly sheet: Sheet
+
+    constructor(private readonly engine: RemoteEngine, ended: AbortSignal) {
+        this.sheet = new Sheet(() => {}, ended)
+        this.sheet.canvas.className = "lit-up"
+        this.sheet.canvas.setAttribute("aria-hidden", "true")
+    }
+
+    get element(): HTMLCanvasElement { return this.sheet.canvas }
+
+    draw(): void {
+        const { engine, sheet, lit } = this
+        if (!lit && !this.drawn) return
+        this.drawn = lit
+        const ink = sheet.cleared()
+        if (!ink || !lit) return
+        shown(engine).sides.forEach((sample, i) => this.light(ink, sample, engine.lab!.cameras[i]!))
+    }
+
+    /** In the plane of the path; of a robot in space, in that of the picture. */
+    private light(ink: CanvasRenderingContext2D, sample: SideSample, camera: Projection): void {
+        const { engine: { path, lab }, sheet: { width, height } } = this
+        const project = (point: Vector): Point => {
+            const [x, y, away] = camera.map(row => point.reduce((sum, each, k) => sum + each * row[k]!, row[point.length]!))
+            return [width / 2 + (x! / away!) * height, height / 2 + (y! / away!) * height]
+        }
+        const metre = height / lab!.height // [px]
+        const isFlat = sample.tip.length < 3
+        const flat = (point: Vector): Point => {
+            if (isFlat) return [dot(point, path.right), dot(point, path.up)]
+            const [x, y] = project(point)
+            return [x / metre, -y / metre]
+        }
+        const pixel = ([x, y]: Point): Point =>
+            isFlat ? project(path.right.map((each, k) => x * each + y * path.up[k]!)) : [x * metre, -y * metre]
+        const seen = {
+            tip: flat(sample.tip), closest: flat(sample.closest), reference: sample.reference && flat(sample.reference),
+            pushed: flat(sample.tip.map((each, k) => each + lab!.arrow * sample.force[k]!)),
+            outline: (path.lines[0] ?? []).map(flat), closed: path.closed, arm: null,
+        }
+        drawShapes(ink, shapesOf(this.lit, seen), pixel, tones().selected)
+    }
+}
+
+const dot = (a: Vector, b: Vector): number => a.reduce((sum, each, k) => sum + each * b[k]!, 0)
