@@ -50,5 +50,6 @@ def state_message(
         "presenting": snapshot.key.presenting,
         "height": round(height, 3),
         "apart": round(apart, 3),
+        "frozen": words("class.frozen") if run.frozen else "",
         "own": not snapshot.key.student,
     }
