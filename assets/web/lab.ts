@@ -111,6 +111,7 @@ class Face {
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }
         this.voice.place(left, top, width, height)
+        document.documentElement.style.setProperty("--op-canvas", `${width}px`)
         Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 

@@ -124,6 +124,41 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
     expect(plot).to_have_count(0)
 
 
+@pytest.mark.parametrize(("width", "height"), [(1024, 768), (800, 600), (640, 400)])
+def test_the_plot_of_a_step_covers_no_controls(
+    browser: Browser, server: LabServer, width: int, height: int
+) -> None:
+    context = browser.new_context(viewport={"width": width, "height": height})
+    tab = Tab(server, context, draws=False)
+    take(tab, 0, "04-across-and-along")
+    plot = tab.page.locator(".mantine-Paper-root:has([data-step-plot])")
+    canvas = tab.page.locator("canvas[data-engine]")
+
+    def ends_before() -> bool:
+        boxes = plot.bounding_box(), canvas.bounding_box()
+        ends = [box["x"] + box["width"] for box in boxes if box is not None]
+        return len(ends) == 2 and ends[0] <= ends[1]
+
+    wait_for(ends_before)
+    context.close()
+
+
+def test_no_gap_is_left_for_the_hidden_buttons_on_a_telephone(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    take(tab, 1)
+    expect(tab.page.locator("#op-strip .transport")).to_be_hidden()
+    gaps = """() => {
+        const [strip, numbers] = ["#op-strip", "#op-strip .numbers"]
+            .map(each => document.querySelector(each).getBoundingClientRect())
+        return [numbers.top - strip.top, strip.bottom - numbers.bottom]
+    }"""
+    wait_for(lambda: all(0 <= gap < 16 for gap in tab.page.evaluate(gaps)))
+    context.close()
+
+
 @pytest.mark.parametrize("presenting", [False, True])
 def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting: bool) -> None:
     """Also that of both motors of both robots."""
