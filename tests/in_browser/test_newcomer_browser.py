@@ -91,6 +91,17 @@ def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab
     wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit"])
 
 
+def test_a_control_keeps_the_focus_while_a_part_above_it_changes(tab: Tab) -> None:
+    take(tab, 9)
+    questions = tab.page.locator("#op-column .step.open [data-block]:has([role=radiogroup])")
+    first = int(questions.first.get_attribute("data-block") or "")
+    option = questions.nth(1).get_by_role("radio").first
+    option.focus()
+    tab.ask(c.AnswerQuiz(first, 0))
+    expect(questions.first.locator(".verdict")).not_to_be_empty()
+    expect(option).to_be_focused()
+
+
 def test_going_through_a_lesson_leaves_no_error_in_the_console(tab: Tab) -> None:
     said = list[str]()
 
