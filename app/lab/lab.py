@@ -148,7 +148,8 @@ class Lab:
             if not command.from_teacher:
                 self.asked += 1
                 if refusal := self._refusal(command):
-                    self.show_message(self.words.sentence(refusal), "warning")
+                    level = "stop" if self.frozen else "warning"
+                    self.show_message(self.words.sentence(refusal), level)
                     continue
                 if self.breakdown.interrupt(self.session):
                     self.clear_message()

@@ -53,5 +53,6 @@ def state_message(
         "apart": round(seen.apart, 3),
         "cameras": np.round(seen.cameras, 5).tolist(),
         "arrow": seen.arrow,
+        "frozen": words("class.frozen") if run.frozen else "",
         "own": not snapshot.key.student,
     }

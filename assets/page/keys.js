@@ -34,7 +34,7 @@
 
   // A letter of another alphabet counts as the Latin one on its key, since shortcuts are Latin letters.
   function latin(event) {
-    const other = event.key.length === 1 && /\p{L}/u.test(event.key) && !/[a-z]/i.test(event.key);
+    const other = /^\p{L}+$/u.test(event.key) && !/[a-z]/i.test(event.key);
     const found = other && !event.altKey ? /^Key([A-Z])$/.exec(event.code) : null;
     return found ? found[1].toLowerCase() : event.key;
   }

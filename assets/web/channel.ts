@@ -68,6 +68,8 @@ export interface LabState {
     achieved: number
     together: boolean
     undo: boolean
+    /** Why the lab takes no commands; empty if it does. */
+    frozen: string
     own: boolean
     presenting: boolean
     /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
@@ -202,7 +204,7 @@ export class RemoteEngine implements Engine {
         const { held, pulled } = this.flags
         const looked = this.looked && performance.now() < this.looked.until ? this.looked : null
         const past = looked ? looked.at : this.past
-        return { running: this.running && past === null, rate: this.lab?.rate ?? 1, held, pulled, past, branches: this.lab?.own ?? false }
+        return { running: this.running && past === null, rate: this.lab?.rate ?? 1, held, pulled, past, branches: this.lab?.own ?? false, frozen: this.lab?.frozen ?? "" }
     }
 
     get path(): PathShape { return this.route }

@@ -215,11 +215,13 @@ export class Column implements Robots {
         const gone = [...known.values()].flat()
         const at = gone.find(each => each.contains(focused))
         const place = at ? controlsOf(at).indexOf(focused as HTMLElement) : -1
-        kept.forEach((each, i) => {
-            const next = words.children[i]
-            if (next !== each) words.insertBefore(each, next ?? null)
-        })
         for (const each of gone) each.remove()
+        let next = words.firstElementChild
+        for (const each of kept) { // what stays is not moved, or it would lose the focus
+            while (next && next !== each && each.parentElement === words && isOurs(next)) next = next.nextElementSibling
+            if (next === each) next = next.nextElementSibling
+            else words.insertBefore(each, next)
+        }
         words.scrollTop = scrollTop // the browser has lost what it would keep in its place
         for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
         const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])

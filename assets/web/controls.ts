@@ -30,6 +30,12 @@ export function isTyped({ ctrlKey, metaKey, altKey, target }: KeyboardEvent): bo
     return ctrlKey || metaKey || altKey || Boolean(field)
 }
 
+/** The name of a key in small letters; a letter of another alphabet counts as the Latin one on its key. */
+export function keyOf({ key, code }: KeyboardEvent): string {
+    const foreign = /^\p{L}+$/u.test(key) && !/[a-z]/i.test(key)
+    return ((foreign && /^Key([A-Z])$/.exec(code)?.[1]) || key).toLowerCase()
+}
+
 /** Show why a figure does not run, in its place. */
 export function refused(data: FigureData, error: unknown): HTMLElement {
     console.error(error)
@@ -117,7 +123,7 @@ export class Controls {
         const way = WAYS[event.key]
         if (selected !== null && way) acts[event.key] = ["drag", () => followed.nudge(selected, ...way)]
         if (selected !== null) acts["Escape"] = ["drag", () => simulation.select(null)]
-        const [name, act] = acts[event.key] ?? acts[event.key.toLowerCase()] ?? []
+        const [name, act] = acts[event.key] ?? acts[keyOf(event)] ?? []
         if (!name || !act || !simulation.data.controls.includes(name) || (event.repeat && !way)) return
         event.preventDefault()
         act()

@@ -56,6 +56,8 @@ export interface State {
     past: number | null
     /** Whether one may go on from a past instant. */
     branches: boolean
+    /** Why nothing can be done with the robots now; empty if it can. */
+    frozen: string
 }
 
 /** Something that a reader does. `side` is a robot's number; without it, both are meant. */

@@ -1,7 +1,7 @@
 // Builds a figure in a page, and runs its time.
 
 import { notes, spoken } from "./captions"
-import { Controls, isTyped, made, tell } from "./controls"
+import { Controls, isTyped, keyOf, made, tell } from "./controls"
 import type { Point } from "./figure_data"
 import { Lens } from "./lens"
 import { LocalEngine } from "./local"
@@ -179,12 +179,12 @@ export class Figure {
         const { ended: signal } = this
         let pulling = "" // the key that pulls
         addEventListener("keydown", event => {
-            const key = event.key.toLowerCase()
+            const key = keyOf(event)
             if (!PULLS[key] || event.repeat || isTyped(event)) return
             pulling = key
             this.simulation.pull(PULLS[key])
         }, { signal })
-        addEventListener("keyup", event => event.key.toLowerCase() === pulling && this.simulation.pull(null), { signal })
+        addEventListener("keyup", event => keyOf(event) === pulling && this.simulation.pull(null), { signal })
         addEventListener("blur", () => this.simulation.pull(null), { signal })
     }
 }

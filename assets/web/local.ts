@@ -32,7 +32,7 @@ export class LocalEngine implements Engine {
     get state(): State {
         const { running, rate, past, branches, simulation } = this
         const held = simulation.sides.some(side => side.held), pulled = simulation.sides.some(side => side.pulled)
-        return { running, rate, held, pulled, past, branches }
+        return { running, rate, held, pulled, past, branches, frozen: "" }
     }
 
     get path(): PathShape {

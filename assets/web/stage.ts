@@ -1,6 +1,6 @@
 // The live figure of a step, whose kernels are in a script that pages share.
 
-import { isTyped } from "./controls"
+import { isTyped, keyOf } from "./controls"
 import { Figure } from "./figure"
 import { Kernels } from "./kernels"
 import type { Act, Script, SiteFigure, StepData } from "./lesson_data"
@@ -126,7 +126,7 @@ export class Stage {
         }
         const options = { capture: true, signal: this.ended.signal }
         const own = (event: KeyboardEvent) => {
-            const key = event.key.toLowerCase()
+            const key = keyOf(event)
             return isTyped(event) || !(key in ways || key === "x") ? "" : key
         }
         addEventListener("keydown", event => {

@@ -13,6 +13,7 @@ export class Transport {
     private readonly rate: HTMLSelectElement
     private readonly past: HTMLElement
     private readonly goes: HTMLButtonElement
+    private readonly hints = new Map<HTMLElement, string>()
 
     /** `offered`: names of the controls, "hold", "run", "step", and "reset". */
     constructor(
@@ -64,6 +65,19 @@ export class Transport {
         if (rate.selectedIndex !== chosen) rate.selectedIndex = chosen
         past.hidden = state.past === null
         goes.hidden = !state.branches
+        this.freeze(state.frozen)
+    }
+
+    /** Say on each button why it does nothing now; it keeps the focus, and a press has the reason said again. */
+    private freeze(why: string): void {
+        for (const button of this.element.querySelectorAll<HTMLButtonElement>("button")) {
+            const hint = this.hints.get(button) ?? button.title
+            this.hints.set(button, hint)
+            button.ariaDisabled = why ? "true" : null
+            button.title = why || hint
+        }
+        this.rate.disabled = Boolean(why)
+        this.rate.title = why || this.rate.ariaLabel!
     }
 
     private button(name: string, text: string, hint: string, act: () => void): HTMLButtonElement {

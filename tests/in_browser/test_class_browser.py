@@ -128,14 +128,24 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
         student.page.get_by_text("paused").first.wait_for()
         before = student.session.time
         asked = student.lab.asked
-        student.press("Run")
+        button = student.button("Run")
+        assert button.get_attribute("aria-disabled") == "true"
+        assert "look to the front" in (button.get_attribute("title") or "")
+        assert not student.page.locator("#op-strip .transport select").is_enabled()
+        button.focus()
+        student.page.keyboard.press("Enter")
         wait_for(lambda student=student, asked=asked: student.lab.asked > asked)
         assert student.session.running and student.session.time == before
+        assert student.lab.notice[1] == "stop"
+        assert student.page.evaluate(dimmed) == "rgba(15, 23, 42, 0.6)"
     tabs.teacher.press("Let all labs go on")
     for student in tabs.students:
         before = student.session.time
         wait_for(lambda student=student, before=before: student.session.time > before)
         student.wait_for_no_message()
+        button = student.button("Pause")
+        wait_for(lambda button=button: button.get_attribute("aria-disabled") is None)
+        assert "look to the front" not in (button.get_attribute("title") or "")
         student.ask(c.SetRunning(False))
 
 

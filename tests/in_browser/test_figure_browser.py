@@ -404,6 +404,18 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
     page.keyboard.press("h")
     assert opened.number("onpath.simulation.held") and opened.number("onpath.running")
     assert page.get_by_role("button", name="Beide loslassen").is_visible()
+    typist = page.context.new_cdp_session(page)
+    for letter in ("р", "η", "י", "ا", "ㅗ"):  # on the key of H, where another alphabet is written
+        held = opened.number("onpath.simulation.held")
+        for kind in ("keyDown", "keyUp"):
+            typist.send("Input.dispatchKeyEvent", {"type": kind, "key": letter, "code": "KeyH"})
+        assert opened.number("onpath.simulation.held") is not held
+    for kind, pulled in (("keyDown", True), ("keyUp", False)):
+        typist.send("Input.dispatchKeyEvent", {"type": kind, "key": "в", "code": "KeyD"})
+        assert opened.number("onpath.simulation.sides.every(side => side.pulled)") is pulled
+    typist.send("Input.dispatchKeyEvent", {"type": "keyDown", "key": "'", "code": "KeyH"})
+    if not opened.number("onpath.simulation.held"):  # a sign means nothing
+        page.keyboard.press("h")
     speed = page.get_by_role("slider", name="Tempo")
     speed.focus()
     speed.press("ArrowRight")

@@ -139,6 +139,8 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
     pupil.passes("push-across")
     for question in (0, 1):
         pupil.choose(0, question)
+        pupil.reach(tab.page.get_by_role("button", name="Check", exact=True).nth(question))
+        pupil.press("Enter")
         wait_for(lambda question=question: len(lessons.notes.quiz) == question + 1)
     pupil.act("Finish")
     wait_for(lambda: lessons.ended)

@@ -91,6 +91,17 @@ def test_nothing_but_the_commitment_is_primary_while_a_prediction_is_awaited(tab
     wait_for(lambda: tab.page.evaluate(PRIMARY) == ["Commit"])
 
 
+def test_a_control_keeps_the_focus_while_a_part_above_it_changes(tab: Tab) -> None:
+    take(tab, 9)
+    questions = tab.page.locator("#op-column .step.open [data-block]:has([role=radiogroup])")
+    first = int(questions.first.get_attribute("data-block") or "")
+    option = questions.nth(1).get_by_role("radio").first
+    option.focus()
+    tab.ask(c.AnswerQuiz(first, 0))
+    expect(questions.first.locator(".verdict")).not_to_be_empty()
+    expect(option).to_be_focused()
+
+
 def test_going_through_a_lesson_leaves_no_error_in_the_console(tab: Tab) -> None:
     said = list[str]()
 
@@ -122,6 +133,22 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
     expect(tab.page.get_by_role("heading").first).to_be_in_viewport()
     take(tab, 1)
     expect(plot).to_have_count(0)
+
+
+def test_no_gap_is_left_for_the_hidden_buttons_on_a_telephone(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True)
+    tab = Tab(server, context, draws=False)
+    take(tab, 1)
+    expect(tab.page.locator("#op-strip .transport")).to_be_hidden()
+    gaps = """() => {
+        const [strip, numbers] = ["#op-strip", "#op-strip .numbers"]
+            .map(each => document.querySelector(each).getBoundingClientRect())
+        return [numbers.top - strip.top, strip.bottom - numbers.bottom]
+    }"""
+    wait_for(lambda: all(0 <= gap < 16 for gap in tab.page.evaluate(gaps)))
+    context.close()
 
 
 @pytest.mark.parametrize("presenting", [False, True])

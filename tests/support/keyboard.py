@@ -28,8 +28,9 @@ FOCUS = """() => {
     while (behind !== null && (channels(fill(behind))[3] ?? 1) < 0.5)
         behind = behind.parentElement
     const ground = light(behind === null ? "rgb(255, 255, 255)" : fill(behind))
-    const ring = light(style.outlineColor)
-    const drawn = style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2
+    const inside = /^(rgb.*?\\)) ([3-9]|\\d\\d)px .* inset$/.exec(style.boxShadow)  // a bar
+    const ring = light(inside?.[1] ?? style.outlineColor)
+    const drawn = inside || (style.outlineStyle !== "none" && parseFloat(style.outlineWidth) >= 2)
     return {
         told: control.outerHTML.slice(0, 200),
         ring: drawn ? (Math.max(ring, ground) + 0.05) / (Math.min(ring, ground) + 0.05) : 0,

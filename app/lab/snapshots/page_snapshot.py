@@ -27,6 +27,7 @@ class RunState:
     Attributes:
         now: simulated time, also while the past is viewed, [s].
         viewing: the past instant being viewed, [s], or None.
+        frozen: whether the teacher has stopped the lab.
         can_undo_going_on: whether a discarded timeline can be restored.
         rate: requested simulated seconds per second.
         copy: whether pulling and holding act on both robots.
@@ -38,6 +39,7 @@ class RunState:
 
     now: float
     viewing: float | None
+    frozen: bool
     can_undo_going_on: bool
     rate: float
     copy: bool

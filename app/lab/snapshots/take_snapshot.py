@@ -99,6 +99,7 @@ def take_page_snapshot(
         run=RunState(
             now=session.time,
             viewing=session.viewing,
+            frozen=lab.frozen,
             can_undo_going_on=session.undo_timeline is not None,
             rate=session.rate,
             copy=session.copy,
