@@ -205,6 +205,10 @@ def _every_step(reader: SiteReader) -> Iterator[SiteReader]:
             reader.played(10)
             yield reader
         elif reader.page.evaluate("site.view.waits"):
+            option = reader.page.locator(".step.open .choice input").first
+            if option.count():
+                option.check()  # only then one is asked how sure one is
+                yield reader
             reader.page.evaluate("() => { site.go(1) }")  # skips it
             yield reader
     reader.page.evaluate("site.stage.run(true)")
