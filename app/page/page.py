@@ -355,7 +355,7 @@ class Page:
             self._scene.frame_camera(self._insets(width, height))
 
     def _insets(self, width: float, height: float) -> Insets:
-        """What covers the canvas: our titles, and the lenses."""
+        """Margins of the canvas, for our titles and for the brakes beside the robots."""
         top = min(TITLES, MOST_TITLES * height)
         return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top)
 

@@ -51,7 +51,6 @@ FREE = (
     "keep",
     "copy",
 )
-PLOT, LARGE_PLOT = 200, 300  # heights of a step's plot, [px]
 IN_STRIP = ("hold", "past")
 """Controls of a lesson's step that the strip has; see assets/web/lab.ts."""
 
@@ -128,7 +127,6 @@ class PanelFactory:
                 words=self._words,
                 fields=fields,
                 plot=plot,
-                height=LARGE_PLOT if large else PLOT,
                 large=large,
                 in_lesson=True,
             )

@@ -29,6 +29,7 @@ PADDING = (10, 12, 0, 0)
 XI = ("xi", "xi_rate")  # fields whose unit is another one with a level set
 LINES = (None, (6, 4), (2, 3))  # dash patterns of a robot's first, second and third line
 MARKS = ("―", "╌", "┈")  # stand for these patterns in the legend, which shows colours only
+HEIGHT, LARGE_HEIGHT = 200, 300  # of a chart, the latter for a projector, [px]
 ROW = 22  # height of a row of the legend, [px]
 PER_ROW = 2  # lines in a row of the legend
 _PLAIN: uplot.Axis = {"ticks": {"show": False}}
@@ -117,7 +118,6 @@ class LivePlot:
     """One uPlot chart.
 
     Args:
-        height: of the chart, [px]; less if its legend needs a second row.
         level_set: whether ξ₁ is an area, [m²], instead of a distance.
         large: whether it is shown with a projector.
         in_lesson: whether its lines are named after the robots of a lesson, not after their laws.
@@ -129,7 +129,6 @@ class LivePlot:
         words: Words,
         fields: Fields,
         plot: Plot,
-        height: int,
         level_set: bool = False,
         large: bool = False,
         in_lesson: bool = False,
@@ -153,6 +152,7 @@ class LivePlot:
             "-level_set" if in_level_set else "-space" if self._has_xi and self._names[1:] else ""
         )
         self._title = words(f"axis.{plot.name}{kind}")
+        height = LARGE_HEIGHT if large else HEIGHT
         self._height = height if lines <= PER_ROW else height - ROW
         self._least, self._axes = least, LARGE if large else AXES
         self._handle = self._chart(None)
@@ -231,7 +231,6 @@ def add_plot(
     words: Words,
     fields: Fields,
     plot: Plot,
-    height: int = 200,
     level_set: bool = False,
     large: bool = False,
     in_lesson: bool = False,
@@ -244,7 +243,6 @@ def add_plot(
         words=words,
         fields=fields,
         plot=plot,
-        height=height,
         level_set=level_set,
         large=large,
         in_lesson=in_lesson,

@@ -165,15 +165,18 @@ def view_of(stage: Stage, size: tuple[float, float], insets: Insets) -> Pose:
     x, y, z = (seen - middle).T
     tan_y = np.tan(FIELD_OF_VIEW / 2)
     tan_x = tan_y * width / height
-    # tangents of the angles to the margins, and of half the angle between them
-    left, side = tan_x * (1 - 2 * insets.left / width), tan_x * (1 - 2 * insets.right / width)
-    top, bottom = tan_y * (1 - 2 * insets.top / height), tan_y
-    half_x, half_y = (max(left + side, 0.4 * tan_x) / 2, max(top + bottom, 0.4 * tan_y) / 2)
-    # each corner is between the margins if the camera, moved aside, is as far away as this
-    least = (-x - left * z) / half_x, (x - side * z) / half_x, (-y - bottom * z) / half_y
-    distance = float(np.max([*least, (y - top * z) / half_y]))
-    aside, above = (side - left) / 2 * distance, (top - bottom) / 2 * distance
-    room = np.min(top * (distance + z) - y - above)
+    # tangents of the angles from the axis to the margins, and half of their sums
+    leftward = tan_x * (1 - 2 * insets.left / width)
+    rightward = tan_x * (1 - 2 * insets.right / width)
+    upward = tan_y * (1 - 2 * insets.top / height)
+    half_x = max(leftward + rightward, 0.4 * tan_x) / 2
+    half_y = max(upward + tan_y, 0.4 * tan_y) / 2
+    # all points are between the margins if the camera, moved aside, is as far away as each needs
+    across = np.maximum(-x - leftward * z, x - rightward * z) / half_x
+    up_and_down = np.maximum(-y - tan_y * z, y - upward * z) / half_y
+    distance = float(max(across.max(), up_and_down.max()))
+    aside, above = (rightward - leftward) / 2 * distance, (upward - tan_y) / 2 * distance
+    room = np.min(upward * (distance + z) - y - above)
     above += HIGHER * max(room, 0.0)
     target = centre - aside * right - above * up
     return Pose(target - distance * forward, target)

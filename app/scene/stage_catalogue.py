@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 from itertools import product
 
 import casadi as ca
@@ -42,6 +43,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
     middle = float(low[0] + high[0]) / 2
     apart = float(high[0] - low[0]) if drawing.apart is None else drawing.apart
     plane = _path_plane(robot)
+    parts = partial(_parts, drawing, floor, tones, shapes)
     pulls = {IN_PATH_PLANE: plane}
     if robot.system.p > 2 and plane.normal[:2].any():
         pulls[HORIZONTAL] = DragPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
@@ -49,7 +51,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
         bases=_side_by_side(apart, drawing.azimuth),
         low=low,
         high=high,
-        outline=_outline(robot, low, high, _parts(drawing, floor, tones, shapes)),
+        outline=_outline(robot, low, high, parts),
         floor=floor,
         elevation=drawing.elevation,
         azimuth=drawing.azimuth,
@@ -64,7 +66,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
         sheet=drawing.sheet
         or ((low[0] + 0.01, floor - 0.01), (high[0] - 0.01, high[2] - 0.1), -0.06),
         motors=drawing.motors,
-        parts=lambda: _parts(drawing, floor, tones, shapes),
+        parts=parts,
         tones=tones,
         bodies=() if shapes is None else shapes.moving,
         plain=plain,
@@ -90,13 +92,13 @@ def _axes(robot: Robot) -> tuple[Array, Array, Array]:
     return origin, right - origin, up - origin
 
 
-def _outline(robot: Robot, low: Array, high: Array, fixed: Parts) -> Array:
+def _outline(robot: Robot, low: Array, high: Array, parts: Callable[[], Parts]) -> Array:
     """Points about a robot within its box, (k, 3); the corners of the box if seen from in front.
 
     Seen from aside, much of a long box is empty, and the camera would stay too far away.
 
     Args:
-        fixed: its fixed parts.
+        parts: gives its fixed parts.
     """
     corners = np.array(list(product(*np.stack([low, high], axis=1))))
     if not robot.drawing.azimuth or robot.chain is not None:
@@ -104,7 +106,7 @@ def _outline(robot: Robot, low: Array, high: Array, fixed: Parts) -> Array:
     bars, _ = _bars(robot)
     margins = np.array(list(product((-ASIDE, ASIDE), repeat=3)))
     near = (bars[:, None] + margins).reshape(-1, 3)
-    return np.clip(np.vstack([near, *(mesh.vertices for _, mesh, _ in fixed)]), low, high)
+    return np.clip(np.vstack([near, *(mesh.vertices for _, mesh, _ in parts())]), low, high)
 
 
 def _bars(robot: Robot) -> tuple[Array, Array]:

@@ -2,7 +2,6 @@
 // The messages are described in app/viser_adapter/README.md.
 
 import type { LessonMessage, MeasuredMessage } from "./column"
-import type { Projection } from "./lit"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "./engine"
 
 const PROTOCOL = "onpath-1"
@@ -55,6 +54,11 @@ export interface Said {
 }
 
 /** Texts of the lab, and what is set. Lists have the left robot first. */
+/** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
+ * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
+ * coordinate, and a constant. */
+export type Projection = readonly Vector[]
+
 export interface LabState {
     is: "state"
     v: number

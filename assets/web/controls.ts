@@ -30,7 +30,8 @@ export function isTyped({ ctrlKey, metaKey, altKey, target }: KeyboardEvent): bo
     return ctrlKey || metaKey || altKey || Boolean(field)
 }
 
-/** The name of a key in small letters; a letter of another alphabet counts as the Latin one on its key. */
+/** The name of a key in small letters; a letter of another alphabet counts as the Latin one on its key,
+ * as in assets/page/keys.js for the lab. */
 export function keyOf({ key, code }: KeyboardEvent): string {
     const foreign = /^\p{L}+$/u.test(key) && !/[a-z]/i.test(key)
     return ((foreign && /^Key([A-Z])$/.exec(code)?.[1]) || key).toLowerCase()

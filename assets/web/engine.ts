@@ -56,7 +56,7 @@ export interface State {
     past: number | null
     /** Whether one may go on from a past instant. */
     branches: boolean
-    /** Why nothing can be done with the robots now; empty if it can. */
+    /** Why the robots take no commands now; empty if they do. */
     frozen: string
 }
 

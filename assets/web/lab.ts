@@ -7,8 +7,8 @@ import { made, tell } from "./controls"
 import { shown } from "./engine"
 import { retone } from "./ink"
 import { Lens } from "./lens"
-import { Overlay } from "./lit"
 import { Strip } from "./strip"
+import { SymbolOverlay } from "./symbol_overlay"
 import { Transport } from "./transport"
 import { Voice } from "./voice"
 import { said, significant, written, type Texts } from "./words"
@@ -26,7 +26,7 @@ class Face {
     private readonly ended = new AbortController()
     private readonly strip: Strip
     private readonly lenses: Lens[]
-    private readonly overlay: Overlay
+    private readonly overlay: SymbolOverlay
     private readonly titles: HTMLElement[]
     private readonly captions: HTMLElement[]
     private readonly numbers: HTMLElement[]
@@ -52,7 +52,7 @@ class Face {
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal)
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
-        this.overlay = new Overlay(engine, signal)
+        this.overlay = new SymbolOverlay(engine, signal)
         this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))

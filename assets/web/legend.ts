@@ -28,7 +28,7 @@ export class Legend {
         words.append(made("details", "symbols script-only", summary, made("ul", "", ...entries)))
     }
 
-    /** Show no symbol: the step is left. */
+    /** Show no symbol, as when a step is left. */
     clear(): void {
         this.show("")
     }

@@ -68,7 +68,7 @@ export class Transport {
         this.freeze(state.frozen)
     }
 
-    /** Say on each button why it does nothing now; it keeps the focus, and a press has the reason said again. */
+    /** Say on each button why it does nothing now. It keeps the focus, and pressing it repeats the reason. */
     private freeze(why: string): void {
         for (const button of this.element.querySelectorAll<HTMLButtonElement>("button")) {
             const hint = this.hints.get(button) ?? button.title

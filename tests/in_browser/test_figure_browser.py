@@ -414,8 +414,8 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
         typist.send("Input.dispatchKeyEvent", {"type": kind, "key": "в", "code": "KeyD"})
         assert opened.number("onpath.simulation.sides.every(side => side.pulled)") is pulled
     typist.send("Input.dispatchKeyEvent", {"type": "keyDown", "key": "'", "code": "KeyH"})
-    if not opened.number("onpath.simulation.held"):  # a sign means nothing
-        page.keyboard.press("h")
+    assert not opened.number("onpath.simulation.held")  # a sign means nothing
+    page.keyboard.press("h")
     speed = page.get_by_role("slider", name="Tempo")
     speed.focus()
     speed.press("ArrowRight")

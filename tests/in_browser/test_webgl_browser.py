@@ -1,4 +1,4 @@
-"""A lost picture comes back, and a browser that cannot draw one is told so in its language."""
+"""A lost picture comes back, a browser that cannot draw says so, and one without a language draws."""
 
 from __future__ import annotations
 

@@ -1,17 +1,12 @@
 // What a symbol of a lesson's text means, drawn over the robots on the stage of the lab.
 
-import type { RemoteEngine } from "./channel"
+import type { Projection, RemoteEngine } from "./channel"
 import { shown, type SideSample, type Vector } from "./engine"
 import type { Point } from "./figure_data"
 import { Sheet, tones } from "./ink"
 import { drawShapes, shapesOf } from "./symbols"
 
-/** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
- * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
- * coordinate, and a constant. */
-export type Projection = readonly Vector[]
-
-export class Overlay {
+export class SymbolOverlay {
     /** The symbol that is shown; may be empty. */
     lit = ""
     private drawn = ""
