@@ -1,4 +1,4 @@
-"""A lost picture comes back, a browser that cannot draw says so, and one without a language draws."""
+"""A lost picture comes back, a browser that cannot draw says so, one without a language draws."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
     lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
-    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.DISTANCE, 100)
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.DISTANCE)
     monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
     do(lab, c.Hold(True))
     run(lab, 0.5)
@@ -54,7 +54,7 @@ def test_the_speed_is_plotted_in_millimetres_a_second(monkeypatch: pytest.Monkey
     lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
-    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.MORE["speed"], 100)
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.MORE["speed"])
     monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
     run(lab, 2.0)
     plot.follow(take_page_snapshot(lab, 1.0))
@@ -71,7 +71,7 @@ def test_of_two_lines_that_coincide_both_are_seen_and_no_number_is_cut() -> None
     fields = take_page_snapshot(Lab(store()), 1.0).key.fields
     for plot in (plots.DISTANCE, plots.MORE["across"]):
         gui: Any = SimpleNamespace(add_uplot=add_uplot)
-        plots.LivePlot(gui, ENGLISH, fields, plot, 100)
+        plots.LivePlot(gui, ENGLISH, fields, plot)
         under, above = made[-1]["series"][1:]
         assert under["width"] >= above["width"] + 2 and under["stroke"] != above["stroke"]
         above_the_axis, right_of_it, *_ = made[-1]["padding"]
@@ -83,8 +83,8 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     made = list[Sequence[uplot.Series]]()
     gui: Any = SimpleNamespace(add_uplot=lambda _, series, **__: made.append(series))
     fields = take_page_snapshot(Lab(store()), 1.0).key.fields
-    plots.LivePlot(gui, ENGLISH, fields, plots.MORE["torques"], 100)
-    plots.LivePlot(gui, ENGLISH, fields, plots.DISTANCE, 100)
+    plots.LivePlot(gui, ENGLISH, fields, plots.MORE["torques"])
+    plots.LivePlot(gui, ENGLISH, fields, plots.DISTANCE)
     labels = [series.get("label", "") for series in made[0][1:]]
     assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
     assert made[1][1].get("label") == "Trajectory tracking"
