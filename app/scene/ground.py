@@ -1,7 +1,7 @@
-"""The ground with the shadows of the robots' bases, as one picture that is drawn quickly.
+"""The shadows of the robots' bases on the ground, as one picture that is drawn quickly.
 
 A browser that draws in software would spend a third of its time on looking up a real shadow at
-every point of the ground.
+every point of the ground, and a sixth on a ground that is more than its shadows.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from functools import lru_cache
 
 import numpy as np
 
-from onpath.app.common.palette import Colour
 from onpath.app.scene.meshes import Mesh
 from onpath.app.viser_adapter.images import png_of
 
@@ -54,14 +53,15 @@ def shadow(solids: Sequence[Mesh], origins: np.ndarray, floor: float) -> np.ndar
 
 
 @lru_cache(maxsize=32)
-def painted_ground(
-    solids: tuple[Mesh, ...], origins: tuple[tuple[float, ...], ...], floor: float, colour: Colour
-) -> bytes:
-    """The ground as a PNG, see `shadow`."""
-    across = np.linspace(-1.0, 1.0, PIXELS)
-    radius = np.hypot(across, across[:, None])
-    picture = np.zeros((PIXELS, PIXELS, 4))
-    light = 1.0 - DARKEST * shadow(solids, np.array(origins), floor)
-    picture[..., :3] = light[..., None] * colour.rgb
-    picture[..., 3] = 255.0 * np.maximum(1.0 - radius, 0.0) ** FADING
-    return png_of(np.round(picture).astype(np.uint8))
+def painted_shadow(
+    solids: tuple[Mesh, ...], origins: tuple[tuple[float, ...], ...], floor: float
+) -> tuple[bytes, tuple[float, float]]:
+    """A PNG of `shadow`, cut to what is dark and still about its middle, and its two sizes, [m]."""
+    dark = np.round(255.0 * DARKEST * shadow(solids, np.array(origins), floor)).astype(np.uint8)
+    rows, columns = np.nonzero(dark)
+    top, left = (min(at.min(), PIXELS - 1 - at.max()) for at in (rows, columns))
+    alpha = dark[top : PIXELS - top, left : PIXELS - left]
+    picture = np.zeros((*alpha.shape, 4), np.uint8)
+    picture[..., 3] = alpha
+    height, width = 2 * RADIUS / PIXELS * np.array(alpha.shape)
+    return png_of(picture), (width, height)

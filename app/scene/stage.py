@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.scene.ground import FADING, KEY_LIGHT, RADIUS, painted_ground
+from onpath.app.scene.ground import FADING, KEY_LIGHT, RADIUS, painted_shadow
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.pointer_projection import Box, DragPlane
 from onpath.app.scene.tones import LIGHT, Tones
@@ -194,7 +194,7 @@ def build_stage(scene: viser.SceneApi, stage: Stage) -> list[viser.BatchedMeshHa
     """Add ground, lights and the robots' bases to a client's scene; returns the bases."""
     _add_lights(scene, casts_shadow=not stage.plain)
     if stage.plain:
-        _add_painted_ground(scene, stage)
+        _add_painted_shadow(scene, stage)
     else:
         _add_ground(scene, stage)
     return [
@@ -222,11 +222,10 @@ def _add_ground(scene: viser.SceneApi, stage: Stage) -> None:
     _put(grid, stage)
 
 
-def _add_painted_ground(scene: viser.SceneApi, stage: Stage) -> None:
+def _add_painted_shadow(scene: viser.SceneApi, stage: Stage) -> None:
     solids = tuple(mesh for _, mesh, _ in stage.parts())
     origins = tuple(map(tuple, stage.origins.tolist()))
-    picture = painted_ground(solids, origins, stage.floor, stage.tones.floor)
-    size = (2 * RADIUS, 2 * RADIUS)
+    picture, size = painted_shadow(solids, origins, stage.floor)
     _put(add_png(scene, "/stage/floor", picture, size, np.zeros(3), DOWN), stage)
 
 

@@ -1,4 +1,4 @@
-"""The painted ground has the shadow of what stands on it, on the side away from the light."""
+"""The painted shadow is that of what stands on the ground, on the side away from the light."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from onpath.app.common import palette
-from onpath.app.scene.ground import DARKEST, KEY_LIGHT, PIXELS, RADIUS, painted_ground, shadow
+from onpath.app.scene.ground import DARKEST, KEY_LIGHT, PIXELS, RADIUS, painted_shadow, shadow
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.stage import _put
 from onpath.app.scene.stage_catalogue import stage_of
@@ -55,20 +54,24 @@ def pixels(png: bytes) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", ROBOTS)
-def test_the_ground_fades_to_the_horizon_and_is_darker_beside_a_base(name: str) -> None:
+def test_the_painted_shadow_is_the_whole_shadow_about_the_same_middle(name: str) -> None:
     stage = stage_of(ROBOTS[name].make(ROBOTS[name].parameters()))
     solids = tuple(mesh for _, mesh, _ in stage.parts())
     origins = tuple(map(tuple, stage.origins.tolist()))
-    png = painted_ground(solids, origins, stage.floor, palette.FLOOR)
-    assert png is painted_ground(solids, origins, stage.floor, palette.FLOOR)  # painted once
+    painted = painted_shadow(solids, origins, stage.floor)
+    assert painted is painted_shadow(solids, origins, stage.floor)  # painted once
+    png, size = painted
     picture = pixels(png)
-    edge = np.concatenate([picture[0], picture[-1], picture[:, 0], picture[:, -1]])
-    assert picture.shape == (PIXELS, PIXELS, 4) and edge[:, 3].max() == 0
-    assert picture[PIXELS // 2, PIXELS // 2, 3] > 250
-    share = picture[..., :3] / np.array(palette.FLOOR.rgb)
-    assert share.max() == pytest.approx(1.0, abs=0.01)
-    assert 1.0 - DARKEST - 0.02 < share.min() < 1.0 - 0.8 * DARKEST
-    assert len(png) < 60_000
+    rows, columns = picture.shape[:2]
+    assert size == pytest.approx((columns * PITCH, rows * PITCH))
+    assert picture[..., :3].max() == 0 and len(png) < 30_000
+    top, left = (PIXELS - rows) // 2, (PIXELS - columns) // 2
+    whole = np.zeros((PIXELS, PIXELS))
+    whole[top : top + rows, left : left + columns] = picture[..., 3] / 255.0
+    share = DARKEST * shadow(solids, stage.origins, stage.floor)
+    np.testing.assert_allclose(whole, share, atol=0.5 / 255.0 + 1e-9)
+    assert 0.8 * DARKEST < whole.max() <= DARKEST + 0.01
+    assert rows * columns < 0.4 * PIXELS**2  # the rest need not be drawn
 
 
 def test_the_ground_goes_under_a_robot_that_stands_at_height_0() -> None:
