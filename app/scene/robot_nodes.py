@@ -14,7 +14,7 @@ from onpath.app.scene import meshes
 from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.contact_nodes import FORCE_SHOWN
 from onpath.app.scene.poses import Poses, difference, trace_segments
-from onpath.app.scene.stage import IDENTITY, Stage, add_copies
+from onpath.app.scene.stage import IDENTITY, Stage, add_copies, shade
 from onpath.app.viser_adapter.frame_channel import NodeGroup, update_node
 from onpath.models.control.laws.registry import law_named
 
@@ -200,8 +200,8 @@ class RobotNodes:
             for number, mesh in enumerate(stage.bodies)
         ]
         self._bars = [] if bodies else self._add_bars(scene, counts, poses)
-        self._solids = [*(bars.node for bars in self._bars), *(body.node for body in bodies)]
         self._parts = self._add_parts(scene, poses)
+        shade([self._parts, *(each.node for each in (*self._bars, *bodies))], stage)
         self._turns = np.tile(IDENTITY, (len(poses["turns"]), 1))
         self.grips = add_copies(
             scene,

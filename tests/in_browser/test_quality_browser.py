@@ -26,6 +26,16 @@ NAMED = """
 SMOOTHED = (
     'document.querySelector("canvas[data-engine]").getContext("webgl2").getContextAttributes()'
 )
+SCENES = """
+    const tools = window.__THREE_DEVTOOLS__ = new EventTarget()
+    window.scenes = []
+    tools.addEventListener("observe", ({ detail }) => { if (detail?.isScene) scenes.push(detail) })
+"""
+MATERIALS = """() => {
+    const kinds = new Set()
+    for (const scene of scenes) scene.traverse(({ material }) => kinds.add(material?.type))
+    return [...kinds]
+}"""
 RENDERERS = {
     "ANGLE (NVIDIA, NVIDIA GeForce RTX 3060 Direct3D11 vs_5_0 ps_5_0, D3D11)": False,
     "Apple GPU": False,
@@ -42,6 +52,7 @@ def renderer(request: pytest.FixtureRequest) -> str:
 @pytest.fixture
 def tab(browser: Browser, server: LabServer, renderer: str) -> Iterator[Tab]:
     context = browser.new_context()
+    context.add_init_script(SCENES)
     if renderer:
         context.add_init_script(NAMED % (UNMASKED_RENDERER, renderer))
     tab = Tab(server, context, draws=False)
@@ -55,4 +66,5 @@ def test_the_scene_is_as_fine_as_the_browser_can_draw_it(tab: Tab, renderer: str
     assert isinstance(tab.view, LabFeed)
     assert tab.view.page._scene.stage.plain == is_plain
     assert tab.page.evaluate(SMOOTHED)["antialias"] == (not is_plain)
+    assert ("MeshToonMaterial" in tab.page.evaluate(MATERIALS)) == is_plain
     assert not tab.page.get_by_text("Software WebGL").filter(visible=True).count()
