@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 WIDTH, HEIGHT = 640, 380  # of a plot, [px]
-SMALL, LARGE = 15, 33  # size of its labels, for a screen and for a projector, [px]
+SMALL, LARGE = 15, 36  # size of its labels, for a screen and for a projector, [px]
 
 
 @dataclass(frozen=True, slots=True)

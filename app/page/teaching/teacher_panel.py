@@ -34,7 +34,7 @@ Submit = Callable[[Callable[[], None]], None]
 
 
 class TeacherPanel:
-    """Five tabs. The first one is for the projector, as are pace and gains; "Class" has the names.
+    """Five tabs. Only "Class" shows names; it is the first one, and open, unless one presents.
 
     Args:
         post: receives the commands for the teacher's own lab.
@@ -59,11 +59,9 @@ class TeacherPanel:
         self._large = teaching.progress().presenting
         self._for_lessons: list[PredictionsTab | PaceTab] = []
         panel = self._gui.add_panel(order=0)
-        if self._course.lessons:
-            with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
-                self._build_predictions()
-        with panel.add_tab(words("class.title"), viser.Icon.USERS):
-            self._build_class()
+        opened = [self._add_class, self._add_predictions]
+        for add in reversed(opened) if self._large else opened:
+            add(panel)
         if self._course.lessons:
             with panel.add_tab(words("pace.title"), viser.Icon.WALK):
                 self._for_lessons.append(PaceTab(self._gui, words, course, self._class))
@@ -107,19 +105,26 @@ class TeacherPanel:
         finally:
             self._busy = False
 
-    def _build_predictions(self) -> None:
-        tab = PredictionsTab(
-            gui=self._gui,
-            words=self._words,
-            course=self._course,
-            teaching=self._teaching,
-            look_again=self._look_again,
-            present=lambda on: self._post(c.SetPresenting(on)),
-        )
+    def _add_predictions(self, panel: viser.PanelHandle) -> None:
+        if not self._course.lessons:
+            return
+        with panel.add_tab(self._words("class.predictions"), viser.Icon.CHALKBOARD):
+            tab = PredictionsTab(
+                gui=self._gui,
+                words=self._words,
+                course=self._course,
+                teaching=self._teaching,
+                look_again=self._look_again,
+                present=lambda on: self._post(c.SetPresenting(on)),
+            )
         self._codes.append(tab.code)
         self._for_lessons.append(tab)
 
     # Progress
+
+    def _add_class(self, panel: viser.PanelHandle) -> None:
+        with panel.add_tab(self._words("class.title"), viser.Icon.USERS):
+            self._build_class()
 
     def _build_class(self) -> None:
         self._codes.append(self._gui.add_html(""))

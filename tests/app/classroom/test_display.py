@@ -77,6 +77,8 @@ def test_answers_to_a_concept_test_are_hidden_until_they_are_shown(test: str) ->
     answers = ClassAnswers(course, ENGLISH, teaching)
     room.push(TakeStep(test, 0))
     options = question_at(course.lesson(test, "en"), 0).options
-    assert not any(str(escape(option.text)) in answers.view(True) for option in options)
-    room.show(replace(room.display, shown=True))
-    assert all(str(escape(option.text)) in answers.view(True) for option in options)
+    for shown, bars in ((False, 0), (True, 2 * len(options))):  # before and after
+        room.show(replace(room.display, shown=shown))
+        view = answers.view(True)
+        assert all(str(escape(option.text)) in view for option in options)
+        assert view.count("background:") == bars
