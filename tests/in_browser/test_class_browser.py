@@ -284,11 +284,8 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
         wait_for(lambda head=head: head.evaluate(IN_SIGHT))
         assert smallest(page) >= 24
         if asked is None:
-            assert (
-                placed(page.get_by_role("img", name="QR code of this address").first)["width"]
-                >= 200
-            )
-            assert page.get_by_role("img", name="QR code of this address").first.evaluate(IN_SIGHT)
+            code = page.get_by_role("img", name="QR code of this address").filter(visible=True)
+            assert placed(code)["width"] >= 200 and code.evaluate(IN_SIGHT)
         elif isinstance(asked[1], Choice):
             for option in asked[1].options:
                 line = picture.get_by_text(text_of(option.text))
@@ -311,28 +308,33 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
 
 
 def test_a_page_says_that_it_presents_however_that_was_chosen(tabs: Class) -> None:
-    teacher = tabs.teacher
     for on in (True, False):
-        teacher.ask(c.SetPresenting(on))  # as the window "Language, display" does
-        box = teacher.page.get_by_label("Presentation: large type")
-        wait_for(lambda on=on, box=box: box.count() == 1 and box.is_checked() == on)
-        large = "document.documentElement.classList.contains('op-large')"
-        wait_for(lambda on=on, large=large: teacher.page.evaluate(large) == on)
+        tabs.teacher.ask(c.SetPresenting(on))  # as the window "Language, display" does
+        wait_until_presenting(tabs, on)
 
 
 def present(tabs: Class, on: bool) -> None:
-    """Switch large type on or off, and come back to the first tab and a window of usual size."""
+    """Switch large type on or off; then, the class's step is shown in a window of usual size."""
     page = tabs.teacher.page
     page.get_by_role("tab", name="Predictions").click()
     box = page.get_by_label("Presentation: large type")
-    box.set_checked(on)
-    large = "document.documentElement.classList.contains('op-large')"
-    wait_for(lambda: page.evaluate(large) == on)
-    tabs.teacher.wait_until_built()
-    wait_for(lambda: box.count() == 1 and box.is_checked() == on)
-    page.get_by_role("tab", name="Predictions").click()
+    if box.is_checked() != on:
+        box.click()
+    wait_until_presenting(tabs, on)
     if not on:
         page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
+
+
+def wait_until_presenting(tabs: Class, on: bool) -> None:
+    """Return when the whole page has large type, or none; names are not shown while it has."""
+    page = tabs.teacher.page
+    first = page.get_by_role("tab", name="Predictions" if on else "Class", exact=True)
+    is_large = "document.documentElement.classList.contains('op-large')"
+    wait_for(lambda: page.evaluate(is_large) == on)
+    wait_for(lambda: first.count() == 1 and first.get_attribute("aria-selected") == "true")
+    page.get_by_role("tab", name="Predictions").click()
+    box = page.get_by_label("Presentation: large type")
+    wait_for(lambda: box.count() == 1 and box.is_checked() == on)
 
 
 def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
