@@ -39,7 +39,7 @@ IN_SIGHT = """box => {
     const {left, top, width, height} = box.getBoundingClientRect()
     return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
 }"""
-WINDOWS = ((1100, 700), (800, 400), (800, 400))
+WINDOWS = ((1100, 700), (800, 560), (800, 560))
 
 
 @dataclass
@@ -400,6 +400,14 @@ def test_a_teacher_who_reloads_is_still_the_teacher_and_at_the_same_place(tabs: 
     assert teacher.field("Step").input_value() == before
 
 
+def unfold(tab: Tab) -> None:
+    """Open the panel, which is folded in a step that has no controls."""
+    column = tab.button("Expand column")
+    if column.count():
+        column.click()
+    tab.button("Language, display").wait_for()
+
+
 def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> None:
     teacher, (first, second) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()
@@ -410,6 +418,8 @@ def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> Non
     wait_for(lambda: teacher.field("Nickname").input_value() == HOSTILE)
     fill(teacher, "Nickname", "Ada")
     teacher.button("Rename").click()
+    for student in tabs.students:
+        unfold(student)
     second.page.get_by_text("You are in the class as Ada 2").wait_for(state="attached")
     teacher.page.get_by_text("This is the lab of Ada 2").wait_for()
     wait_for(lambda: teacher.field("Nickname").input_value() == "Ada 2")

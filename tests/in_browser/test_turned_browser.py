@@ -105,7 +105,7 @@ def test_the_robots_have_their_share_of_every_window(
         if step == 6 and not low:
             wait_for(lambda s=slider: s.evaluate(IN_SIGHT))
         if step is not None:
-            assert tab.page.locator("#op-column .open :is(h2, h3)").first.evaluate(IN_SIGHT)
-            assert tab.button("Next").evaluate(IN_SIGHT)
+            for each in (tab.page.locator("#op-column .open h2").first, tab.button("Next")):
+                wait_for(lambda each=each: each.evaluate(IN_SIGHT))
     assert tab.errors == []
     tab.page.context.close()
