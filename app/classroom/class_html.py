@@ -15,7 +15,7 @@ from onpath.lessons.concept_test.titles import titles_of_tests
 from onpath.lessons.course import Course
 from onpath.lessons.option_order import LETTERS
 from onpath.lessons.progress import Progress, Truth
-from onpath.lessons.schema import Choice, Prediction, Quiz
+from onpath.lessons.schema import Choice, Prediction, Quiz, Sketch
 from onpath.lessons.sides import robot_names
 from onpath.lessons.words import Words
 from onpath.models.control.sides import DEFAULT_LAWS
@@ -137,11 +137,13 @@ def choices_view(
     revealed: bool,
     words: Words,
     large: bool = False,
+    facts: str = "",
 ) -> str:
     """The options and how many students chose each, without names; rounds stand side by side.
 
     Args:
-        rounds: title and answers of each time the question was asked.
+        rounds: title and answers of each time the question was asked; none hides the answers.
+        facts: what is said below, unless there is one round, which has its own line.
     """
     titled = [(title, found.counts, given_line(found, words)) for title, found in rounds]
     return render(
@@ -149,9 +151,9 @@ def choices_view(
         block=block,
         options=list(zip(LETTERS, block.options, strict=False)),
         rounds=titled,
-        most=max(1, *(count for _, found in rounds for count in found.counts)),
+        most=max([1, *(count for _, found in rounds for count in found.counts)]),
         revealed=revealed,
-        facts=titled[0][2] if len(titled) == 1 else "",
+        facts=titled[0][2] if len(titled) == 1 else facts,
         large=large,
     )
 
@@ -159,9 +161,16 @@ def choices_view(
 def hidden_view(
     block: Prediction | Quiz, found: Distribution, words: Words, large: bool = False
 ) -> str:
-    """The question, and how many students have answered it."""
+    """The question, its options, and how many students have answered it."""
     facts = given_line(found, words)
-    return render("class/prediction.html", block=block, facts=facts, large=large)
+    if isinstance(block, Sketch):
+        return render("class/prediction.html", block=block, facts=facts, large=large)
+    return choices_view(block, (), revealed=False, words=words, large=large, facts=facts)
+
+
+def step_view(title: str, remark: str, large: bool = False) -> str:
+    """A step that asks nothing."""
+    return render("class/step.html", title=title, remark=remark, large=large)
 
 
 def given_line(found: Distribution, words: Words) -> str:

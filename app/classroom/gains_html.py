@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from math import sqrt
 
 from onpath.app.classroom.class_sync import GAINS
+from onpath.app.classroom.plot_frame import HEIGHT, WIDTH, PlotFrame, frame_for
 from onpath.app.common.templates import render
 from onpath.lessons.labels import setting_label
 from onpath.lessons.words import Words
@@ -18,7 +19,6 @@ PAIRS = (("K1", "K2"), ("K4", "K5"), ("K1", "K3"), ("K1", "K5"))
 """Gains along the two axes; each spring with its damping comes first."""
 SPRINGS = (("K1", "K2"), ("K4", "K5"))
 """Pairs of a spring and its damping, with a border between swinging and creeping."""
-WIDTH, HEIGHT, LEFT, BELOW, MARGIN = 640, 380, 62, 52, 14  # size of the diagram, [px]
 POINTS = 60  # on the border
 
 
@@ -38,16 +38,15 @@ class Scale:
 
     across: tuple[float, float]
     up: tuple[float, float]
+    frame: PlotFrame
 
     def position(self, x: float, y: float) -> tuple[float, float]:
         """Position of a point, [px]."""
-        shares = [
-            min(max((value - low) / (high - low), 0.0), 1.0)
-            for value, (low, high) in ((x, self.across), (y, self.up))
-        ]
-        return (
-            LEFT + shares[0] * (WIDTH - LEFT - MARGIN),
-            MARGIN + (1 - shares[1]) * (HEIGHT - BELOW - MARGIN),
+        return self.frame.position(
+            *(
+                (value - low) / (high - low)
+                for value, (low, high) in ((x, self.across), (y, self.up))
+            )
         )
 
 
@@ -70,7 +69,7 @@ def gains_view(
     parameters = FIVE_BAR.parameters()
     declared = specs(parameters)
     ranges = [(declared[name].low, declared[name].high) for name in pair]
-    scale = Scale(across=ranges[0], up=ranges[1])
+    scale = Scale(across=ranges[0], up=ranges[1], frame=frame_for(large, titled=True))
     dots = [_dot(scale, values, count) for values, count in counted.items()]
     marks = [
         (*scale.position(*(low + part * (high - low) for low, high in ranges)), values)
@@ -83,7 +82,9 @@ def gains_view(
         dots=dots,
         marks=marks,
         border=_border(scale) if pair in SPRINGS else "",
-        box=(WIDTH, HEIGHT, LEFT, MARGIN, HEIGHT - BELOW),
+        width=WIDTH,
+        height=HEIGHT,
+        frame=scale.frame,
         students=len(known),
         words=words,
         large=large,

@@ -8,6 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from onpath.app.classroom.plot_frame import HEIGHT, WIDTH, PlotFrame, frame_for
 from onpath.app.classroom.results import Distribution
 from onpath.app.common.palette import OF_SIDE, SLATE
 from onpath.app.common.templates import render
@@ -20,8 +21,6 @@ from onpath.lessons.schema import Sketch
 from onpath.lessons.sides import ROLES
 from onpath.lessons.words import Words
 
-WIDTH, HEIGHT, LEFT, BELOW = 640, 380, 50, 36  # size of a plot and its margins, [px]
-FLOOR = HEIGHT - BELOW - 10  # y of its lowest value, [px]
 MOST_POINTS = 40  # of a sketch
 Numbered = tuple[tuple[int, Answer], ...]
 
@@ -107,12 +106,13 @@ def sketches_view(
         large: whether to use large type for a projector.
         picks: the sketches to show; picked ones have their numbers in the plot.
     """
+    frame = frame_for(large)
     shown = [picks.of(i, each.found.sketches) for i, each in enumerate(rounds)]
     names = [(SLATE.hex, words("class.predicted"))]
     if truth is not None:
         names += [(OF_SIDE[side].hex, robots[role]) for side, role in ROLES.items()]
     plots = [
-        (each.title, _lines(block, sketches, truth, bool(picks.picked)), each.facts)
+        (each.title, _lines(block, frame, sketches, truth, bool(picks.picked)), each.facts)
         for each, sketches in zip(rounds, shown, strict=True)
     ]
     small = shown[-1] if not picks.picked and len(shown[-1]) > 1 else ()
@@ -122,11 +122,12 @@ def sketches_view(
         title=f"{words(f'quantity.{block.quantity}')} [{QUANTITIES[block.quantity]}]",
         width=WIDTH,
         height=HEIGHT,
-        left=LEFT,
-        floor=FLOOR,
-        marks=_marks(block),
+        frame=frame,
+        marks=_marks(block, frame),
         plots=plots,
-        small=[(n, _points(block, each.times, each.values, MOST_POINTS)) for n, each in small],
+        small=[
+            (n, _points(block, frame, each.times, each.values, MOST_POINTS)) for n, each in small
+        ],
         names=names,
         facts=rounds[0].facts if len(rounds) == 1 else "",
         large=large,
@@ -134,12 +135,16 @@ def sketches_view(
 
 
 def _lines(
-    block: Sketch, sketches: Numbered, truth: Truth | None, are_picked: bool
+    block: Sketch,
+    frame: PlotFrame,
+    sketches: Numbered,
+    truth: Truth | None,
+    are_picked: bool,
 ) -> list[PlottedLine]:
     width, opacity = (4, 0.8) if are_picked else (2, 0.5)
     lines = [
         PlottedLine(
-            points=_points(block, sketch.times, sketch.values, MOST_POINTS),
+            points=_points(block, frame, sketch.times, sketch.values, MOST_POINTS),
             colour=SLATE.hex,
             width=width,
             opacity=opacity,
@@ -149,29 +154,33 @@ def _lines(
     ]
     if truth is not None:
         for side, role in ROLES.items():
-            points = _points(block, truth.times, getattr(truth, role), MOST_OF_TRUTH)
+            points = _points(block, frame, truth.times, getattr(truth, role), MOST_OF_TRUTH)
             lines.append(PlottedLine(points, OF_SIDE[side].hex, width=4, opacity=1.0))
     return lines
 
 
-def _marks(block: Sketch) -> list[AxisMark]:
+def _marks(block: Sketch, frame: PlotFrame) -> list[AxisMark]:
     marks: list[AxisMark] = []
     for part in (0.0, 0.25, 0.5, 0.75, 1.0):
         time, value = part * block.seconds, block.bottom + part * (block.top - block.bottom)
-        x, y = _position(block, time, value)
+        x, y = _position(block, frame, time, value)
         marks.append(AxisMark(round(x), round(y), f"{time:g}", f"{value:g}"))
     return marks
 
 
 @lru_cache(maxsize=1024)  # the same curves are redrawn every second
-def _points(block: Sketch, times: tuple[float, ...], values: tuple[float, ...], most: int) -> str:
+def _points(
+    block: Sketch,
+    frame: PlotFrame,
+    times: tuple[float, ...],
+    values: tuple[float, ...],
+    most: int,
+) -> str:
     kept = peaks([np.array(values)], most)
-    points = [_position(block, times[i], values[i]) for i in kept]
+    points = [_position(block, frame, times[i], values[i]) for i in kept]
     return " ".join(f"{x:.0f},{y:.0f}" for x, y in points)
 
 
-def _position(block: Sketch, time: float, value: float) -> tuple[float, float]:
+def _position(block: Sketch, frame: PlotFrame, time: float, value: float) -> tuple[float, float]:
     """Position on the plot, [px]; points outside the axes are moved to their edge."""
-    across = min(max(time / block.seconds, 0.0), 1.0)
-    up = min(max((value - block.bottom) / (block.top - block.bottom), 0.0), 1.0)
-    return LEFT + across * (WIDTH - LEFT - 20), 10 + (1.0 - up) * (HEIGHT - BELOW - 20)
+    return frame.position(time / block.seconds, (value - block.bottom) / (block.top - block.bottom))

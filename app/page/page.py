@@ -50,8 +50,8 @@ CONTROL_WIDTH, LARGE_WIDTH = 330, 560  # [px], the latter for a plot on a projec
 TITLES = 44.0  # [px], of the scene, that the titles of the robots take
 MOST_TITLES = 0.1  # of its height
 ASIDE = 0.025  # of the scene's width, for the brakes, which stick out of the robots' boxes
-UPRIGHT_KEY = "upright"
-"""Where a browser keeps whether the panel is below the scene; see assets/page/portrait.js."""
+SHAPE_KEY = "shape"
+"""Where a browser keeps its window's shape; see assets/page/portrait.js."""
 
 
 class Page:
@@ -82,6 +82,7 @@ class Page:
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
+        self._low = False
         self._folded = True  # perhaps by the page before, in the same browser
         self._wants_folded = self.has_script = False
         self._step: StepControls | None = None
@@ -316,12 +317,13 @@ class Page:
     def _follow_fold(self) -> None:
         """Fold the panel, or show it, once the page's script has read in it what it needs.
 
-        It then stays until another step is opened, unless the user does otherwise. A folded panel
-        is not in the document; see panel/page.html.
+        It then stays until another step is opened, unless the user does otherwise; in a low window,
+        where it takes the place of a lesson's text, it waits until the user opens it. A folded
+        panel is not in the document; see panel/page.html.
         """
         folds = self._wants_folded
         if (step := self._step) is not None:
-            folds = step.is_empty or (folds and not step.has_plots)
+            folds = self._low or step.is_empty or (folds and not step.has_plots)
         stands = self.has_script and self._settling < SETTLING - STANDS
         if folds != self._folded and stands:
             self._folded = folds
@@ -332,9 +334,11 @@ class Page:
         camera = self._client.camera
         return camera.image_width < NARROW * camera.image_height
 
-    def _heard_upright(self, kept: str) -> None:
-        """Note whether the window is upright now. A browser's value is not trusted."""
-        self._wanted_narrow = {"yes": True, "no": False}.get(kept, self._is_narrow())
+    def _heard_shape(self, kept: str) -> None:
+        """Note the window's shape now. A browser's value is not trusted."""
+        known = kept in ("upright", "wide", "low")
+        self._wanted_narrow = kept == "upright" if known else self._is_narrow()
+        self._low = kept == "low"
 
     def _frame_camera(self) -> None:
         """Refit the camera to both robots when the aspect ratio of the view changes.
@@ -351,7 +355,7 @@ class Page:
         shape = width / max(height, 1)
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
-            ask_item(self._client, UPRIGHT_KEY, self._heard_upright)
+            ask_item(self._client, SHAPE_KEY, self._heard_shape)
             self._scene.frame_camera(self._insets(width, height))
 
     def _insets(self, width: float, height: float) -> Insets:

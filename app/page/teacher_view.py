@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import viser
 from typing_extensions import override
 
@@ -20,6 +22,8 @@ from onpath.lessons.words import Words
 class TeacherView(Page):
     """The teacher's view. A followed lab is read-only.
 
+    For a projector, the lab's controls are folded, and those of the class are beside the stage.
+
     Args:
         first: initial snapshot of the teacher's own lab, which also sets the language of the page.
     """
@@ -37,7 +41,7 @@ class TeacherView(Page):
     @override
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
-        return key.student, key.robot, key.fields, key.plane
+        return key.student, key.robot, key.fields, key.plane, self._presents
 
     @override
     def _post_for(self, snapshot: PageSnapshot) -> Post:
@@ -48,8 +52,17 @@ class TeacherView(Page):
         return None
 
     @override
+    def state(self, snapshot: PageSnapshot) -> dict[str, Any]:
+        return super().state(snapshot) | {"presenting": self._presents}
+
+    @override
     def _is_folded(self, snapshot: PageSnapshot) -> bool:
-        return False  # it has what leads the class
+        return self._presents
+
+    @property
+    def _presents(self) -> bool:
+        """Whether the teacher presents, whoever's lab is shown."""
+        return self._teaching.progress().presenting
 
     @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:

@@ -95,7 +95,7 @@ class Face {
         this.column.element.remove()
         this.stage.remove()
         this.element.remove()
-        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits")
+        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
     }
 
     /** Follow viser's canvas, which changes its size, or is replaced. */
@@ -114,7 +114,14 @@ class Face {
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }
         this.voice.place(left, top, width, height)
+        this.makeRoom(this.column.open ? 0 : left)
         Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
+    }
+
+    /** A panel on the left is as high as the window; the strip begins beside it. */
+    private makeRoom(left: number): void {
+        document.documentElement.classList.toggle("op-beside", left > 0)
+        this.element.style.left = left > 0 ? `${left}px` : ""
     }
 
     /** Put the lenses on the stage, or into the strip on a telephone. */

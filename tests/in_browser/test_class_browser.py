@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from html import unescape
 
 import pytest
 
@@ -12,7 +13,8 @@ pytest.importorskip("playwright")
 
 from playwright.sync_api import Browser, FloatRect, Locator, Page
 
-from onpath.app.classroom.classroom import Classroom
+from onpath.app.classroom.classroom import Classroom, Display
+from onpath.app.classroom.results import prediction_at
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
@@ -20,6 +22,7 @@ from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.addresses import class_address
+from onpath.lessons.schema import Choice
 from tests.support.axe import violations
 from tests.support.browser import Tab, wait_for
 
@@ -36,7 +39,7 @@ IN_SIGHT = """box => {
     const {left, top, width, height} = box.getBoundingClientRect()
     return box.contains(document.elementFromPoint(left + width / 2, top + height / 2))
 }"""
-WINDOWS = ((1100, 700), (800, 400), (800, 400))
+WINDOWS = ((1100, 700), (800, 560), (800, 560))
 
 
 @dataclass
@@ -48,11 +51,19 @@ class Class:
     students: list[Tab]
 
 
+class InLecture(LabServer):
+    """A server that other devices reach."""
+
+    @property
+    def site(self) -> str:
+        return "http://192.0.2.7:8080"
+
+
 @pytest.fixture(scope="module")
 def tabs(browser: Browser) -> Iterator[Class]:
     room = Classroom()
     store = LoopCache()
-    server = LabServer("127.0.0.1", 0, store, classrooms=[room])
+    server = InLecture("127.0.0.1", 0, store, classrooms=[room])
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})
@@ -70,6 +81,11 @@ def placed(what: Locator) -> FloatRect:
     box = what.bounding_box()
     assert box is not None
     return box
+
+
+def text_of(html: str) -> str:
+    """The text of an HTML that has no other markup than of words."""
+    return unescape(re.sub("<[^>]*>", "", html))
 
 
 def smallest(page: Page) -> float:
@@ -217,14 +233,11 @@ def test_gains_of_all_are_points_that_can_be_read_from_afar(tabs: Class) -> None
     wait_for(lambda: shown.locator("circle").count() == 1)
     page = teacher.page
     page.set_viewport_size({"width": 1920, "height": 1080})
-    page.get_by_role("tab", name="Predictions").click()
-    page.get_by_text("Presentation: large type").click()
+    present(tabs, True)
     for tab in ("Gains", "Pace"):
         page.get_by_role("tab", name=tab).click()
         wait_for(lambda: smallest(page) >= 24)
-    page.get_by_role("tab", name="Predictions").click()
-    page.get_by_text("Presentation: large type").click()
-    page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
+    present(tabs, False)
     for student in (first, second):
         student.ask(c.BeginStepAnew())
 
@@ -245,33 +258,83 @@ def test_next_and_back_lead_the_whole_class_and_tell_where(tabs: Class) -> None:
     page.get_by_label("Show the answers").click()
 
 
-@pytest.mark.parametrize("size", [(1280, 800), (1920, 1080)])
-def test_on_a_projector_what_leads_the_class_stays_in_sight(
-    tabs: Class, size: tuple[int, int]
+PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]
+SHARE = 0.55  # of a projector's width that the robots have at least
+STAGE = """() => [...document.querySelectorAll("canvas[data-engine]")]
+    .map(each => each.getBoundingClientRect().width / innerWidth)"""
+
+
+@pytest.mark.parametrize("size", PROJECTORS)
+@pytest.mark.parametrize("step", [0, 1, 4])  # a text, a drawing and options
+def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
+    tabs: Class, size: tuple[int, int], step: int
 ) -> None:
-    page = tabs.teacher.page
+    page, room = tabs.teacher.page, tabs.room
     page.set_viewport_size({"width": size[0], "height": size[1]})
-    large = page.get_by_label("Presentation: large type")
-    large.click()  # below everything
-    for name in ("Back for all", re.compile("^Next for all"), "Ask this again"):
-        wait_for(lambda n=name: page.get_by_role("button", name=n).evaluate(IN_SIGHT))
-    for name in ("Show the answers", "Show the truth"):
-        assert page.get_by_label(name).evaluate(IN_SIGHT)
-    assert page.get_by_role("button", name=re.compile("^Next for all: 3. See$")).count() == 1
-    large.click()
-    page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
+    present(tabs, True)
+    asked = prediction_at(tabs.students[0].lab.lessons.course.lesson(LESSON, "en"), step)
+    for visible in (False, True):
+        room.show(Display(LESSON, step, shown=visible))
+        picture = page.locator(".op-class").filter(visible=True)
+        head = picture.locator("p").first
+        told = "Two robots, one circle" if asked is None else ""
+        told = told or text_of(asked[1].question)
+        wait_for(lambda told=told, head=head: told in head.inner_text())
+        wait_for(lambda: min(page.evaluate(STAGE)) >= SHARE)
+        wait_for(lambda head=head: head.evaluate(IN_SIGHT))
+        assert smallest(page) >= 24
+        if asked is None:
+            code = page.get_by_role("img", name="QR code of this address").filter(visible=True)
+            assert placed(code)["width"] >= 200 and code.evaluate(IN_SIGHT)
+        elif isinstance(asked[1], Choice):
+            for option in asked[1].options:
+                line = picture.get_by_text(text_of(option.text))
+                assert line.evaluate(IN_SIGHT)
+        elif visible:
+            wait_for(lambda: picture.locator("svg:has(text)").first.evaluate(IN_SIGHT))
+        for name in (re.compile("^Next for all"), "Ask this again"):
+            assert page.get_by_role("button", name=name).evaluate(IN_SIGHT)
+        for name in ("Show the answers", "Show the truth"):
+            assert page.get_by_label(name).evaluate(IN_SIGHT)
+        strip = placed(page.locator("#op-strip"))
+        for reading in page.locator("#op-strip .reading").all():
+            box = placed(reading)
+            assert box["y"] + box["height"] <= strip["y"] + strip["height"] + 1
+            number = reading.locator(".number")
+            assert number.evaluate("each => parseFloat(getComputedStyle(each).fontSize)") >= 60
+        assert page.get_by_role("button", name="Freeze all labs").count() == 0  # folded
+        assert "Ada" not in page.locator("#root").inner_text()
+    present(tabs, False)
 
 
-def test_on_a_projector_the_prediction_is_large_and_comes_first(tabs: Class) -> None:
+def test_a_page_says_that_it_presents_however_that_was_chosen(tabs: Class) -> None:
+    for on in (True, False):
+        tabs.teacher.ask(c.SetPresenting(on))  # as the window "Language, display" does
+        wait_until_presenting(tabs, on)
+
+
+def present(tabs: Class, on: bool) -> None:
+    """Switch large type on or off; then, the class's step is shown in a window of usual size."""
     page = tabs.teacher.page
-    picture = page.locator(".op-class").filter(visible=True)
-    size = "each => parseFloat(getComputedStyle(each).fontSize)"
-    page.get_by_text("Presentation: large type").click()
-    wait_for(lambda: picture.evaluate(size) >= 24)
-    wait_for(lambda: placed(picture)["y"] < placed(tabs.teacher.field("Lesson"))["y"])
-    wait_for(lambda: placed(picture)["width"] > 0.6 * WINDOWS[0][0])
-    page.get_by_text("Presentation: large type").click()
-    wait_for(lambda: picture.evaluate(size) < 24)
+    page.get_by_role("tab", name="Predictions").click()
+    box = page.get_by_label("Presentation: large type")
+    if box.is_checked() != on:
+        box.click()
+    wait_until_presenting(tabs, on)
+    if not on:
+        page.set_viewport_size({"width": WINDOWS[0][0], "height": WINDOWS[0][1]})
+
+
+def wait_until_presenting(tabs: Class, on: bool) -> None:
+    """Return when the whole page has large type, or none; names are not shown while it has."""
+    page = tabs.teacher.page
+    first = page.get_by_role("tab", name="Predictions" if on else "Class", exact=True)
+    is_large = "document.documentElement.classList.contains('op-large')"
+    wait_for(lambda: page.evaluate(is_large) == on)
+    wait_for(lambda: first.count() == 1 and first.get_attribute("aria-selected") == "true")
+    page.get_by_role("tab", name="Predictions").click()
+    box = page.get_by_label("Presentation: large type")
+    wait_for(lambda: box.count() == 1 and box.is_checked() == on)
 
 
 def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
@@ -283,7 +346,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
     wait_for(lambda: first.lab.lessons.index == 2)
-    wait_for(lambda: teacher.page.get_by_text("Sent to 2 students").count() == 2)
+    teacher.page.get_by_text("Sent to 2 students").wait_for()
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.page.get_by_text("Students who join receive the set-up").wait_for()
     teacher.press("Stop sending this to students who join")
@@ -337,6 +400,14 @@ def test_a_teacher_who_reloads_is_still_the_teacher_and_at_the_same_place(tabs: 
     assert teacher.field("Step").input_value() == before
 
 
+def unfold(tab: Tab) -> None:
+    """Open the panel, which is folded in a step that has no controls."""
+    column = tab.button("Expand column")
+    if column.count():
+        column.click()
+    tab.button("Language, display").wait_for()
+
+
 def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> None:
     teacher, (first, second) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Class").click()
@@ -347,6 +418,8 @@ def test_a_student_is_renamed_and_removed_and_comes_in_again(tabs: Class) -> Non
     wait_for(lambda: teacher.field("Nickname").input_value() == HOSTILE)
     fill(teacher, "Nickname", "Ada")
     teacher.button("Rename").click()
+    for student in tabs.students:
+        unfold(student)
     second.page.get_by_text("You are in the class as Ada 2").wait_for(state="attached")
     teacher.page.get_by_text("This is the lab of Ada 2").wait_for()
     wait_for(lambda: teacher.field("Nickname").input_value() == "Ada 2")

@@ -20,6 +20,8 @@ from tests.support.browser import Tab, wait_for
 pytestmark = pytest.mark.thorough
 
 WIDE, UPRIGHT, DESK, TALL = (1180, 820), (820, 1180), (1280, 800), (1280, 1600)
+WINDOWS = [(640, 400), (844, 390), (1024, 768), (1180, 820), (1280, 800), (1366, 768), (1920, 1080)]
+LESSON = "01-path-or-timetable"
 SHEET = '.mantine-Paper-root[style*="bottom: 0"]'
 
 
@@ -36,6 +38,13 @@ def tab(browser: Browser, server: LabServer, sizes: list[tuple[int, int]]) -> It
     yield tab
     assert tab.errors == []
     context.close()
+
+
+IN_SIGHT = """box => {
+    const {left, top, width, height} = box.getBoundingClientRect()
+    const at = document.elementFromPoint(left + width / 2, top + height / 2)
+    return box.contains(at) || at?.contains(box)
+}"""
 
 
 def seen(tab: Tab) -> tuple[np.ndarray, dict[str, float]]:
@@ -65,7 +74,7 @@ def in_sight(tab: Tab) -> bool:
 @pytest.mark.parametrize("lesson", [False, True])
 def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson: bool) -> None:
     if lesson:
-        tab.ask(c.OpenLesson("01-path-or-timetable"))
+        tab.ask(c.OpenLesson(LESSON))
     for width, height in sizes:
         tab.page.set_viewport_size({"width": width, "height": height})
         upright = width <= 0.8 * height
@@ -75,3 +84,28 @@ def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson
         wait_for(lambda u=upright: bool(tab.page.locator(SHEET).count()) == u)
         wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
         tab.ask(c.SetRunning(False))
+
+
+@pytest.mark.parametrize("step", [None, 0, 6])  # no lesson, and steps without and with controls
+def test_the_robots_have_their_share_of_every_window(
+    browser: Browser, server: LabServer, step: int | None
+) -> None:
+    tab = Tab(server, browser.new_context(), draws=False)
+    if step is not None:
+        tab.ask(c.TakeStep(LESSON, step), c.SetRunning(False))
+    for width, height in WINDOWS:
+        tab.page.set_viewport_size({"width": width, "height": height})
+        least = 0.5 if step is not None and width < 1280 else 0.4
+        wait_for(
+            lambda w=width, part=least: tab._canvas()["width"] >= part * w,
+            state=lambda: str(tab._canvas()),
+        )
+        wait_for(lambda: in_sight(tab), state=lambda: str(seen(tab)))
+        slider, low = tab.page.get_by_role("slider", name="K1 across"), height < 500
+        if step == 6 and not low:
+            wait_for(lambda s=slider: s.evaluate(IN_SIGHT))
+        if step is not None:
+            for each in (tab.page.locator("#op-column .open h2").first, tab.button("Next")):
+                wait_for(lambda each=each: each.evaluate(IN_SIGHT))
+    assert tab.errors == []
+    tab.page.context.close()

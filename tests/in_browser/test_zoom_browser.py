@@ -127,8 +127,22 @@ def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     wait_for(lambda: tab.session.forces.held)
     expect(tab.page.get_by_role("heading", name="Hold it yourself")).to_be_in_viewport()
     expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
-    expect(tab.slider("K1")).to_be_in_viewport()
+    assert tab._canvas()["width"] > 0.5 * 640
     tab.ask(c.Hold(False))
+
+
+def test_controls_take_the_place_of_the_text_and_leave_the_robots_theirs(tab: Tab) -> None:
+    tab.ask(TakeStep(LESSON, 0), TakeStep(LESSON, 6))
+    heading = tab.page.get_by_role("heading", name="Hold it yourself")
+    expect(heading).to_be_in_viewport()
+    tab.button("Expand column").click()
+    expect(tab.slider("K1")).to_be_in_viewport()
+    expect(tab.button("Hold both back")).to_be_in_viewport(ratio=0.99)
+    wait_for(lambda: tab._canvas()["width"] > 0.5 * 640)
+    is_whole(tab)
+    tab.page.locator("[data-dock-region-collapse]").click()
+    expect(heading).to_be_in_viewport()
+    expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
 
 
 def test_a_board_is_large_enough_to_draw_on_beside_its_question(tab: Tab) -> None:

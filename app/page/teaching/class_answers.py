@@ -16,6 +16,7 @@ from onpath.app.classroom.sketches_html import Picks
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.app.page.panels.widgets import note
 from onpath.app.page.teacher_context import TeacherContext
+from onpath.app.page.teaching.lesson_menu_labels import step_label
 from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.course import Course
@@ -64,7 +65,8 @@ class ClassAnswers:
         words, revealed = self._words, self._display.revealed
         found = prediction_at(lesson, index)
         if found is None:
-            return note(words("class.no_prediction"))
+            title = step_label(lesson, index, words)
+            return page.step_view(title, words("class.no_prediction"), large)
         at, block = found
         truth = truth_of(lesson.name, at, [*students, self._teaching.progress()])
         if truth is None and revealed:

@@ -1,6 +1,7 @@
 """Tab of the teacher's page: the step for all, and the class's answers to it.
 
-What leads the class is in a folder that stays in sight above the answers; the menus are below.
+What leads the class is in a folder that stays in sight above the answers; the way to join and the
+menus are below.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ class PredictionsTab:
     Args:
         look_again: updates the page.
         present: called when large type is switched on or off.
+
+    Attributes:
+        code: shows how students join.
     """
 
     def __init__(
@@ -64,6 +68,7 @@ class PredictionsTab:
             self._revealed = gui.add_checkbox(words("class.truth"), display.revealed)
             again = gui.add_button(words("class.ask_again"), color="gray", icon=icons.REPEAT)
         self._prediction = gui.add_html("")
+        self.code = gui.add_html("")
         self._lesson = gui.add_dropdown(
             words("class.lesson"), list(self._lessons), initial_value=self._titles[lesson]
         )

@@ -27,14 +27,14 @@ from onpath.lessons.course import Course
 from onpath.lessons.kept.known_choices import of_today
 from onpath.lessons.words import Words
 
-WIDTH, WIDE = 480, 1280  # [px]; wide for a projector
+WIDTH, WIDE = 480, 520  # [px]; wide for a projector
 REFRESH_INTERVAL = 1.0  # [s], refresh period
 
 Submit = Callable[[Callable[[], None]], None]
 
 
 class TeacherPanel:
-    """Five tabs. Only the first one shows names; predictions, pace and gains suit a projector.
+    """Five tabs. Only "Class" shows names; it is the first one, and open, unless one presents.
 
     Args:
         post: receives the commands for the teacher's own lab.
@@ -59,11 +59,10 @@ class TeacherPanel:
         self._large = teaching.progress().presenting
         self._for_lessons: list[PredictionsTab | PaceTab] = []
         panel = self._gui.add_panel(order=0)
-        with panel.add_tab(words("class.title"), viser.Icon.USERS):
-            self._build_class()
+        opened = [self._add_class, self._add_predictions]
+        for add in reversed(opened) if self._large else opened:
+            add(panel)
         if self._course.lessons:
-            with panel.add_tab(words("class.predictions"), viser.Icon.CHALKBOARD):
-                self._build_predictions()
             with panel.add_tab(words("pace.title"), viser.Icon.WALK):
                 self._for_lessons.append(PaceTab(self._gui, words, course, self._class))
         with panel.add_tab(words("gains.title"), viser.Icon.CHART_DOTS):
@@ -72,7 +71,6 @@ class TeacherPanel:
             self._build_record()
         panel.dock_left()
         panel.set_width(WIDE if self._large else WIDTH)
-        self._panel = panel
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Refresh once a second in another thread, since the class may be large."""
@@ -107,19 +105,26 @@ class TeacherPanel:
         finally:
             self._busy = False
 
-    def _build_predictions(self) -> None:
-        self._codes.append(self._gui.add_html(""))
-        tab = PredictionsTab(
-            gui=self._gui,
-            words=self._words,
-            course=self._course,
-            teaching=self._teaching,
-            look_again=self._look_again,
-            present=self._present,
-        )
+    def _add_predictions(self, panel: viser.PanelHandle) -> None:
+        if not self._course.lessons:
+            return
+        with panel.add_tab(self._words("class.predictions"), viser.Icon.CHALKBOARD):
+            tab = PredictionsTab(
+                gui=self._gui,
+                words=self._words,
+                course=self._course,
+                teaching=self._teaching,
+                look_again=self._look_again,
+                present=lambda on: self._post(c.SetPresenting(on)),
+            )
+        self._codes.append(tab.code)
         self._for_lessons.append(tab)
 
     # Progress
+
+    def _add_class(self, panel: viser.PanelHandle) -> None:
+        with panel.add_tab(self._words("class.title"), viser.Icon.USERS):
+            self._build_class()
 
     def _build_class(self) -> None:
         self._codes.append(self._gui.add_html(""))
@@ -173,12 +178,6 @@ class TeacherPanel:
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed, self._chosen.message = self._followable().get(name, ""), ""
-        self._look_again()
-
-    def _present(self, on: bool) -> None:
-        self._large = on
-        self._post(c.SetPresenting(on))
-        self._panel.set_width(WIDE if on else WIDTH)
         self._look_again()
 
     def _look_again(self) -> None:

@@ -14,6 +14,7 @@ from markupsafe import escape
 from onpath.app.classroom.class_state import from_stored, to_stored
 from onpath.app.classroom.classroom import NOTHING_DONE, Classroom, ClassState, Display
 from onpath.app.classroom.concept_test_results import question_at
+from onpath.app.classroom.results import prediction_at
 from onpath.app.lab.commands import TakeSetup, TakeStep
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.page.teacher_context import TeacherChoices
@@ -21,7 +22,8 @@ from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.concept_test.concept_test import TESTS
 from onpath.lessons.progress import Progress
-from onpath.lessons.words import ENGLISH
+from onpath.lessons.schema import Choice
+from onpath.lessons.words import ENGLISH, Words, languages
 
 switches = st.booleans()
 displays = st.builds(Display, st.text(max_size=20), st.integers(0, 99), switches, switches)
@@ -69,6 +71,25 @@ def test_a_setup_that_is_sent_changes_nothing_that_is_displayed(shown: Display) 
     assert room.display == Display()
 
 
+@pytest.mark.parametrize("language", languages())
+def test_every_question_of_a_lesson_is_shown_with_its_options_before_its_answers(
+    language: str,
+) -> None:
+    course, room, words = built_in_course(), Classroom(), Words(language)
+    teaching: Any = SimpleNamespace(classroom=room, chosen=TeacherChoices(), progress=Progress)
+    answers = ClassAnswers(course, words, teaching)
+    for name in course.lessons:
+        lesson = course.lesson(name, language)
+        for index, step in enumerate(lesson.steps):
+            room.show(Display(name, index))
+            view, asked = answers.view(True), prediction_at(lesson, index)
+            told = [step.title] if asked is None else [asked[1].question]
+            if asked is not None and isinstance(asked[1], Choice):
+                told += [option.text for option in asked[1].options]
+            assert all(str(escape(text)) in view for text in told), (name, index)
+            assert "background:" not in view and "✓" not in view
+
+
 @pytest.mark.parametrize("test", TESTS)
 def test_answers_to_a_concept_test_are_hidden_until_they_are_shown(test: str) -> None:
     course, room = built_in_course(), Classroom()
@@ -77,6 +98,8 @@ def test_answers_to_a_concept_test_are_hidden_until_they_are_shown(test: str) ->
     answers = ClassAnswers(course, ENGLISH, teaching)
     room.push(TakeStep(test, 0))
     options = question_at(course.lesson(test, "en"), 0).options
-    assert not any(str(escape(option.text)) in answers.view(True) for option in options)
-    room.show(replace(room.display, shown=True))
-    assert all(str(escape(option.text)) in answers.view(True) for option in options)
+    for shown, bars in ((False, 0), (True, 2 * len(options))):  # before and after
+        room.show(replace(room.display, shown=shown))
+        view = answers.view(True)
+        assert all(str(escape(option.text)) in view for option in options)
+        assert view.count("background:") == bars
