@@ -17,6 +17,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import build_queue
 from onpath.app.page.build_queue import FEW, LONG, REST, BuildLock
 from onpath.app.page.page import Page
+from onpath.app.page.panels import dialog
 from onpath.app.page.panels.keys import Keys
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.words import ENGLISH, Words
@@ -234,6 +235,29 @@ def test_no_widget_arrives_before_its_callbacks_are_set(
         over.set()
         student.read(lambda: student.has_widget(ENGLISH("controls.help")))
     assert widgets == 0
+
+
+def test_a_window_arrives_as_a_whole(server: LabServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A button that closes it, pressed before, would take it from under those that follow."""
+    mark_closing, begun, over = dialog.mark_closing, threading.Event(), threading.Event()
+
+    def mark_later(*what: Any) -> None:
+        begun.set()
+        assert over.wait(60)
+        mark_closing(*what)
+
+    monkeypatch.setattr(dialog, "mark_closing", mark_later)
+    opens = ENGLISH("lesson.open", number="1")
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.set(ENGLISH("lesson.lessons"), True)
+        student.read(begun.is_set)
+        for _ in range(20):
+            student.read_what_was_sent()
+        early = student.has_widget(opens)
+        over.set()
+        student.read(lambda: student.has_widget(ENGLISH("help.close")))
+        assert not early and student.has_widget(opens)
 
 
 def test_a_key_works_while_the_page_is_built_anew(
