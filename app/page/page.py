@@ -22,7 +22,7 @@ from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_menus import PageMenus
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
-from onpath.app.page.panels.keys import add_keys
+from onpath.app.page.panels.keys import Keys
 from onpath.app.page.panels.widgets import Post
 from onpath.app.page.preferences import Preferences
 from onpath.app.page.rebuild_thread import RebuildThread
@@ -39,7 +39,7 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
 from onpath.app.viser_adapter.local_storage import ask_item
-from onpath.app.viser_adapter.page_release import clear_page
+from onpath.app.viser_adapter.page_release import clear_widgets
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.systems.robots import Robot
@@ -74,7 +74,7 @@ class Page:
         self._context = context
         self._channel = FrameChannel(client)
         self.exporter = Exporter(client)
-        self._rebuilds = RebuildThread(client)
+        self._rebuilds, self._keys = RebuildThread(client), Keys(client.gui)
         self._framed, self._settling = 0.0, SETTLING
         self._switches, self._switched = Switches(), set[str]()
         self._building, self.is_outdated = True, False
@@ -94,6 +94,7 @@ class Page:
         """Release resources after the tab has closed."""
         self.exporter.close()
         self._rebuilds.close()
+        self._keys.close()
 
     @property
     def is_ready(self) -> bool:
@@ -155,7 +156,7 @@ class Page:
 
     def _rebuild(self, first: PageSnapshot) -> None:
         with in_turn(), self._client.atomic():
-            clear_page(self._client)
+            clear_widgets(self._client)
             self._framed, self._settling = 0.0, SETTLING
             self._build(first)
 
@@ -209,7 +210,7 @@ class Page:
             "summary": self._narration.ask_summary,
             "lesson": lambda: self._open_first_lesson(post),
         }
-        add_keys(self._client.gui, words, post, page_actions)
+        self._keys.renew(words, post, page_actions)
         self._parts.append(self._narration)  # the invitations come before it
         self._building = self.is_outdated = False
 

@@ -15,10 +15,26 @@ import viser
 
 
 def clear_page(client: viser.ClientHandle) -> None:
-    """Remove all widgets and nodes of a page, and forget their callbacks."""
-    widgets, nodes = _widgets(client), list(client.scene._handle_from_node_name.values())
-    client.scene.reset()
+    """Remove all that a page is made of, and forget its callbacks."""
+    clear_widgets(client)
+    commands = list(client.gui._command_handle_from_uuid.values())
     client.gui.reset()
+    _forget_callbacks(commands, [])
+
+
+def clear_widgets(client: viser.ClientHandle) -> None:
+    """Remove all widgets and nodes of a page, and forget their callbacks.
+
+    viser's commands stay: until the page is built anew, its browser goes on sending their keys.
+    """
+    gui, nodes = client.gui, list(client.scene._handle_from_node_name.values())
+    widgets: list[Any] = list(gui._gui_input_handle_from_uuid.values())
+    containers: dict[str, Any] = gui._container_handle_from_uuid
+    client.scene.reset()
+    for each in [*containers["root"]._children.values(), *gui._panel_handle_from_uuid.values()]:
+        each.remove()
+    for window in list(gui._modal_handle_from_uuid.values()):
+        window.close()
     _forget_callbacks(widgets, nodes)
 
 
@@ -26,14 +42,15 @@ def release_page(client: viser.ClientHandle) -> None:
     """Forget the widgets, nodes and unsent messages of a client that has disconnected."""
     gui, scene = client.gui, client.scene
     nodes = list(scene._handle_from_node_name.values())
-    _forget_callbacks(_widgets(client), nodes)
+    inputs, commands = gui._gui_input_handle_from_uuid, gui._command_handle_from_uuid
+    _forget_callbacks([*inputs.values(), *commands.values()], nodes)
     for node in nodes:
         node._impl.drag_cb.clear()
     containers: list[Any] = list(gui._container_handle_from_uuid.values())
     for container in containers:
         container._children.clear()
-    gui._gui_input_handle_from_uuid.clear()
-    gui._command_handle_from_uuid.clear()
+    inputs.clear()
+    commands.clear()
     scene._handle_from_node_name.clear()
     scene._children_from_node_name.clear()
     connection = client._websock_connection
@@ -44,11 +61,6 @@ def release_page(client: viser.ClientHandle) -> None:
         buffer.ids_from_entity_state_key.clear()
     # Not cleared, since viser may be looking up the handlers of a message.
     connection._incoming_handlers = defaultdict(list)
-
-
-def _widgets(client: viser.ClientHandle) -> list[Any]:
-    gui = client.gui
-    return [*gui._gui_input_handle_from_uuid.values(), *gui._command_handle_from_uuid.values()]
 
 
 def _forget_callbacks(widgets: list[Any], nodes: list[Any]) -> None:

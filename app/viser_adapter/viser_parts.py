@@ -21,9 +21,9 @@ TOUCHED = {
     "_assignable_props_api.py": "AssignablePropsBase _impl _prop_hints",
     "_gui_api.py": (
         "_children _command_handle_from_uuid _container_handle_from_uuid"
-        " _current_file_upload_states _gui_input_handle_from_uuid _restore_container_context"
-        " _set_container_uuid _snapshot_container_context _websock_interface"
-        " print_threadpool_errors svg_from_icon"
+        " _current_file_upload_states _gui_input_handle_from_uuid _modal_handle_from_uuid"
+        " _panel_handle_from_uuid _restore_container_context _set_container_uuid"
+        " _snapshot_container_context _websock_interface print_threadpool_errors svg_from_icon"
     ),
     "_gui_handles.py": (
         "GuiFormHandle _impl _queue_update hold_cbs_from_freq parent_container_id"

@@ -40,6 +40,7 @@ def opened(browser: Browser, server: LabServer, place: str, **options: object) -
         tab.ask(c.OpenLesson(LESSON))
         tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
         if not options:
+            tab.button("Expand column").click()  # folded, since this step needs no control
             tab.page.get_by_role("tab", name="All controls").click()
     yield tab
     assert tab.errors == []

@@ -50,7 +50,7 @@ def test_exports(tab: Tab) -> None:
 
 @pytest.mark.thorough
 def test_a_recording_plays_from_a_file(tab: Tab, browser: Browser, tmp_path: Path) -> None:
-    wait_for(lambda: tab.session.time > 1.0)
+    wait_for(lambda: tab.session.time > 3.0)  # more than is played below
     film = tmp_path / "film.html"
     download(tab, "Recording (HTML), last 10 s").save_as(film)
     context = fresh(browser)

@@ -135,7 +135,7 @@ class Enter:
 
 @dataclass(frozen=True)
 class Slide:
-    """Move a slider's handle to a number, or near it."""
+    """Move a slider's handle to a number, or as near as the pixels of its bar allow."""
 
     label: str
     value: float
@@ -144,14 +144,13 @@ class Slide:
     def __call__(self, hands: Hands) -> None:
         handle = hands.tab.slider(self.label)
         handle.scroll_into_view_if_needed()
-        low, high, now = (
-            float(handle.get_attribute(f"aria-value{each}") or "nan")
-            for each in ("min", "max", "now")
+        low, high = (
+            float(handle.get_attribute(f"aria-value{each}") or "") for each in ("min", "max")
         )
         bar, grip = hands.box(handle.locator("xpath=..")), hands.box(handle)
         start = grip["x"] + grip["width"] / 2, grip["y"] + grip["height"] / 2
-        shift = (self.value - now) / (high - low) * bar["width"]
-        with hands.dragging(start, (start[0] + shift, start[1]), in_scene=False):
+        end = bar["x"] + (self.value - low) / (high - low) * bar["width"]
+        with hands.dragging(start, (round(end), start[1]), in_scene=False):
             wait_for(lambda: hands.has(self.label, self.value, self.near))
 
 

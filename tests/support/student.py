@@ -156,6 +156,11 @@ class Student:
         self.read(lambda: option in self._labels())
         self.set(option, option)
 
+    def press(self, hotkey: str) -> None:
+        """Press a key of the lab's, as viser's page tells it."""
+        key = next(w for w in self.widgets.values() if w.get("hotkey") == hotkey)
+        self.send("CommandTriggerMessage", uuid=key["uuid"])
+
     def send(self, kind: str, **fields: Any) -> None:
         """Any message."""
         assert self._socket is not None
@@ -267,7 +272,7 @@ class Student:
         elif "props" in message and "uuid" in message:
             widget = {"uuid": message["uuid"], "value": message.get("value")}
             self.widgets[message["uuid"]] = {**widget, **message["props"]}
-        elif kind == "GuiUpdateMessage":
+        elif kind in ("GuiUpdateMessage", "CommandUpdateMessage"):
             self.widgets.get(message["uuid"], {}).update(message["updates"])
-        elif kind == "GuiRemoveMessage":
+        elif kind in ("GuiRemoveMessage", "RemoveCommandMessage"):
             self.widgets.pop(message["uuid"], None)

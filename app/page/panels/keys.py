@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 import viser
 
@@ -82,24 +83,45 @@ KEYS = (
 )
 
 
-def add_keys(
-    gui: viser.GuiApi, words: Words, post: Post, page_actions: Mapping[str, Callable[[], None]]
-) -> None:
-    """Register the shortcuts, which also appear in viser's command palette.
+class Keys:
+    """The shortcuts of a page, which also appear in viser's command palette.
 
-    Args:
-        page_actions: the actions of the keys without a command, by name.
+    They stay while the page is built anew, so that none that is pressed meanwhile is lost.
     """
-    for key in KEYS:
-        handle = gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
 
-        async def triggered(_: object, key: Key = key) -> None:
-            if key.command is None:
-                page_actions[key.name]()
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._gui, self._handles = gui, dict[str, viser.CommandHandle]()
+        self._acts = dict[str, Callable[[], None]]()
+
+    def renew(
+        self, words: Words, post: Post, page_actions: Mapping[str, Callable[[], None]]
+    ) -> None:
+        """Register the shortcuts, or change what they do and how they are called.
+
+        Args:
+            page_actions: the actions of the keys without a command, by name.
+        """
+        posts = {k.name: partial(post, k.command) for k in KEYS if k.command is not None}
+        self._acts = {**page_actions, **posts}
+        for key in KEYS:
+            if key.name in self._handles:
+                self._handles[key.name].label = key.does(words)
             else:
-                post(key.command)
+                self._handles[key.name] = self._added(key, words)
+
+    def close(self) -> None:
+        """Forget what the shortcuts do."""
+        self._acts.clear()
+
+    def _added(self, key: Key, words: Words) -> viser.CommandHandle:
+        handle = self._gui.add_command(key.does(words), hotkey=key.hotkey, modifier=key.modifier)
+
+        async def triggered(_: object) -> None:
+            if key.name in self._acts:
+                self._acts[key.name]()
 
         handle.on_trigger(triggered)
+        return handle
 
 
 def help_text(words: Words) -> str:

@@ -19,6 +19,7 @@ from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import Spec
 
 Post = Callable[[Command], None]
 Option = TypeVar("Option")
@@ -166,10 +167,11 @@ class ParameterWidgets:
 
     def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
+        low, high = _ends(spec)
         handle = gui.add_slider(
             parameter_heading(name, spec, words),
-            min=spec.low,
-            max=spec.high,
+            min=low,
+            max=high,
             step=spec.step,
             initial_value=shown,
             hint=parameter_help(name, spec, words),
@@ -182,7 +184,19 @@ class ParameterWidgets:
         spec, value = self._specs[name], parameters[name]
         if spec.options:
             return option_label(name, value, self._words)
-        return round(float(value), _digits(spec.step))
+        low, high = _ends(spec)
+        return min(max(round(float(value), _digits(spec.step)), low), high)
+
+
+@cache
+def _ends(spec: Spec) -> tuple[float, float]:
+    """The outermost multiples of the step between the limits; a slider counts its steps from them.
+
+    A slider from −π would stop at 3.0784 and never at 0.
+    """
+    first, last = math.ceil(spec.low / spec.step - 1e-9), math.floor(spec.high / spec.step + 1e-9)
+    digits = _digits(spec.step)
+    return round(first * spec.step, digits), round(last * spec.step, digits)
 
 
 @cache

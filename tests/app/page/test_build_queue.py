@@ -14,11 +14,13 @@ from onpath.app.exports import exporter
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page import build_queue, page
+from onpath.app.page import build_queue
 from onpath.app.page.build_queue import FEW, LONG, REST, BuildLock
 from onpath.app.page.page import Page
+from onpath.app.page.panels import dialog
+from onpath.app.page.panels.keys import Keys
 from onpath.app.server.lab_server import LabServer
-from onpath.lessons.words import ENGLISH
+from onpath.lessons.words import ENGLISH, Words
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -216,14 +218,14 @@ def test_no_widget_arrives_before_its_callbacks_are_set(
     server: LabServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pressed before, it would do nothing. The keys are set last."""
-    add_keys, begun, over = page.add_keys, threading.Event(), threading.Event()
+    renew, begun, over = Keys.renew, threading.Event(), threading.Event()
 
-    def add_later(*what: Any) -> None:
+    def renew_later(*what: Any) -> None:
         begun.set()
         assert over.wait(60)
-        add_keys(*what)
+        renew(*what)
 
-    monkeypatch.setattr(page, "add_keys", add_later)
+    monkeypatch.setattr(Keys, "renew", renew_later)
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(begun.is_set)
@@ -233,3 +235,55 @@ def test_no_widget_arrives_before_its_callbacks_are_set(
         over.set()
         student.read(lambda: student.has_widget(ENGLISH("controls.help")))
     assert widgets == 0
+
+
+def test_a_window_arrives_as_a_whole(server: LabServer, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A button that closes it, pressed before, would take it from under those that follow."""
+    mark_closing, begun, over = dialog.mark_closing, threading.Event(), threading.Event()
+
+    def mark_later(*what: Any) -> None:
+        begun.set()
+        assert over.wait(60)
+        mark_closing(*what)
+
+    monkeypatch.setattr(dialog, "mark_closing", mark_later)
+    opens = ENGLISH("lesson.open", number="1")
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.set(ENGLISH("lesson.lessons"), True)
+        student.read(begun.is_set)
+        for _ in range(20):
+            student.read_what_was_sent()
+        early = student.has_widget(opens)
+        over.set()
+        student.read(lambda: student.has_widget(ENGLISH("help.close")))
+        assert not early and student.has_widget(opens)
+
+
+def test_a_key_works_while_the_page_is_built_anew(
+    server: LabServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The browser has the page before until the next one is complete."""
+    renew, begun, over = Keys.renew, threading.Event(), threading.Event()
+
+    def renew_later(*what: Any) -> None:
+        begun.set()
+        assert over.wait(60)
+        renew(*what)
+
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.read(lambda: student.has_widget(ENGLISH("controls.help")))
+        (scheduled,) = server.simulation.labs
+        lab = scheduled.lab
+        monkeypatch.setattr(Keys, "renew", renew_later)
+        lab.post(c.SetLanguage("de"))
+        student.read(begun.is_set)
+        student.press("N")
+        student.read(lambda: lab.session.editor.selected == 0)
+        over.set()
+        student.read(lambda: student.has_widget(Words("de")("controls.help")))
+        student.press("N")
+        student.read(lambda: lab.session.editor.selected == 1)
+        keys = [w for w in student.widgets.values() if w.get("hotkey") == "N"]
+        student.read(lambda: [key["label"] for key in keys] == [Words("de")("key.next")])

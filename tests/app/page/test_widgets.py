@@ -11,13 +11,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onpath.app.lab.commands import Command, SetParameter
+from onpath.app.lab.commands import ChooseRobot, Command, SetParameter
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.gains_panel import ADVANCED, BASIC, own_of
 from onpath.app.page.panels.widgets import PRESS_ENDS, OwnGainWidgets, ParameterWidgets, on_hold
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.laws.registry import OWN_GAINS
+from onpath.models.control.settable import changed
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import declared
@@ -130,6 +131,30 @@ def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
     widgets.follow(before)
     widgets.follow(take_page_snapshot(lab, 1.0))
     assert slider.value == 123.0
+
+
+@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
+def test_a_slider_stops_at_multiples_of_its_step(entry: RobotEntry) -> None:
+    lab, made = Lab(store()), list[tuple[str, dict[str, Any]]]()
+    ChooseRobot(entry.name).apply(lab)
+
+    def add_slider(heading: str, **options: Any) -> Slider:
+        made.append((heading, options))
+        return Slider(initial_value=options["initial_value"])
+
+    gui: Any = SimpleNamespace(add_slider=add_slider)
+    names = [name for name, spec in declared(entry.parameters).items() if not spec.options]
+    for end in ("low", "high"):
+        for name in names:
+            limit = getattr(declared(entry.parameters)[name], end)
+            lab.session.parameters = changed(lab.session.parameters, name, limit)
+        ParameterWidgets(gui, ENGLISH, lambda _: None, names, take_page_snapshot(lab, 0.0))
+    assert len(made) == 2 * len(names)
+    for heading, slider in made:
+        low, high, step = slider["min"], slider["max"], slider["step"]
+        assert low <= slider["initial_value"] <= high, heading
+        for end in (low, high):
+            assert end == pytest.approx(round(end / step) * step, abs=1e-12), heading
 
 
 def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
