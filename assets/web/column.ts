@@ -177,7 +177,10 @@ export class Column implements Robots {
     private fill({ sections, charts, index, ended }: LessonMessage): void {
         const { view } = this
         for (const [name, html] of Object.entries(sections)) {
-            const parts = [...parsed(html).children] as HTMLElement[]
+            const source = parsed(html)
+            for (const sign of source.querySelectorAll("[data-symbol]")) // without a meaning on this robot
+                if (!this.page.symbols[sign.getAttribute("data-symbol")!]) sign.removeAttribute("data-symbol")
+            const parts = [...source.children] as HTMLElement[]
             const before = this.sources[name]
             this.sources[name] = parts.map(part => part.outerHTML)
             const isOpen = name === (ended ? END : String(index))
