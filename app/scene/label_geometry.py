@@ -60,7 +60,8 @@ class Arc:
         name: of the angle, as shown.
         centre: (3, 1), [m].
         radius: [m].
-        begin, turn: where it begins, from the first vector of the basis, and how far it turns, [rad].
+        begin: where it begins, from the first vector of the basis, [rad].
+        turn: how far it turns, [rad].
         basis: unit vectors of its plane.
         at: where along the arc the name stands, from 0 to 1.
         both: whether there is a line at its end, too.

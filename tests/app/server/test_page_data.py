@@ -108,8 +108,8 @@ def test_a_page_is_told_everything_first_and_then_what_changes(
         assert "anew" not in later and later["running"]
         assert 1 <= len(later["rows"]) < 10
         script.do("ChooseLaw", side="right", law="set_point")
-        state = script.read_until("state", lambda state: state["laws"][1] == "set_point")
-        assert state["titles"][1] != "Path following"
+        state = script.read_until("state", lambda state: state["titles"][1] != "Path following")
+        assert state["texts"][0] != state["texts"][1]
         script.do("ChoosePath", name="segment")
         assert not script.read_until("path", lambda path: not path["closed"])["closed"]
 
