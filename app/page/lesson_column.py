@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import msgspec
 
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.lesson_message import lesson_message, measured
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.course import Course
@@ -36,7 +36,7 @@ class LessonColumn:
         first: PageSnapshot,
     ) -> None:
         self._course, self._words, self._student = course, words, student
-        self._submit, self._shown = submit, -1
+        self._submit, self._shown, self._robot = submit, -1, robot_of(first)
         self.message = self.measured = b""
         self._turn = 0
         self.follow(first)
@@ -57,4 +57,4 @@ class LessonColumn:
             self.measured = msgspec.json.encode(measured(run))
 
     def _tell(self, run: LessonView) -> None:
-        self.message = msgspec.json.encode(lesson_message(run), enc_hook=str)
+        self.message = msgspec.json.encode(lesson_message(run, self._robot), enc_hook=str)

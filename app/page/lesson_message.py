@@ -15,6 +15,7 @@ from onpath.app.page.lesson_end import end_html, ended_charts
 from onpath.app.page.lesson_html import route_line
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.step_navigation import ways_of
+from onpath.app.scene.symbol_geometry import has_meaning
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
 from onpath.lessons.option_order import LETTERS
@@ -30,13 +31,18 @@ from onpath.lessons.schema import (
     Text,
 )
 from onpath.lessons.task_schema import Task
+from onpath.models.systems.robots import Robot
 
 END = "end"
 """Name of the section that stands for the end of a lesson."""
 
 
-def lesson_message(run: LessonView) -> dict[str, Any]:
-    """The message; without a lesson, it says so."""
+def lesson_message(run: LessonView, robot: Robot) -> dict[str, Any]:
+    """The message; without a lesson, it says so.
+
+    Args:
+        robot: that the lab shows; a symbol is told only if it means something on it.
+    """
     lesson = run.lesson
     if lesson is None:
         return {"is": "lesson", "lesson": "", "version": run.version}
@@ -48,7 +54,11 @@ def lesson_message(run: LessonView) -> dict[str, Any]:
         "ended": run.ended,
         "test": run.is_test,
         "playing": run.playing,
-        "symbols": {name: run.words(f"symbol.{name}") for name in lesson.front.symbols},
+        "symbols": {
+            name: run.words(f"symbol.{name}")
+            for name in lesson.front.symbols
+            if has_meaning(name, robot)
+        },
         "head": _head(lesson, run),
         "pager": part_of_page("lesson/pager.html", ways=ways_of(run), words=run.words),
     }

@@ -34,7 +34,6 @@ def state_message(
         "v": VERSION,
         "language": snapshot.key.language,
         "robot": snapshot.key.robot,
-        "laws": list(laws.values()),
         "titles": [titles[side] for side in laws],
         "names": [names[side] for side in laws],
         "texts": [law_text(law, words) for law in laws.values()],

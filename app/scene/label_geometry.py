@@ -7,7 +7,7 @@ move with the robots, so this is a CasADi function, made once for each robot.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import casadi as ca
@@ -50,6 +50,43 @@ class Mark:
     name: str
     place: ca.SX
     lines: ca.SX
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Arc:
+    """The arc of an angle.
+
+    Attributes:
+        name: of the angle, as shown.
+        centre: (3, 1), [m].
+        radius: [m].
+        begin: where it begins, from the first vector of the basis, [rad].
+        turn: how far it turns, [rad].
+        basis: unit vectors of its plane.
+        at: where along the arc the name stands, from 0 to 1.
+        both: whether there is a line at its end, too.
+    """
+
+    name: str
+    centre: ca.SX
+    radius: float
+    begin: ca.SX
+    turn: ca.SX
+    basis: tuple[ca.SX, ca.SX]
+    at: float = 0.5
+    both: bool = False
+
+    def points(self, far: float, turned: ca.SX) -> ca.SX:
+        """Points at a distance from the centre, in directions (1, k), as columns (3, k)."""
+        u, v = self.basis
+        ray = u @ ca.cos(turned) + v @ ca.sin(turned)
+        return self.centre @ ca.DM.ones(1, turned.shape[1]) + far * ray
+
+    @property
+    def way(self) -> ca.SX:
+        """Points of the arc, (3, SIDES + 1), [m]."""
+        shares = ca.DM(np.linspace(0.0, 1.0, SIDES + 1)).T
+        return self.points(self.radius, self.begin + self.turn @ shares)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,21 +145,9 @@ def axes_of(robot: Robot) -> np.ndarray:
 
 
 def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
-    drawing, plane = robot.drawing, _plane(robot, ends, tip)
-    for number, angle in enumerate(drawing.angles):
-        yield _angle(angle, ARC + number * STEP, plane, ends)
-    if drawing.waist is not None:
-        across = ca.cross(UP, plane.start)
-        turn = ca.atan2(ca.dot(plane.ahead, across), ca.dot(plane.ahead, plane.start))
-        yield _arc(
-            drawing.waist.name,
-            centre=WAIST_HEIGHT * UP,
-            radius=WAIST_RADIUS,
-            angles=(ca.SX(0), turn),
-            basis=(plane.start, across),
-            at=0.5,
-            both=True,
-        )
+    drawing, plane = robot.drawing, plane_of(robot, ends, tip)
+    for arc in arcs_of(robot, ends, plane):
+        yield _mark(arc, plane)
     for length in drawing.lengths:
         yield _length(length, plane, ends)
     for spot in drawing.spots:
@@ -130,7 +155,31 @@ def _marks(robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[Mark]:
         yield Mark(spot.name, place, ca.SX(3, 0))
 
 
-def _plane(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:
+def arcs_of(robot: Robot, ends: ca.SX, plane: LinksPlane) -> Iterator[Arc]:
+    """The arcs of a robot's joint angles."""
+    waist = robot.drawing.waist
+    for number, angle in enumerate(robot.drawing.angles):
+        yield _angle(angle, ARC + number * STEP, plane, ends)
+    if waist is not None:
+        across = ca.cross(UP, plane.start)
+        yield Arc(
+            name=waist.name,
+            centre=WAIST_HEIGHT * UP,
+            radius=WAIST_RADIUS,
+            begin=ca.SX(0),
+            turn=ca.atan2(ca.dot(plane.ahead, across), ca.dot(plane.ahead, plane.start)),
+            basis=(plane.start, across),
+            both=True,
+        )
+
+
+def plane_of(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:
+    """The plane of a robot's links.
+
+    Args:
+        ends: of its bars, (3, 2 n), [m].
+        tip: its end-point, (3, 1), [m].
+    """
     drawing, waist = robot.drawing, robot.drawing.waist
     start = ahead = ca.SX(ca.DM([1, 0, 0]))
     if waist is not None:
@@ -150,51 +199,35 @@ def _along(ends: ca.SX, bar: int) -> ca.SX:
     return ends[:, 2 * bar + 1] - ends[:, 2 * bar]
 
 
-def _angle(angle: Angle, radius: float, plane: LinksPlane, ends: ca.SX) -> Mark:
+def _angle(angle: Angle, radius: float, plane: LinksPlane, ends: ca.SX) -> Arc:
     begin = ca.SX(0) if angle.after is None else plane.angle(_along(ends, angle.after))
-    apart = plane.angle(_along(ends, angle.bar)) - begin - angle.near
-    turn = angle.near + ca.atan2(ca.sin(apart), ca.cos(apart))  # apart, within ±π
-    centre = ends[:, 2 * angle.bar] + BEFORE * plane.near
-    return _arc(
-        angle.name,
-        centre=centre,
+    turn = angle.near + within_half(plane.angle(_along(ends, angle.bar)) - begin - angle.near)
+    return Arc(
+        name=angle.name,
+        centre=ends[:, 2 * angle.bar],
         radius=radius,
-        angles=(begin, turn),
+        begin=begin,
+        turn=turn,
         basis=(plane.ahead, UP),
         at=angle.at,
     )
 
 
-def _arc(
-    name: str,
-    centre: ca.SX,
-    radius: float,
-    angles: tuple[ca.SX, ca.SX],
-    basis: tuple[ca.SX, ca.SX],
-    at: float,
-    both: bool = False,
-) -> Mark:
-    """An arc with the line from which it is measured, and its name outside.
+def within_half(angle: ca.SX) -> ca.SX:
+    """The same angle within ±π, [rad]."""
+    return ca.atan2(ca.sin(angle), ca.cos(angle))
 
-    Args:
-        angles: its beginning and its turn, [rad].
-        basis: unit vectors of its plane.
-        at: where along the arc the name stands, from 0 to 1.
-        both: whether there is a line at its end, too.
-    """
-    begin, turn = angles
-    u, v = basis
 
-    def points(far: float, turned: ca.SX) -> ca.SX:
-        ray = u @ ca.cos(turned) + v @ ca.sin(turned)
-        return centre @ ca.DM.ones(1, turned.shape[1]) + far * ray
-
-    arc = points(radius, begin + turn @ ca.DM(np.linspace(0.0, 1.0, SIDES + 1)).T)
-    ends = [begin, begin + turn] if both else [begin]
-    arms = [part for end in ends for part in (centre, points(radius + BEYOND, end))]
-    pieces = ca.reshape(ca.vertcat(arc[:, :-1], arc[:, 1:]), 3, 2 * SIDES)
-    place = points(radius + BEYOND, begin + at * turn)
-    return Mark(name, place, ca.horzcat(pieces, *arms))
+def _mark(arc: Arc, plane: LinksPlane) -> Mark:
+    """An arc with the line from which it is measured, and its name outside."""
+    if not arc.both:
+        arc = replace(arc, centre=arc.centre + BEFORE * plane.near)
+    way, far = arc.way, arc.radius + BEYOND
+    ends = [arc.begin, arc.begin + arc.turn] if arc.both else [arc.begin]
+    arms = [part for end in ends for part in (arc.centre, arc.points(far, end))]
+    pieces = ca.reshape(ca.vertcat(way[:, :-1], way[:, 1:]), 3, 2 * SIDES)
+    place = arc.points(far, arc.begin + arc.at * arc.turn)
+    return Mark(arc.name, place, ca.horzcat(pieces, *arms))
 
 
 def _length(length: Length, plane: LinksPlane, ends: ca.SX) -> Mark:

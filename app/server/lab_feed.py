@@ -66,7 +66,7 @@ class LabFeed(CountingDisplay):
         lab = self._source(lab, 1.0)[0]
         if self._last is not None:
             is_turn_of_data = is_turn(frame + self._offset, max(stride, EVERY))
-            self._data.follow(lab, self._last.path, is_turn_of_data, self.page.settle)
+            self._data.follow(lab, self._last, is_turn_of_data, self.page.settle)
 
     def _show_motion(self, lab: Lab) -> None:
         lab, _, student = self._source(lab, 1.0)

@@ -7,17 +7,22 @@ from functools import partial
 from typing import Any
 
 import msgspec
+import numpy as np
 
 from onpath.app.lab.commands.command_codec import NoCommand, command_from
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.snapshots.data_frame import FrameSource, frame_message, path_message
+from onpath.app.lab.snapshots.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.lab.snapshots.snapshot import Motion, PathView
 from onpath.app.page.page import Page
+from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
+from onpath.models.systems.robots import Robot
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
 RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
+LIGHTS = {f'{{"is":"light","symbol":"{name}"}}': name for name in ("", *AT_JOINTS)}
+"""Messages that ask what a symbol of a joint means; with an empty name, nothing any more."""
 _NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
@@ -40,6 +45,8 @@ class PageData:
         self._state: dict[str, Any] = {}
         self._is_resized = self._wants_record = False
         self._lesson = self._measured = b""
+        self._symbol = ""  # that is asked for
+        self._lit: tuple[str, bytes] = "", b""  # the last one told, and the robots at that time
 
     @property
     def ticket(self) -> str:
@@ -51,11 +58,16 @@ class PageData:
         self._stream.close()
 
     def follow(
-        self, lab: Lab, path: PathView, is_turn: bool, on_resize: Callable[[], None]
+        self,
+        lab: Lab,
+        drawn: Motion | PageSnapshot,
+        is_turn: bool,
+        on_resize: Callable[[], None],
     ) -> None:
         """Note the present sample, and hand over a frame if it is its turn.
 
         Args:
+            drawn: how the robots are drawn now.
             on_resize: called if the page has told that its canvas has another size.
         """
         stream, self._is_own = self._stream, lab is self._own
@@ -66,6 +78,7 @@ class PageData:
             self._source.forget()
             self._path, self._state = None, {}
             self._lesson = self._measured = b""
+            self._symbol, self._lit = "", ("", b"")
         if self._is_resized:
             self._is_resized = False
             on_resize()
@@ -73,12 +86,14 @@ class PageData:
         if not is_turn or stream.is_busy:
             return
         messages = list[Message]()
-        robot = lab.session.robot
+        robot, path = lab.session.robot, drawn.path
         if path is not self._path or robot is not self._robot:
             self._path, self._robot = path, robot
             messages.append(partial(path_message, robot, path))
         if (frame := self._source.take(lab)) is not None:
             messages.append(partial(frame_message, frame))
+        if self._symbol:
+            messages += self._light(robot, drawn)
         if messages:
             stream.hand_over(*messages)
 
@@ -106,6 +121,17 @@ class PageData:
         if messages:
             self._stream.hand_over(*messages)
 
+    def _light(self, robot: Robot, drawn: Motion | PageSnapshot) -> list[Message]:
+        """What the symbol means that is asked for, unless the page knows it already."""
+        if drawn.key.robot != robot.name or not has_meaning(self._symbol, robot):
+            return []
+        motion = drawn if isinstance(drawn, Motion) else drawn.motion
+        now = self._symbol, motion.drawn.tobytes()
+        if now == self._lit:
+            return []
+        self._lit = now
+        return [partial(_lit_message, self._symbol, robot, motion)]
+
     def send(self) -> None:
         """Send what has been handed over for all pages."""
         self._channel.send()
@@ -118,6 +144,9 @@ class PageData:
         if text == RECORD:
             self._wants_record = True
             return b""
+        if text in LIGHTS:
+            self._symbol = LIGHTS[text]
+            return b""
         try:
             command = command_from(text)
         except NoCommand as error:
@@ -126,6 +155,13 @@ class PageData:
             return _refused("this lab is only shown")
         self._own.post(command)
         return b""
+
+
+def _lit_message(symbol: str, robot: Robot, motion: Motion) -> bytes:
+    ways = [
+        np.rint(LENGTH * way).astype(int).tolist() for way in symbol_ways(symbol, robot, motion)
+    ]
+    return msgspec.json.encode({"is": "lit", "symbol": symbol, "ways": ways})
 
 
 def _refused(why: str) -> bytes:

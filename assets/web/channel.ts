@@ -3,6 +3,7 @@
 
 import type { LessonMessage, MeasuredMessage } from "./column"
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "./engine"
+import { AT_JOINTS } from "./symbols"
 
 const PROTOCOL = "onpath-1"
 const SECONDS = 60 // of samples that are kept
@@ -25,6 +26,9 @@ interface FrameMessage {
     anew?: boolean
     straight?: number[][]
 }
+
+/** What a symbol means on each robot: points of a line, or one for a joint. */
+interface LitMessage { is: "lit"; symbol: string; ways: number[][][] }
 
 interface PathMessage {
     is: "path"
@@ -173,6 +177,8 @@ export class RemoteEngine implements Engine {
     private running = false
     private past: number | null = null
     private looked: { at: number | null; until: number } | null = null
+    private symbol = "" // of joints, whose meaning is asked for
+    private ways: { symbol: string; ways: readonly Vector[][] } = { symbol: "", ways: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
     private ticket = ""
@@ -243,6 +249,18 @@ export class RemoteEngine implements Engine {
         }
     }
 
+    lit(symbol: string, side: number): readonly Vector[] {
+        return symbol && this.ways.symbol === symbol ? this.ways.ways[side] ?? [] : []
+    }
+
+    /** Ask what a symbol means, and be told as long as the robots move; of joints, only the server knows. */
+    light(symbol: string): void {
+        const asked = AT_JOINTS.includes(symbol) ? symbol : ""
+        if (asked === this.symbol) return
+        this.symbol = asked
+        this.send({ is: "light", symbol: asked })
+    }
+
     /** Send a command; it is lost while there is no connection. */
     send(command: Record<string, unknown>): void {
         if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(command))
@@ -272,16 +290,21 @@ export class RemoteEngine implements Engine {
         else this.send({ do: "Grab", side: ["left", "right"][side], target: this.present.sides[side]!.tip.map((each, k) => each + by[k]!) })
     }
 
-    private hear(message: FrameMessage | PathMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
+    private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
         if (!this.connected) {
             this.connected = true
             this.tries = 0
+            if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             this.tell("state")
         }
         if (message.is === "frame") this.frame(message)
         else if (message.is === "path") {
             this.route = new Path(message)
             this.tell("path")
+        } else if (message.is === "lit") {
+            const { symbol, ways } = message
+            this.ways = { symbol, ways: ways.map(way => way.map(point => point.map(each => each / LENGTH))) }
+            this.tell("samples")
         } else if (message.is === "state") {
             this.lab = { ...this.lab, ...message } // which has only what has changed
             this.tell("state")

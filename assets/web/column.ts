@@ -86,7 +86,7 @@ export class Column implements Robots {
     private readonly legend: Legend
     private sections: Record<string, HTMLElement> = {}
     private sources: Record<string, string[]> = {} // HTML of the parts of the sections, as the server sent it
-    private place = "" // lesson and step
+    private place = "" // symbols that mean something on this robot, lesson and step
     private view: StepView | null = null
     private tasks: Task[] = []
 
@@ -126,7 +126,7 @@ export class Column implements Robots {
         element.dataset["version"] = String(message.version)
         document.documentElement.classList.remove("op-waits")
         if (!this.open) return this.leave("")
-        const place = `${message.lesson}.${message.ended ? END : message.index}`
+        const place = `${Object.keys(message.symbols)} ${message.lesson}.${message.ended ? END : message.index}`
         const isNew = place !== this.place
         const reads = element.contains(document.activeElement)
         if (isNew) this.leave(place)
@@ -177,7 +177,10 @@ export class Column implements Robots {
     private fill({ sections, charts, index, ended }: LessonMessage): void {
         const { view } = this
         for (const [name, html] of Object.entries(sections)) {
-            const parts = [...parsed(html).children] as HTMLElement[]
+            const source = parsed(html)
+            for (const sign of source.querySelectorAll("[data-symbol]")) // without a meaning on this robot
+                if (!this.page.symbols[sign.getAttribute("data-symbol")!]) sign.removeAttribute("data-symbol")
+            const parts = [...source.children] as HTMLElement[]
             const before = this.sources[name]
             this.sources[name] = parts.map(part => part.outerHTML)
             const isOpen = name === (ended ? END : String(index))

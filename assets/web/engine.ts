@@ -82,6 +82,8 @@ export interface Engine {
     /** The recorded samples after an instant, the oldest first: 60 a second, at most a minute; without the present. */
     since(time: number): readonly Sample[]
     act(act: Act): void
+    /** What a symbol of joints means on a robot: points of a line, one for a joint, or none. */
+    lit(symbol: string, side: number): readonly Vector[]
     on(listener: (change: Change) => void, ended?: AbortSignal): void
 }
 

@@ -155,7 +155,10 @@ class Face {
 
     /** Show on the robots and in the lenses what a symbol means. */
     private light(symbol: string): void {
+        this.engine.light(symbol)
         for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
+        for (const row of document.querySelectorAll(".op-gain")) row.classList.remove("op-gain")
+        if (symbol.startsWith("K_")) sliderOf(symbol.replace("_", ""))?.classList.add("op-gain")
     }
 
     /** Give each robot's half of the stage the width that the robot has in the picture. */
@@ -190,6 +193,13 @@ class Face {
         }
         requestAnimationFrame(next => this.frame(next))
     }
+}
+
+/** The row of a gain in viser's panel, if it is shown there. */
+function sliderOf(gain: string): Element | null {
+    const labels = [...document.querySelectorAll("#root .mantine-Flex-root > * label, #root .mantine-Flex-root > label")]
+    const label = labels.find(each => each.textContent!.split(/[^\w]/)[0] === gain)
+    return label?.closest(".mantine-Flex-root") ?? null
 }
 
 /** Show our part of the page as soon as viser's has come; until then, a cover hides that. */

@@ -181,7 +181,8 @@ export class Lens {
         const pushed = sample.tip.map((each, k) => each + FORCE * sample.force[k]! / this.drawn)
         const seen = {
             tip: flat(sample.tip), closest: flat(sample.closest), reference: sample.reference && flat(sample.reference),
-            pushed: flat(pushed), outline: (path.lines[0] ?? []).map(flat), closed: path.closed, arm: null,
+            pushed: flat(pushed), outline: (path.lines[0] ?? []).map(flat), closed: path.closed,
+            joints: { [this.lit]: this.engine.lit(this.lit, this.side).map(flat) },
         }
         drawShapes(ink, shapesOf(this.lit, seen), pixel, tones().selected)
     }

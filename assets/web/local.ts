@@ -1,7 +1,7 @@
 // The engine of a page without a server: a simulation in WebAssembly, and its clock.
 
 import { caption } from "./captions"
-import { sampleAt, type Act, type Change, type Engine, type PathShape, type SideText, type State } from "./engine"
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type SideText, type State, type Vector } from "./engine"
 import type { Moment, Simulation } from "./simulation"
 
 const FRAME = 1 / 60 // [s], of a step
@@ -124,6 +124,9 @@ export class LocalEngine implements Engine {
         simulation.goOn(moment)
         this.running = true
     }
+
+    /** Joints are shown on the robots only; see view.ts. */
+    lit(): Vector[] { return [] }
 
     private tell(change: Change): void {
         for (const listener of this.listeners) listener(change)

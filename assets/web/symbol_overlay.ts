@@ -1,6 +1,6 @@
 // What a symbol of a lesson's text means, drawn over the robots on the stage of the lab.
 
-import type { Projection, RemoteEngine } from "./channel"
+import type { RemoteEngine } from "./channel"
 import { shown, type SideSample, type Vector } from "./engine"
 import type { Point } from "./figure_data"
 import { Sheet, tones } from "./ink"
@@ -26,12 +26,13 @@ export class SymbolOverlay {
         this.drawn = lit
         const ink = sheet.cleared()
         if (!ink || !lit) return
-        shown(engine).sides.forEach((sample, i) => this.light(ink, sample, engine.lab!.cameras[i]!))
+        shown(engine).sides.forEach((sample, i) => this.light(ink, sample, i))
     }
 
     /** In the plane of the path; of a robot in space, in that of the picture. */
-    private light(ink: CanvasRenderingContext2D, sample: SideSample, camera: Projection): void {
+    private light(ink: CanvasRenderingContext2D, sample: SideSample, side: number): void {
         const { engine: { path, lab }, sheet: { width, height } } = this
+        const camera = lab!.cameras[side]!
         const project = (point: Vector): Point => {
             const [x, y, away] = camera.map(row => point.reduce((sum, each, k) => sum + each * row[k]!, row[point.length]!))
             return [width / 2 + (x! / away!) * height, height / 2 + (y! / away!) * height]
@@ -48,7 +49,8 @@ export class SymbolOverlay {
         const seen = {
             tip: flat(sample.tip), closest: flat(sample.closest), reference: sample.reference && flat(sample.reference),
             pushed: flat(sample.tip.map((each, k) => each + lab!.arrow * sample.force[k]!)),
-            outline: (path.lines[0] ?? []).map(flat), closed: path.closed, arm: null,
+            outline: (path.lines[0] ?? []).map(flat), closed: path.closed,
+            joints: { [this.lit]: this.engine.lit(this.lit, side).map(flat) },
         }
         drawShapes(ink, shapesOf(this.lit, seen), pixel, tones().selected)
     }

@@ -15,9 +15,12 @@ export interface Seen {
     /** The path, from θ = −π to π if it is closed. */
     outline: Point[]
     closed: boolean
-    /** Base, elbow and the end of link 2 of a five-bar; null of another robot. */
-    arm: [Point, Point, Point] | null
+    /** What symbols of joints mean, if the robot has such a thing: a line, or one point for a joint. */
+    joints: Readonly<Record<string, Point[]>>
 }
+
+/** The symbols of joints. */
+export const AT_JOINTS: readonly string[] = ["q_1", "q_2", "delta", "rho"]
 
 export interface Shape {
     kind: "line" | "arrow" | "spring" | "damper" | "ring"
@@ -31,11 +34,10 @@ const COILS = 7
 
 /** The shapes of a symbol; none if this robot has no such thing. */
 export function shapesOf(symbol: string, seen: Seen): Shape[] {
-    const { tip, closest, reference, outline, arm } = seen
+    const { tip, closest, reference, outline, joints } = seen
     const line = (...way: Point[]): Shape[] => [{ kind: "line", way }]
     const arrow = (from: Point, to: Point): Shape[] => [{ kind: "arrow", way: [from, to] }]
     const tied = reference ?? closest // the spring K1 pulls the end-point there
-    const [base, elbow, short] = arm ?? []
     switch (symbol) {
         case "lambda": case "xi_1": case "d": return line(closest, tip)
         case "theta": return line(...along(seen, closest))
@@ -50,11 +52,18 @@ export function shapesOf(symbol: string, seen: Seen): Shape[] {
         case "K_2": return [{ kind: "damper", way: [tied, tip] }]
         case "K_4": return reference ? [] : [{ kind: "spring", way: [moved(tip, tangent(seen), PIECE), tip] }]
         case "K_5": return reference ? [] : [{ kind: "damper", way: [moved(tip, tangent(seen), PIECE), tip] }]
-        case "q_1": return base && elbow ? line(elbow, base, ...angle(base, 0, direction(base, elbow))) : []
-        case "q_2": return base && short ? line(short, base, ...angle(base, 0, direction(base, short))) : []
-        case "delta": return base && elbow ? line(...angle(elbow, direction(elbow, base), direction(elbow, tip))) : []
-        case "rho": return base ? line(base, tip) : []
-        default: return []
+    }
+    const way = joints[symbol] ?? []
+    return way.length ? [{ kind: way.length > 1 ? "line" : "ring", way }] : []
+}
+
+/** What the symbols of joints mean on a five-bar. */
+export function jointsOfFiveBar(base: Point, elbow: Point, short: Point, tip: Point): Seen["joints"] {
+    return {
+        q_1: [elbow, base, ...angle(base, 0, direction(base, elbow))],
+        q_2: [short, base, ...angle(base, 0, direction(base, short))],
+        delta: angle(elbow, direction(elbow, base), direction(elbow, tip)),
+        rho: [base, tip],
     }
 }
 

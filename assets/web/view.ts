@@ -4,7 +4,7 @@ import type { Side } from "./side"
 import type { FigureData, Point } from "./figure_data"
 import { arrow, disc, Sheet, stroke, tones } from "./ink"
 import type { Path } from "./path"
-import { drawShapes, shapesOf, type Seen } from "./symbols"
+import { drawShapes, jointsOfFiveBar, shapesOf, type Seen } from "./symbols"
 
 const FAINT = 0.4 // how opaque the trace is
 const [REACH, NEAR] = [44, 22] // [px], from the tip and from a control point, within which they are grabbed
@@ -70,7 +70,7 @@ export class View {
         return {
             tip: side.tip(), closest: side.closest(), reference: side.does().aim === "theta_ref" ? side.reference() : null,
             pushed: side.arrow(), outline: points(path.outline), closed: path.data.closed,
-            arm: isFiveBar ? [base!, elbow!, short!] : null,
+            joints: isFiveBar ? jointsOfFiveBar(base!, elbow!, short!, side.tip()) : {},
         }
     }
 

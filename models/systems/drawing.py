@@ -120,6 +120,8 @@ class Drawing:
         sheet: low and high corner (x, z), and y, of the area for freehand strokes.
         angles, waist, lengths, spots: labels that are shown on demand, as in the paper's figures 1
             and 4.
+        elbow: number of the end of a bar at which the elbow is, of an arm of two links from the
+            beginning of the first bar; bar i has 2 i and 2 i + 1. None: it is no such arm.
     """
 
     strip: int = 0
@@ -140,3 +142,4 @@ class Drawing:
     waist: Waist | None = None
     lengths: tuple[Length, ...] = ()
     spots: tuple[Spot, ...] = ()
+    elbow: int | None = None

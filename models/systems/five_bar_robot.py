@@ -27,6 +27,7 @@ DRAWING = Drawing(
     box=((-0.14, -0.03, -0.13), (0.285, 0.03, 0.36)),
     angles=ANGLES,
     lengths=LENGTHS,
+    elbow=1,
 )
 
 

@@ -65,6 +65,7 @@ DRAWING = Drawing(
     angles=ANGLES,
     waist=Waist("q₃", bar=3),
     lengths=(LENGTHS[0], Length("ℓ", 1, -1, at=0.6)),
+    elbow=1,
 )
 
 

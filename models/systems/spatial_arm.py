@@ -57,6 +57,7 @@ DRAWING = Drawing(
     angles=(Angle("q₂", bar=0), Angle("q₃", bar=1, after=0, near=-math.pi / 2)),
     waist=Waist("q₁"),
     lengths=(Length("ℓ₂", 0, 1, at=0.6), Length("ℓ₃", 2, 3, right=True)),
+    elbow=1,
 )
 
 

@@ -42,6 +42,7 @@ DRAWING = Drawing(
     motors=(1,),
     angles=(Angle("q₁", bar=0), Angle("q₂", bar=1, after=0, near=-math.pi / 2)),
     lengths=(Length("ℓ₁", 0, 1, at=0.6), Length("ℓ₂", 2, 3, right=True)),
+    elbow=1,
 )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,60 +14,275 @@ from playwright.sync_api import Browser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.plot_samples import sample_layout
+from onpath.app.lab.snapshots.take_snapshot import take_motion
+from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
 from onpath.app.server.lab_server import LabServer
+from onpath.lessons.course import read_course
+from onpath.lessons.symbols import SYMBOLS
+from onpath.models.arrays import Array
+from onpath.models.control.laws.registry import law_named
+from onpath.models.systems.catalogue import ROBOTS
 from tests.support.browser import Tab, wait_for
+from tests.support.drawing import drawn
+from tests.support.lesson_texts import LESSON, write_lesson
 
 pytestmark = pytest.mark.thorough
-LESSON = "04-across-and-along"
-SHOWN = """() => {
-    const canvas = document.querySelector("#op-stage .lit-up"), found = []
-    const { x, y, width } = canvas.getBoundingClientRect()
-    if (!canvas.width || !canvas.height) return []
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
-    const zoom = width / canvas.width
-    for (let i = 0; i < data.length / 4; i++) {
-        const [across, down] = [i % canvas.width, Math.floor(i / canvas.width)]
-        if (data[4 * i + 3] > 200) found.push([x + zoom * across, y + zoom * down])
-    }
-    return found
+NAME = "01-all-symbols"
+SLIDERS = ("K1", "K2", "K5")  # those that the step has
+ALL = " ".join(written or f"*{letter}*" for letter, _, written in SYMBOLS.values())
+CHANGES = {
+    "minutes = 1": f"minutes = 1\nsymbols = {[*SYMBOLS]}",
+    "Which one *waits*? Here is $x^2$, and [set K3 to 100](lab:K3=100).": ALL,
+    'controls = ["K1", "hold"]': f"controls = {[*SLIDERS]}",
+}
+NOTES = """
+const { clearRect, beginPath, lineTo } = CanvasRenderingContext2D.prototype
+Object.assign(CanvasRenderingContext2D.prototype, {
+    clearRect(...box) { this.canvas.ways = []; return clearRect.apply(this, box) },
+    beginPath() { this.canvas.ways?.push([]); return beginPath.apply(this) },
+    lineTo(x, y) { this.canvas.ways?.at(-1)?.push([x, y]); return lineTo.call(this, x, y) },
+})
+"""
+"""Notes the lines on each canvas, in its own pixels."""
+DRAWN = """() => {
+    const canvas = document.querySelector("#op-stage .lit-up")
+    const { x, y } = canvas.getBoundingClientRect()
+    const ways = (canvas.ways ?? []).filter((_, i) => i % 2)
+    return ways.map(way => way.map(each => [each[0] + x, each[1] + y]))
 }"""
-"""Places in the window where something is drawn over the robots, [px]."""
-PAINTED = """() => [...document.querySelectorAll(".lens canvas")].map(canvas => {
+"""Lines over the robots, in pixels of the window; each is drawn twice, with a rim first."""
+IN_LENSES = """() => [...document.querySelectorAll(".lens canvas")].map(canvas => {
     const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height)
     return data.join()
 })"""
+GAINS = "[...document.querySelectorAll('.op-gain label')].map(each => each.textContent)"
+NEAR = 3.0  # [px]
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
+    home: Path = tmp_path_factory.mktemp("course")
+    text = LESSON
+    for old, new in CHANGES.items():
+        assert old in text
+        text = text.replace(old, new)
+    write_lesson(home, text, name=NAME)
+    course, problems = read_course([home])
+    assert problems == []
+    server = LabServer("127.0.0.1", 0, LoopCache(), course)
+    yield server
+    server.stop()
 
 
 @pytest.fixture(params=[(1366, 768), (390, 844)], ids=["desk", "telephone"])
 def tab(request: pytest.FixtureRequest, server: LabServer, browser: Browser) -> Iterator[Tab]:
     width, height = request.param
     context = browser.new_context(viewport={"width": width, "height": height})
+    context.add_init_script(NOTES)
     tab = Tab(server, context, draws=False)
-    tab.ask(c.OpenLesson(LESSON), TakeStep(LESSON, 1), c.SetRunning(False))
+    tab.ask(c.OpenLesson(NAME), TakeStep(NAME, 0), c.SetRunning(False))
     tab.wait_until_built()
     yield tab
     assert tab.errors == []
     context.close()
 
 
+def light(tab: Tab, name: str) -> None:
+    """Focus a symbol in the list below the text."""
+    summary = tab.page.locator(".step.open .symbols:not([open]) summary")
+    if summary.count():
+        summary.press("Enter")
+    tab.focus(tab.page.locator(f".step.open [data-lights={name}]"))
+
+
+class Recent:
+    """Where everything on one robot was lately, as lines in the window."""
+
+    def __init__(self, tab: Tab, side: str) -> None:
+        session = tab.session
+        self.tab, self.side, self.robot = tab, side, session.robot
+        self.curve = session.editor.curve
+        layout, i = sample_layout(session.robot), list(session.runs).index(side)
+        _, samples = session.history.samples(session.time - 3, session.time, 1000)
+        self.y, force = (samples[:, i, layout.slices[name]] for name in ("y", "force"))
+        self.theta, self.reference = (
+            samples[:, i, layout.slices[name].start] for name in ("theta", "theta_ref")
+        )
+        self.q = self.robot.rest(self.y)
+        self.pushed = self.y + stage_of(self.robot).force_scale * force
+        self.outline = self.curve.at(np.linspace(-np.pi, np.pi, 400))
+
+    def pixels(self, points: Array) -> Array:
+        return np.array([self.tab.placed(self.side, each) for each in points])
+
+    def joint(self, length: float | np.floating, angle: Array, at: Array | None = None) -> Array:
+        """Points at the end of a link, in the path's plane."""
+        rays = length * np.column_stack([np.cos(angle), np.sin(angle)])
+        base = self.robot.frame.planar(self.robot.unplace(np.zeros(3)))
+        return rays + (base if at is None else at)
+
+    def direction(self, turned: bool) -> Array:
+        ahead = self.curve.at(self.theta + 1e-4) - self.curve.at(self.theta - 1e-4)
+        ahead /= np.linalg.norm(ahead, axis=1)[:, None]
+        return ahead @ np.array([[0, 1], [-1, 0]]) if turned else ahead
+
+
+def away(point: Array, line: Array) -> float:
+    """Distance of a point from a line, [px]."""
+    begin, end = line[:-1], line[1:]
+    along = end - begin
+    size = np.maximum((along**2).sum(axis=1), 1e-12)
+    share = np.clip(((point - begin) * along).sum(axis=1) / size, 0, 1)
+    return float(np.linalg.norm(begin + share[:, None] * along - point, axis=1).min())
+
+
+def joints(recent: Recent) -> dict[str, Array]:
+    """Places of joints, and ends of arcs, in the path's plane."""
+    q_1, q_2 = recent.q.T
+    short = np.linalg.norm(drawn(recent.robot.skeleton, recent.q[0], 1.0)[1][2])
+    elbow = recent.joint(0.2, q_1)
+    to_base, to_tip = np.arctan2(*(recent.joint(0, q_1) - elbow).T[::-1]), q_2 + np.pi
+    return {
+        "elbow": elbow,
+        "short": recent.joint(short, q_2),
+        "q_1": recent.joint(0.058, q_1),
+        "q_2": recent.joint(0.078, q_2),
+        "base": recent.joint(0.05, to_base, elbow),
+        "tip": recent.joint(0.05, to_tip, elbow),
+    }
+
+
+def ends_of(symbol: str, recent: Recent, by_clock: bool) -> tuple[Array, Array] | None:
+    """Where a symbol's line began and ended lately, in the path's plane; None: it has no line."""
+    closest, tied = recent.curve.at(recent.theta), recent.curve.at(recent.theta)
+    reference = recent.curve.at(recent.reference)
+    if by_clock:
+        tied = reference
+    if symbol in ("lambda", "xi_1", "d"):
+        return closest, recent.y
+    if symbol in ("K_1", "K_2"):
+        return tied, recent.y
+    if symbol == "F":
+        return recent.y, recent.pushed
+    if symbol == "theta":
+        return recent.curve.at(np.zeros(1)), closest
+    if symbol in ("N", "T"):
+        return closest, closest + 0.03 * recent.direction(symbol == "N")
+    if symbol in ("e", "theta_r"):
+        begin = reference if symbol == "e" else recent.curve.at(np.zeros(1))
+        return (begin, recent.y if symbol == "e" else reference) if by_clock else None
+    if symbol in ("K_4", "K_5"):
+        return None if by_clock else (recent.y + 0.02 * recent.direction(False), recent.y)
+    if symbol == "sigma":
+        return recent.outline[:1], recent.outline[-1:]
+    if symbol == "rho":
+        return recent.joint(0, recent.q[:1, 0]), recent.y
+    at = joints(recent)
+    if symbol in ("q_1", "q_2"):
+        return at["elbow" if symbol == "q_1" else "short"], at[symbol]
+    return at["base"], at["tip"]
+
+
+DESK = pytest.mark.parametrize("tab", [(1366, 768)], indirect=True, ids=["desk"])
+
+
+@DESK
+def test_what_a_symbol_means_is_drawn_where_it_is_while_the_robots_move(tab: Tab) -> None:
+    random = np.random.default_rng(41)
+    wait_for(lambda: tab.view.page._settling == 0)  # the camera is fitted to the canvas
+    tab.ask(c.SetRate(0.25))  # on a busy machine, the history has few rows for a second
+    for symbol in SYMBOLS:
+        if symbol in ("y", "K_3"):
+            continue  # a ring around the end-point; nothing but a slider
+        light(tab, symbol)
+        since, ahead = tab.session.time, random.uniform(0.1, 0.2)
+        target = tab.session.runs["left"].shown()["y"] + random.uniform(-0.04, 0.04, 2)
+        tab.ask(c.SetCopy(True), c.Grab("left", target), c.SetRunning(True))
+        wait_for(lambda since=since, ahead=ahead: tab.session.time > since + ahead)
+        ways = list(map(undotted, drawn_ways(tab)))
+        tab.ask(c.SetRunning(False), c.Release("left"))
+        for side, run in tab.session.runs.items():
+            recent = Recent(tab, side)
+            ends = ends_of(symbol, recent, law_named(run.law).by_clock)
+            if ends is None:
+                continue
+            begins, lasts = (recent.pixels(np.repeat(each, 2, axis=0)) for each in ends)
+            apart = [(away(way[0], begins), away(way[-1], lasts)) for way in ways if len(way) > 1]
+            assert min(map(max, apart)) < NEAR, (symbol, side, apart)
+
+
+@DESK
+def test_symbols_of_joints_mean_the_same_on_every_robot_that_has_them(tab: Tab) -> None:
+    for name, entry in ROBOTS.items():
+        tab.ask(c.ChooseRobot(name), c.SetRunning(False))
+        wait_for(lambda entry=entry: tab.session.entry is entry)
+        tab.wait_until_built()
+        robot = tab.session.robot
+        for symbol in AT_JOINTS:
+            sign = tab.page.locator(f":is([data-symbol={symbol}], [data-lights={symbol}])")
+            if not has_meaning(symbol, robot):
+                wait_for(lambda sign=sign: sign.count() == 0)
+                continue
+            light(tab, symbol)
+            tab.ask(c.StepOnce())
+            truth = symbol_ways(symbol, robot, take_motion(tab.lab))
+            pixels = [
+                np.array([tab.pixel(side, robot.place(each)) for each in points])
+                for side, points in zip(tab.session.runs, truth, strict=True)
+            ]
+            wait_for(lambda pixels=pixels: all(map(is_drawn, drawn_ways(tab), pixels)))
+            assert len(drawn_ways(tab)) == 2
+
+
+def drawn_ways(tab: Tab) -> list[Array]:
+    return [np.array(way) for way in wait_for(lambda: tab.page.evaluate(DRAWN))]
+
+
+def undotted(way: Array) -> Array:
+    """A line; of a dot, which stands for one that is too short, its middle twice."""
+    middle = (way.min(axis=0) + way.max(axis=0)) / 2
+    is_dot = len(way) == 25 and np.allclose(np.linalg.norm(way - middle, axis=1), 4, atol=0.1)
+    return np.array([middle, middle]) if is_dot else way
+
+
+def is_drawn(way: Array, pixels: Array) -> bool:
+    """Whether a line is that through some points, or a ring around the only one."""
+    if len(pixels) == 1:
+        return bool(np.abs(np.linalg.norm(way - pixels, axis=1) - 12).max() < NEAR)
+    return len(way) == len(pixels) and bool(np.linalg.norm(way - pixels, axis=1).max() < NEAR)
+
+
 def test_a_symbol_is_lit_by_pointing_and_by_keys(tab: Tab) -> None:
     page = tab.page
-    sign = page.locator(".step.open .words [data-symbol]:visible").first
+    sign = page.locator(".step.open .words [data-symbol=lambda]:visible").first
     sign.wait_for()
-    name = sign.get_attribute("data-symbol")
-    assert page.evaluate(SHOWN) == []
-    before = page.evaluate(PAINTED)
+    assert page.evaluate(DRAWN) == []
+    before = page.evaluate(IN_LENSES)
     sign.hover()
-    seen = np.array(wait_for(lambda: page.evaluate(SHOWN)))
+    seen = np.concatenate(wait_for(lambda: page.evaluate(DRAWN)))
     for side in tab.session.runs:
         tip = tab.placed(side, tab.tip(side))
-        assert np.linalg.norm(seen - tip, axis=1).min() < 25, (name, side)
-    wait_for(lambda: all(a != b for a, b in zip(before, page.evaluate(PAINTED), strict=True)))
+        assert np.linalg.norm(seen - tip, axis=1).min() < 25, side
+    wait_for(lambda: all(a != b for a, b in zip(before, page.evaluate(IN_LENSES), strict=True)))
     page.mouse.move(2, 2)
-    wait_for(lambda: page.evaluate(SHOWN) == [])
+    wait_for(lambda: page.evaluate(DRAWN) == [])
     page.locator(".step.open .symbols summary").focus()
     page.keyboard.press("Enter")
     page.keyboard.press("Tab")
-    wait_for(lambda: page.evaluate(SHOWN))
+    wait_for(lambda: page.evaluate(DRAWN))
     tab.ask(c.GoToStep(1))
-    wait_for(lambda: page.evaluate(SHOWN) == [])
+    wait_for(lambda: page.evaluate(DRAWN) == [])
+
+
+@DESK
+def test_the_slider_of_a_gain_is_lit_if_the_step_has_it(tab: Tab) -> None:
+    for number in range(1, 6):
+        light(tab, f"K_{number}")
+        shown = tab.page.evaluate(GAINS)
+        names = [label.split()[0] for label in shown]
+        assert names == [name for name in SLIDERS if name == f"K{number}"]
+    tab.page.keyboard.press("Tab")
+    wait_for(lambda: tab.page.evaluate(GAINS) == [])

@@ -34,10 +34,6 @@ NONE = """
         return kind.startsWith("webgl") ? null : get.call(this, kind, ...how)
     }
 """
-WITHOUT_LANGUAGE = """
-    for (const [name, value] of [["language", "C"], ["languages", ["C"]]])
-        Object.defineProperty(Navigator.prototype, name, { get: () => value })
-"""
 ON_TOP = """document.elementFromPoint(innerWidth / 2, innerHeight / 2)
     .closest("#op-no-webgl") !== null"""
 WORDS = {
@@ -99,17 +95,6 @@ def test_without_an_address_the_page_says_how_there_is_a_course(
     page.goto(f"{server.address}?{COARSER}")
     page.get_by_text("onpath export site course").wait_for(timeout=WAIT * 1e3)
     assert page.locator("#op-no-webgl a").count() == 0
-    context.close()
-
-
-def test_a_browser_on_a_system_without_a_language_shows_the_lab(
-    browser: Browser, server: LabServer
-) -> None:
-    context = fresh(browser)
-    context.add_init_script(WITHOUT_LANGUAGE)
-    tab = Tab(server, context, draws=False)
-    expect(tab.page.get_by_role("button", name="Hold both back")).to_be_visible()
-    assert not tab.errors
     context.close()
 
 

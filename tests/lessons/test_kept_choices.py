@@ -83,7 +83,7 @@ def chosen(course: Course) -> dict[str, Any]:
 def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
     """The HTML of the open step, and the answers that the page is told."""
     run, lesson = lab.lessons, take_page_snapshot(lab, 1.0).lesson
-    message = lesson_message(LessonView(run.course, run.words, lesson))
+    message = lesson_message(LessonView(run.course, run.words, lesson), lab.session.robot)
     return "".join(message["sections"].values()), message["notes"]["answers"]
 
 

@@ -44,7 +44,7 @@ class Site:
 
     def student(self, place: str, origin: str = ORIGIN) -> Student:
         """A browser at a place, "c/CODE" or "l/NAME"."""
-        return Student(f"ws://{HOST}/{place}", self.port, lessons=True, Origin=origin)
+        return Student(f"ws://{HOST}/{place}", self.port, channel=True, Origin=origin)
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""

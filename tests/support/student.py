@@ -31,7 +31,7 @@ class Student:
     Args:
         address: URL of the websocket.
         through: port on this machine to connect to, instead of that in the address.
-        lessons: whether it opens the data channel, to see lessons and what the lab tells.
+        channel: whether it opens the data channel, to see lessons and what the lab tells.
         headers: headers of the handshake.
 
     Attributes:
@@ -44,14 +44,14 @@ class Student:
     """
 
     def __init__(
-        self, address: str, through: int | None = None, lessons: bool = False, **headers: str
+        self, address: str, through: int | None = None, channel: bool = False, **headers: str
     ) -> None:
         self.address, self.headers = address, headers
         self._through, self.moving, self.received = through, 0, 0
         self.kept: dict[str, str] = {}
         self.widgets: dict[str, dict[str, Any]] = {}
         self._socket: ClientConnection | None = None
-        self._lessons, self._ticket = lessons, ""
+        self._has_channel, self._ticket = channel, ""
         self._data: ClientConnection | None = None
         self.lesson: dict[str, Any] = {}
         self.message = ""
@@ -144,7 +144,7 @@ class Student:
 
     def set(self, label: str, value: Any) -> None:
         """Set the value of a widget, as by moving a slider or pressing a button."""
-        if self._lessons:
+        if self._has_channel:
             self.read(lambda: self.has_widget(label))
             if commands := self._commands(label):
                 return self.tell(*commands)
@@ -217,7 +217,7 @@ class Student:
 
     def _hear(self) -> None:
         """Open the data channel once its ticket is known, and take what it tells."""
-        if not self._lessons:
+        if not self._has_channel:
             return
         found = re.search(
             'data-ticket="([^"]+)"', "".join(str(w.get("content")) for w in self.widgets.values())

@@ -41,6 +41,7 @@ from onpath.lessons.schema import (
     Step,
 )
 from onpath.lessons.words import ENGLISH, Words, languages
+from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 
@@ -51,6 +52,7 @@ HOSTILE = ["<img src=x onerror=alert(1)>", '"><script>alert(2)</script>', "'{0}{
 DAY = datetime(2025, 3, 2)
 COURSE = built_in_course()[0]
 NAME = next(iter(COURSE.lessons))
+ROBOT = FIVE_BAR.make(FIVE_BAR.parameters())
 
 
 @dataclass
@@ -106,7 +108,7 @@ def view_of(run: LessonRun) -> LessonView:
 
 
 def heading(text: str) -> str:
-    return lesson_message(view_of(titled(text)[1]))["head"]
+    return lesson_message(view_of(titled(text)[1]), ROBOT)["head"]
 
 
 def entry(text: str) -> str:
@@ -204,7 +206,7 @@ def pieces(run: LessonRun, words: Words) -> Iterator[str]:
     assert lesson is not None and step is not None
     for notes in answered(step, run):
         run.progress = replace(run.progress, notes={lesson.name: notes})
-        message = lesson_message(view_of(run))
+        message = lesson_message(view_of(run), ROBOT)
         yield from map(str, (message["head"], *message["sections"].values(), message["pager"]))
     for block in step.predictions():
         sketch = Answer(times=(0.0, 1.0), values=(0.0, 1.0))

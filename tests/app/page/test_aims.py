@@ -44,7 +44,7 @@ def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
     write_lesson(tmp_path, LESSON.replace(SUMMARY, f"{SUMMARY}\n{lines}"))
     server = LabServer("127.0.0.1", 0, LoopCache(), read_course([tmp_path])[0])
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()
             student.read(lambda: student.code)
             lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab

@@ -47,7 +47,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     course, problems = read_course([folder])
     assert problems == []
     server = LabServer("127.0.0.1", 0, LoopCache(), course)
-    with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
         student.open()
         student.read(lambda: student.code)
         found = wait_for(lambda: server.sessions.find(student.code), PATIENCE)

@@ -49,7 +49,9 @@ def view(lab: Lab, student: str = "") -> LessonView:
 
 def told(lab: Lab, student: str = "") -> dict[str, Any]:
     """The message, as the page reads it."""
-    return json.loads(msgspec.json.encode(lesson_message(view(lab, student)), enc_hook=str))
+    return json.loads(
+        msgspec.json.encode(lesson_message(view(lab, student), lab.session.robot), enc_hook=str)
+    )
 
 
 def at(lab: Lab, name: str, index: int, **notes: Any) -> None:

@@ -103,7 +103,7 @@ def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown
     own, other, paper, told = new_lab(FRAME), new_lab(FRAME), Paper(), list[object]()
 
     class Data:
-        def follow(self, lab: object, path: object, is_turn: bool, settle: object) -> None:
+        def follow(self, lab: object, drawn: object, is_turn: bool, settle: object) -> None:
             told.append(lab)
 
         def tell(self, snapshot: object, captions: object) -> None: ...

@@ -87,6 +87,9 @@ class Script:
             pass
         return message
 
+    def light(self, symbol: str) -> None:
+        self.socket.send(f'{{"is":"light","symbol":"{symbol}"}}')
+
     def do(self, command: str, /, **fields: Any) -> None:
         self.socket.send(msgspec.json.encode({"do": command, **fields}).decode())
 
@@ -105,8 +108,8 @@ def test_a_page_is_told_everything_first_and_then_what_changes(
         assert "anew" not in later and later["running"]
         assert 1 <= len(later["rows"]) < 10
         script.do("ChooseLaw", side="right", law="set_point")
-        state = script.read_until("state", lambda state: state["laws"][1] == "set_point")
-        assert state["titles"][1] != "Path following"
+        state = script.read_until("state", lambda state: state["titles"][1] != "Path following")
+        assert state["texts"][0] != state["texts"][1]
         script.do("ChoosePath", name="segment")
         assert not script.read_until("path", lambda path: not path["closed"])["closed"]
 
@@ -121,6 +124,44 @@ def test_commands_of_the_page_reach_its_lab(server: LabServer, student: Student)
         script.read_until("frame", lambda frame: frame["past"] is not None)
         script.do("Reset")
         assert script.read_until("frame", lambda frame: frame.get("anew"))["rows"][0][0] == 0
+
+
+def test_what_a_symbol_of_joints_means_is_told_while_it_is_asked_for(
+    server: LabServer, student: Student
+) -> None:
+    with Script(server, ticket_of(student)) as script:
+        script.read("frame")
+        script.light("rho")
+        before = script.read("lit")
+        (base, tip), (other, _) = before["ways"]
+        assert before["symbol"] == "rho" and base == other
+        row = script.told["frame"]["rows"][-1]
+        assert tip == pytest.approx(row[5:7], abs=2000)  # 20 mm: it has moved since then
+        script.read_until("lit", lambda lit: lit["ways"] != before["ways"])
+        script.light("q_1")
+        assert len(script.read_until("lit", lambda lit: lit["symbol"] == "q_1")["ways"]) == 2
+        script.light("")
+        script.do("SetRate", rate=2)
+        script.read_until("state", lambda state: state["rate"] == 2)
+        script.read("frame")
+        del script.told["lit"]
+        for _ in range(5):
+            script.read("frame")
+        assert "lit" not in script.told
+        script.light("lambda")  # the page knows it
+        assert "required field" in script.read("refused")["why"]
+
+
+def test_a_symbol_without_a_meaning_on_the_robot_is_not_told(
+    server: LabServer, student: Student
+) -> None:
+    with Script(server, ticket_of(student)) as script:
+        script.do("ChooseRobot", name="rod_gantry")
+        script.read_until("state", lambda state: state.get("robot") == "rod_gantry")
+        script.light("q_1")
+        for _ in range(5):
+            script.read("frame")
+        assert "lit" not in script.told
 
 
 def test_what_is_no_command_is_answered_and_the_channel_goes_on(

@@ -161,7 +161,7 @@ def server(monkeypatch: pytest.MonkeyPatch) -> Iterator[LabServer]:
 
 @pytest.fixture
 def tab(server: LabServer) -> Iterator[Tab]:
-    with Tab(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as tab:
+    with Tab(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as tab:
         tab.open()
         tab.read(lambda: tab.moving > 10)
         yield tab

@@ -196,7 +196,7 @@ def test_a_browser_shows_it(tmp_path: Path, impatient: None) -> None:
     file = tmp_path / "labs.db"
     server = LabServer("127.0.0.1", 0, LoopCache(), records=Records(file_url(file)))
     try:
-        with Student(f"ws://127.0.0.1:{server.server.get_port()}", lessons=True) as student:
+        with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()
             student.find("K2")
             with locked(file):
