@@ -77,7 +77,7 @@ def test_what_is_drawn_is_to_scale(browser: Browser, address: str) -> None:
             "pushed": (tip + [0.01, 0]).tolist(),
             "outline": [at(each, radius).tolist() for each in angles],
             "closed": True,
-            "arm": None,
+            "joints": {},
         }
         drawn = {
             name: [np.array(each["way"]) for each in reader.page.evaluate(SHAPES, [name, seen])]
