@@ -277,8 +277,7 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
         room.show(Display(LESSON, step, shown=visible))
         picture = page.locator(".op-class").filter(visible=True)
         head = picture.locator("p").first
-        told = "Two robots, one circle" if asked is None else ""
-        told = told or text_of(asked[1].question)
+        told = "Two robots, one circle" if asked is None else text_of(asked[1].question)
         wait_for(lambda told=told, head=head: told in head.inner_text())
         wait_for(lambda: min(page.evaluate(STAGE)) >= SHARE)
         wait_for(lambda head=head: head.evaluate(IN_SIGHT))

@@ -192,7 +192,6 @@ DESK = pytest.mark.parametrize("tab", [(1366, 768)], indirect=True, ids=["desk"]
 @DESK
 def test_what_a_symbol_means_is_drawn_where_it_is_while_the_robots_move(tab: Tab) -> None:
     random = np.random.default_rng(41)
-    wait_for(lambda: tab.view.page._settling == 0)  # the camera is fitted to the canvas
     tab.ask(c.SetRate(0.25))  # on a busy machine, the history has few rows for a second
     for symbol in SYMBOLS:
         if symbol in ("y", "K_3"):
