@@ -58,8 +58,9 @@ def painted_shadow(
 ) -> tuple[bytes, tuple[float, float]]:
     """A PNG of `shadow`, cut to what is dark and still about its middle, and its two sizes, [m]."""
     dark = np.round(255.0 * DARKEST * shadow(solids, np.array(origins), floor)).astype(np.uint8)
-    rows, columns = np.nonzero(dark)
-    top, left = (min(at.min(), PIXELS - 1 - at.max()) for at in (rows, columns))
+    top, left = (
+        np.minimum(at, PIXELS - 1 - at).min(initial=PIXELS // 2 - 1) for at in np.nonzero(dark)
+    )
     alpha = dark[top : PIXELS - top, left : PIXELS - left]
     picture = np.zeros((*alpha.shape, 4), np.uint8)
     picture[..., 3] = alpha

@@ -45,6 +45,7 @@ def test_a_shadow_lies_where_the_light_throws_it(height: float, place: tuple[flo
 def test_nothing_on_the_ground_leaves_it_light() -> None:
     far = box((5.0, 5.0, 0.0), (5.1, 5.1, 0.1))
     assert np.abs(shadow([far], np.zeros((1, 3)), FLOOR)).max() < 1e-9
+    assert pixels(painted_shadow((far,), ((0.0, 0.0, 0.0),), FLOOR)[0])[..., 3].max() == 0
 
 
 def pixels(png: bytes) -> np.ndarray:
