@@ -13,7 +13,7 @@ from tests.support.lab_process import free_ports
 from tests.support.site import NGINX
 from tests.support.waiting import wait_for
 
-CONFIGURATION = """daemon off; worker_processes 1; pid {own}/pid; error_log stderr;
+CONFIGURATION = """user {user}; daemon off; worker_processes 1; pid {own}/pid; error_log stderr;
 events {{}}
 http {{
     access_log off; {paths}
@@ -45,11 +45,11 @@ def nginx(folder: Path, own: Path, policy: str) -> Iterator[str]:
         own: an empty folder for its files.
     """
     (port,) = free_ports(1)
-    for each in (own, folder, *folder.parents):  # nginx's worker is another user
-        if each.owner() == own.owner() and not each.stat().st_mode & 0o001:
-            each.chmod(0o755)
+    user = f"{own.owner()} {own.group()}"  # root's nginx would read as another user
     paths = "".join(f"{kind}_temp_path {own / kind};" for kind in KINDS)
-    text = CONFIGURATION.format(own=own, paths=paths, port=port, folder=folder, policy=policy)
+    text = CONFIGURATION.format(
+        user=user, own=own, paths=paths, port=port, folder=folder, policy=policy
+    )
     (own / "nginx.conf").write_text(text)
     command = [NGINX or "", "-e", "stderr", "-p", str(own), "-c", str(own / "nginx.conf")]
     with running(command, port) as address:
