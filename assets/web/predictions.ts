@@ -114,13 +114,15 @@ export class Comparison {
     constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
         const { data } = prediction
         this.again = made("p", "", said(page, "site.again"))
+        this.again.hidden = true
         if (data.kind === "sketch") {
             const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
+            drawn(chart, data, this.answer, undefined)
             this.elements.push(chart.element, this.again)
         } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
     }
 
-    /** If the truth is not kept, the page says how to see it again. */
+    /** Draw what happened, too; if that is not kept, the page says how to see it again. */
     draw(truth: Curves | undefined): void {
         this.again.hidden = truth !== undefined
         const { chart, prediction } = this
