@@ -7,16 +7,15 @@ are drawn by the page from what it knows; see assets/web/symbols.ts.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
-from onpath.app.common.per_thread import per_thread
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.scene.label_geometry import Arc, arcs_of, plane_of, within_half
 from onpath.lessons.symbols import SYMBOLS
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.systems.robots import Robot
 
 ARC = 0.05
@@ -51,18 +50,18 @@ def symbol_ways(symbol: str, robot: Robot, motion: Motion) -> list[Array]:
     bars = motion.counts.bars
     function = _function(symbol, robot, bars)
     points = (
-        function(drawn[: 6 * bars], motion.point(i, END))[0].reshape(-1, 3)
+        np.array(function(drawn[: 6 * bars].reshape(-1, 3).T, motion.point(i, END))).T
         for i, drawn in enumerate(motion.drawn)
     )
     return [robot.unplace(np.nan_to_num(each)) for each in points]
 
 
-@per_thread
-def _function(symbol: str, robot: Robot, bars: int) -> Buffered:
+@lru_cache(maxsize=64)
+def _function(symbol: str, robot: Robot, bars: int) -> ca.Function:
     """Ends of all bars (3, 2 n) and the end-point (3, 1) -> the points, (3, k), [m]."""
     ends, tip = ca.SX.sym("ends", 3, 2 * bars), ca.SX.sym("tip", 3)
     way = next(_ways(symbol, robot, ends, tip))
-    return Buffered(ca.Function("symbol", [ends, tip], [ca.densify(ca.cse(way))]))
+    return ca.Function("symbol", [ends, tip], [ca.densify(ca.cse(way))])
 
 
 def _ways(symbol: str, robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[ca.SX]:

@@ -214,18 +214,26 @@ def test_no_page_is_built_for_a_client_that_leaves_while_waiting(
     assert not server.sessions.held()
 
 
+def held_up(
+    monkeypatch: pytest.MonkeyPatch, owner: Any, name: str
+) -> tuple[threading.Event, threading.Event]:
+    """Let a function wait: events that it has been called, and that it may go on."""
+    act, begun, over = getattr(owner, name), threading.Event(), threading.Event()
+
+    def act_later(*what: Any) -> None:
+        begun.set()
+        assert over.wait(60)
+        act(*what)
+
+    monkeypatch.setattr(owner, name, act_later)
+    return begun, over
+
+
 def test_no_widget_arrives_before_its_callbacks_are_set(
     server: LabServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Pressed before, it would do nothing. The keys are set last."""
-    renew, begun, over = Keys.renew, threading.Event(), threading.Event()
-
-    def renew_later(*what: Any) -> None:
-        begun.set()
-        assert over.wait(60)
-        renew(*what)
-
-    monkeypatch.setattr(Keys, "renew", renew_later)
+    begun, over = held_up(monkeypatch, Keys, "renew")
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(begun.is_set)
@@ -239,14 +247,7 @@ def test_no_widget_arrives_before_its_callbacks_are_set(
 
 def test_a_window_arrives_as_a_whole(server: LabServer, monkeypatch: pytest.MonkeyPatch) -> None:
     """A button that closes it, pressed before, would take it from under those that follow."""
-    mark_closing, begun, over = dialog.mark_closing, threading.Event(), threading.Event()
-
-    def mark_later(*what: Any) -> None:
-        begun.set()
-        assert over.wait(60)
-        mark_closing(*what)
-
-    monkeypatch.setattr(dialog, "mark_closing", mark_later)
+    begun, over = held_up(monkeypatch, dialog, "mark_closing")
     opens = ENGLISH("lesson.open", number="1")
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
@@ -264,19 +265,12 @@ def test_a_key_works_while_the_page_is_built_anew(
     server: LabServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The browser has the page before until the next one is complete."""
-    renew, begun, over = Keys.renew, threading.Event(), threading.Event()
-
-    def renew_later(*what: Any) -> None:
-        begun.set()
-        assert over.wait(60)
-        renew(*what)
-
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.has_widget(ENGLISH("controls.help")))
         (scheduled,) = server.simulation.labs
         lab = scheduled.lab
-        monkeypatch.setattr(Keys, "renew", renew_later)
+        begun, over = held_up(monkeypatch, Keys, "renew")
         lab.post(c.SetLanguage("de"))
         student.read(begun.is_set)
         student.press("N")
