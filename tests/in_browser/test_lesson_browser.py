@@ -86,8 +86,11 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
 
 
 def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
-    tab.press("Let it happen")
+    tab.press("Next")
     wait_for_heading(tab, "Held from 3 s to 5 s")
+    expect(tab.page.locator(".compared canvas").first).to_be_visible()
+    expect(tab.page.get_by_text("are not kept")).to_be_hidden()  # there has been no run yet
+    tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
     assert tab.page.get_by_text("Four arches").is_hidden()  # not told before it has happened
     tab.ask(c.SetRate(4.0))
