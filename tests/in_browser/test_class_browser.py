@@ -17,6 +17,7 @@ from onpath.app.classroom.classroom import Classroom, Display
 from onpath.app.classroom.results import prediction_at
 from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.teacher_view import TeacherView
 from onpath.app.server.lab_feed import LabFeed
@@ -256,6 +257,28 @@ def test_next_and_back_lead_the_whole_class_and_tell_where(tabs: Class) -> None:
     for student in tabs.students:
         student.ask(c.BeginStepAnew())
     page.get_by_label("Show the answers").click()
+
+
+def test_a_demonstration_is_played_on_the_teachers_stage_which_is_put_back(tabs: Class) -> None:
+    teacher, page, room = tabs.teacher, tabs.teacher.page, tabs.room
+    teacher.ask(c.ChoosePath("clover"))
+    play = page.get_by_role("button", name="Play the demonstration here")
+    back = page.get_by_role("button", name="Put my own set-up back")
+    where = room.display
+    room.show(Display(LESSON, 0))
+    play.wait_for(state="hidden")
+    room.show(Display(LESSON, 1))
+    for leave in (back, page.get_by_role("button", name=re.compile("^Next for all"))):
+        play.click()
+        wait_for(lambda: teacher.lab.lessons.playing)
+        assert teacher.session.editor.design.name == "circle"
+        leave.click()
+        wait_for(lambda: teacher.session.editor.design.name == "clover")
+        back.wait_for(state="hidden")
+    room.push(TakeStep(LESSON, where.step))
+    for student in tabs.students:
+        student.ask(c.BeginStepAnew())
+    room.show(where)
 
 
 PROJECTORS = [(1280, 800), (1366, 768), (1920, 1080)]

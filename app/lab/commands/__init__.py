@@ -1,6 +1,7 @@
 """Commands to a lab: frozen records with an `apply` method."""
 
 from onpath.app.lab.commands.classroom import (
+    DemonstrateStep,
     Freeze,
     KeepWithin,
     ReportState,
@@ -86,6 +87,7 @@ __all__ = [
     "ChooseRobot",
     "CloseLesson",
     "Command",
+    "DemonstrateStep",
     "DrawPath",
     "EndMove",
     "FinishLesson",

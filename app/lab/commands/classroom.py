@@ -1,4 +1,4 @@
-"""Commands from the teacher to a student's lab. A student's page cannot send them."""
+"""Commands from the teacher's page to labs. A student's page cannot send them."""
 
 from __future__ import annotations
 
@@ -8,10 +8,12 @@ from typing import ClassVar
 
 from typing_extensions import override
 
+from onpath.app.lab.commands.lessons import PlayStep
 from onpath.app.lab.commands.path import finish
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.setups.setup import Setup
 from onpath.lessons.pace import Pace
+from onpath.lessons.progress import Answer
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +79,23 @@ class TakeStep(Command):
             key = "class.step_again"
         lab.show_message(run.words(key))
         _tell(lab)
+
+
+@dataclass(frozen=True, slots=True)
+class DemonstrateStep(Command):
+    """Play a step's demonstration, wherever the lab is; a prediction that it awaits is skipped."""
+
+    from_teacher: ClassVar[bool] = True
+    lesson: str
+    step: int
+
+    @override
+    def apply(self, lab: Lab) -> None:
+        run = lab.lessons
+        run.open_at(self.lesson, self.step, lab)
+        if run.waits:
+            run.predict(Answer(), lab.session)
+        PlayStep().apply(lab)
 
 
 @dataclass(frozen=True, slots=True)

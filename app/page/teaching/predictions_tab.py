@@ -1,7 +1,8 @@
 """Tab of the teacher's page: the step for all, and the class's answers to it.
 
 What leads the class is in a folder that stays in sight above the answers; the way to join and the
-menus are below.
+menus are below. The step's demonstration can be played in the teacher's own lab, which is put back
+when another step is chosen.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ import viser
 
 from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.results import prediction_at
+from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.page.panels.widgets import note, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_label, step_titles
@@ -32,8 +34,8 @@ class PredictionsTab:
     Asking again hides the answers, so that nobody follows the majority during the discussion.
 
     Args:
+        post: receives the commands for the teacher's own lab.
         look_again: updates the page.
-        present: called when large type is switched on or off.
 
     Attributes:
         code: shows how students join.
@@ -45,10 +47,11 @@ class PredictionsTab:
         words: Words,
         course: Course,
         teaching: TeacherContext,
+        post: Post,
         look_again: Callable[[], None],
-        present: Callable[[bool], None],
     ) -> None:
         self._words, self._course, self._look_again = words, course, look_again
+        self._teaching, self._post = teaching, post
         self._class, self._steps = teaching.classroom, StepsForAll(course, words.language)
         self._answers = ClassAnswers(course, words, teaching)
         self._lessons = lesson_titles(course, words)
@@ -67,6 +70,12 @@ class PredictionsTab:
             self._shown = gui.add_checkbox(words("class.show_answers"), display.shown)
             self._revealed = gui.add_checkbox(words("class.truth"), display.revealed)
             again = gui.add_button(words("class.ask_again"), color="gray", icon=icons.REPEAT)
+            self._play = gui.add_button(
+                words("class.play"), color="gray", icon=icons.PLAYER_PLAY, visible=False
+            )
+            self._put_back = gui.add_button(
+                words("class.put_back"), color="gray", icon=icons.ARROW_BACK_UP, visible=False
+            )
         self._prediction = gui.add_html("")
         self.code = gui.add_html("")
         self._lesson = gui.add_dropdown(
@@ -81,12 +90,14 @@ class PredictionsTab:
         on_press(self._back, lambda: self._lead(-1))
         on_press(self._next, lambda: self._lead(1))
         on_press(again, self._ask_again)
+        on_press(self._play, self._demonstrate)
+        on_press(self._put_back, self._put_lab_back)
         on_press(push, lambda: self._push(TakeStep(*self._steps.place(self._class.display))))
         on_user_update(self._shown, lambda on: self._show(shown=on))
-        on_user_update(self._revealed, self._reveal)
+        on_user_update(self._revealed, self._show_truth)
         on_user_update(self._lesson, lambda label: self._choose(self._lessons[label], 0))
         on_user_update(self._step, self._choose_step)
-        on_user_update(large, present)
+        on_user_update(large, lambda on: post(c.SetPresenting(on)))
 
     def look(self, large: bool) -> None:
         """Show what the class displays now, which may have been chosen in another window."""
@@ -102,10 +113,11 @@ class PredictionsTab:
             self._step.value = steps[index]
         _show(self._shown, display.shown)
         _show(self._revealed, display.revealed)
+        _reveal(self._play, self._steps.demonstration(display) is not None)
+        _reveal(self._put_back, self._demonstrates)
         for button, by in ((self._back, -1), (self._next, 1)):
             step = self._steps.beside(display, self._class.orders, by)
-            if button.visible != (step is not None):
-                button.visible = step is not None
+            _reveal(button, step is not None)
             if step is not None and by > 0:
                 there = self._course.lesson(step.lesson, words.language)
                 label = step_label(there, step.step, words, large)
@@ -128,6 +140,7 @@ class PredictionsTab:
             self._push(step)
 
     def _push(self, step: TakeStep) -> None:
+        self._put_lab_back()
         self._class.push(step)
         self._tell(self._words("class.sent", count=len(self._class.members())))
 
@@ -139,12 +152,31 @@ class PredictionsTab:
         else:
             self._push(TakeStep(name, found[0], again=True))
 
+    @property
+    def _demonstrates(self) -> bool:
+        """Whether the teacher's own lab is in a step."""
+        return bool(self._teaching.progress().lesson)
+
+    def _demonstrate(self) -> None:
+        """Play the demonstration in the teacher's own lab, and show that lab."""
+        step = self._steps.demonstration(self._class.display)
+        if step is not None:
+            self._teaching.chosen.followed = ""
+            self._post(step)
+            self._look_again()
+
+    def _put_lab_back(self) -> None:
+        if self._demonstrates:
+            self._post(c.CloseLesson())
+            self._look_again()
+
     def _tell(self, text: str) -> None:
         self._message.content = note(text)
         self._look_again()
 
     def _choose(self, lesson: str, step: int) -> None:
         """Display a step, with its answers hidden."""
+        self._put_lab_back()
         self._class.show(Display(lesson, step))
         self._message.content = ""
         self._look_again()
@@ -155,13 +187,18 @@ class PredictionsTab:
         if label in steps:
             self._choose(lesson, steps.index(label))
 
-    def _reveal(self, on: bool) -> None:
+    def _show_truth(self, on: bool) -> None:
         """The truth is shown among the answers."""
         self._show(revealed=on, **({"shown": True} if on else {}))
 
     def _show(self, **changes: bool) -> None:
         self._class.show(replace(self._class.display, **changes))
         self._look_again()
+
+
+def _reveal(button: viser.GuiButtonHandle, on: bool) -> None:
+    if button.visible != on:
+        button.visible = on
 
 
 def _show(handle: Any, value: object) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from onpath.app.classroom.classroom import Display, Orders
-from onpath.app.lab.commands import TakeStep
+from onpath.app.lab.commands import DemonstrateStep, TakeStep
 from onpath.lessons.course import Course
 from onpath.lessons.schema import Step
 
@@ -35,6 +35,15 @@ class StepsForAll:
             at = self._moved(at, name, by)
             if at is not None and not self._steps(at[0])[at[1]].when:
                 return TakeStep(at[0], at[1], name)
+        return None
+
+    def demonstration(self, display: Display) -> DemonstrateStep | None:
+        """That of the displayed step, or of the step that shows what it asks for; None without."""
+        lesson, index = self.place(display)
+        steps = self._steps(lesson)
+        for at in range(index, min(index + 2, len(steps))):
+            if steps[at].script is not None and (at == index or steps[at].kind == "run"):
+                return DemonstrateStep(lesson, at)
         return None
 
     def _moved(self, at: tuple[str, int], route: str, by: int) -> tuple[str, int] | None:

@@ -11,7 +11,6 @@ import viser
 from onpath.app.classroom import class_html as page
 from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.concept_test_results import sheets_without_names
-from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import mark_closing
@@ -114,8 +113,8 @@ class TeacherPanel:
                 words=self._words,
                 course=self._course,
                 teaching=self._teaching,
+                post=self._post,
                 look_again=self._look_again,
-                present=lambda on: self._post(c.SetPresenting(on)),
             )
         self._codes.append(tab.code)
         self._for_lessons.append(tab)

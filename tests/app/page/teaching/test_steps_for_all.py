@@ -10,13 +10,16 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from onpath.app.classroom.classroom import Classroom, Display
-from onpath.app.lab.commands import TakeSetup, TakeStep
+from onpath.app.lab.commands import ChoosePath, CloseLesson, SetParameter, TakeSetup, TakeStep
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.page.teaching.lesson_menu_labels import step_label
 from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.course import Course
 from onpath.lessons.words import ENGLISH
+from tests.support.lab import do, run, store
 
 
 def with_a_branch(course: Course) -> Course:
@@ -97,3 +100,24 @@ def test_on_a_projector_the_step_that_comes_next_does_not_tell_what_will_happen(
         for index, step in enumerate(lesson.steps):
             assert step.title in step_label(lesson, index, ENGLISH)
             assert f": {step.title}" not in step_label(lesson, index, ENGLISH, large=True)
+
+
+@pytest.mark.parametrize("name", list(COURSE.lessons)[:3])
+def test_every_demonstration_is_played_in_the_teacher_s_lab_which_is_then_put_back(
+    name: str,
+) -> None:
+    lab = Lab(store(), course=COURSE)
+    do(lab, ChoosePath("clover"), SetParameter("K1", 77.0))
+    before = capture(lab.session)
+    steps, played = COURSE.lesson(name, "en").steps, set[int]()
+    for index in range(len(steps)):
+        step = STEPS.demonstration(Display(name, index))
+        if step is not None:
+            assert step.step - index in (0, 1)
+            do(lab, step)
+            assert lab.lessons.playing and lab.session.running and lab.message_level != "error"
+            run(lab, 0.1)
+            played.add(step.step)
+    assert played == {index for index, step in enumerate(steps) if step.script is not None}
+    do(lab, CloseLesson())
+    assert capture(lab.session) == before
