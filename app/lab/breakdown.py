@@ -30,14 +30,12 @@ class _Replay:
 
     Attributes:
         exaggeration: the magnification to restore afterwards.
-        running: whether simulated time runs afterwards.
         elapsed: how long the replay has been shown, [s].
     """
 
     begin: float
     end: float
     exaggeration: float
-    running: bool
     elapsed: float = 0.0
 
     @property
@@ -105,7 +103,9 @@ class Breakdown:
         self.interrupt(session)
         end = max(stopped)
         begin = max(end - SPAN, session.time - session.history.span())
-        self._replay = _Replay(begin, end, session.exaggeration, session.running)
+        self._replay = _Replay(begin, end, session.exaggeration)
+        if session.viewing is None:
+            session.resumes = session.running
         session.running, session.viewing = False, begin
         if session.entry.flexible_link is not None:
             session.exaggeration = max(session.exaggeration, LARGER)
@@ -115,7 +115,7 @@ class Breakdown:
         """End a replay, and let time go on as before; returns whether there was one."""
         if self._replay is None:
             return False
-        session.viewing, session.running = None, self._replay.running
+        session.return_to_present()
         self._end(session, self._replay)
         return True
 

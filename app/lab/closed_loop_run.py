@@ -151,6 +151,12 @@ class ClosedLoopRun:
         self.fields()["theta_ref"][:] = reference
         self._fill_row(curve)
 
+    def measure(self, curve: Curve) -> None:
+        """Measure the distance from a path that has changed while the robot stands still."""
+        shown = self.shown()
+        distance = near_distance(self.robot.frame, curve, shown["y"][None], shown["theta"])
+        self._change(distance=float(distance[0]))
+
     def restart_at(self, theta: float, curve: Curve) -> None:
         """Restart at a parameter of the path, [rad]: reference there, integral zero."""
         self._change()

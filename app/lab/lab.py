@@ -234,9 +234,9 @@ class Lab:
         self.show_message("")
 
     def return_to_present(self) -> None:
-        """Stop viewing the past; the history is kept."""
+        """Stop viewing the past; the history is kept, and time runs if it ran before."""
         if self.session.viewing is not None:
-            self.session.viewing = None
+            self.session.return_to_present()
             self.remark(self.words("say.present"))
 
     # Messages

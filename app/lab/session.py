@@ -61,6 +61,7 @@ class Session:
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
         viewing: the past instant being viewed, [s], or None.
+        resumes: whether time runs again in the present, while the past is being viewed.
         undo_timeline: the timeline replaced by continuing from the past, or None.
         events: user actions and incidents, oldest first.
         faults: sides whose robots have stopped and have not been reported yet.
@@ -77,7 +78,8 @@ class Session:
         self.runs: dict[str, ClosedLoopRun] = {}
         self.law_changes = LawChanges(store, self.change_law)
         self.presets: Mapping[str, PathDesign] = presets()
-        self.running = True
+        self.running = self.resumes = True
+        self.viewing: float | None = None
         self.rate = 1.0
         self.copy = True
         self.hold_direction = ALONG
@@ -186,7 +188,7 @@ class Session:
         if not self._follow_laws() or not self.running:
             self._owed = 0.0
             if self.viewing is None:
-                self._bend(seconds)
+                self._bend_paused(seconds)
             return NO_FRAME
         dt = time_step(self.parameters)
         owed = self._owed + seconds
@@ -243,6 +245,20 @@ class Session:
         if self.editor.advance(seconds):
             project(list(self.runs.values()), self.editor.curve)
 
+    def _bend_paused(self, seconds: float) -> None:
+        """Advance the blend of an edited path, from which the robots then have other distances."""
+        before = self.editor.curve
+        self._bend(seconds)
+        if (curve := self.editor.curve) is not before:
+            for run in self.runs.values():
+                if run.diverged is None:
+                    run.measure(curve)
+
+    def return_to_present(self) -> None:
+        """Stop viewing the past, if it is being viewed; time runs again if it ran before."""
+        if self.viewing is not None:
+            self.viewing, self.running = None, self.resumes
+
     def step_once(self) -> None:
         """Make one step of a paused lab: the controller's next sample, at least a millisecond.
 
@@ -276,7 +292,7 @@ class Session:
         self.run_number += 1
         self.time = self.across_since = 0.0
         self._owed = 0.0
-        self.viewing: float | None = None
+        self.return_to_present()
         self.undo_timeline: Timeline | None = None
         self.history.clear()
         self.faults.clear()

@@ -1,5 +1,6 @@
 // Closes dialogs by Escape, a press beside them, or an x. Each presses the dialog's own
-// button [data-close], because only the lab can close viser's dialogs.
+// button [data-close], because only the lab can close viser's dialogs. The focus then returns to
+// where it was.
 (() => {
   "use strict";
 
@@ -28,6 +29,17 @@
     if (event.target.closest(".mantine-Modal-root")) closing()?.click();
   }, { capture: true });
 
+  let opener = null, isOpen = false;
+  document.addEventListener("focusin", (event) => {
+    if (!event.target.closest(".mantine-Modal-root")) opener = event.target;
+  });
+
+  function returnFocus() {
+    const wasOpen = isOpen;
+    isOpen = document.querySelector(DIALOG) !== null;
+    if (wasOpen && !isOpen && document.activeElement === document.body) opener?.focus();
+  }
+
   function addCross() {
     for (const dialog of document.querySelectorAll(DIALOG)) {
       const mark = dialog.querySelector("[data-close]"), head = dialog.querySelector("header");
@@ -44,5 +56,8 @@
     }
   }
 
-  new MutationObserver(addCross).observe(document, { childList: true, subtree: true });
+  new MutationObserver(() => {
+    addCross();
+    returnFocus();
+  }).observe(document, { childList: true, subtree: true });
 })();

@@ -11,7 +11,7 @@
   const FIELD = '[role="slider"], input:not([type="hidden"]), textarea';
   const FOLDER = ".mantine-Paper-root > .mantine-Paper-root:has(> svg)";
   const ROW = ".mantine-Flex-root:has(label)";
-  const ICON = "button.mantine-ActionIcon-root:not([aria-label])";
+  const COMMANDS = "button:has(.tabler-icon-list-search)";
 
   const UNCORRECTED = Object.entries({
     autocapitalize: "off", autocorrect: "off", autocomplete: "off", spellcheck: "false",
@@ -61,8 +61,9 @@
     if (words === undefined) return;
     set(document.documentElement, "lang", words.language);
     set(document.getElementById("root"), "role", "main");
-    for (const icon of document.querySelectorAll(ICON)) {
-      set(icon, "aria-label", icon.querySelector(".tabler-icon-list-search") ? words.keys : words.viewer);
+    set(document.querySelector(COMMANDS), "aria-label", words.keys);
+    for (const arrow of document.querySelectorAll("[data-dock-region-collapse]")) {
+      set(arrow, "aria-label", words.fold);
     }
     for (const cross of document.querySelectorAll(".mantine-Notification-closeButton")) {
       set(cross, "aria-label", words.close);

@@ -42,6 +42,7 @@ export class Voice {
     private spokenAt = -AGAIN
     private waiting = 0
     private offered = ""
+    private returns = false // whether the focus was in the invitation, and comes back with the next one
     private skipped = false
 
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
@@ -63,6 +64,10 @@ export class Voice {
         const skip = this.button("op-quiet", said(texts, "invite.skip"), () => this.skip())
         this.invitation = made("aside", "op-over-scene", this.invited, this.act, skip)
         this.invitation.id = "op-invitation"
+        this.invited.ariaLive = "polite"
+        this.invited.id = "op-invited"
+        this.act.setAttribute("aria-describedby", this.invited.id)
+        this.invited.tabIndex = -1
         this.message.hidden = this.invitation.hidden = true
         this.element.append(this.message, this.region, this.invitation)
         document.body.append(this.element)
@@ -160,11 +165,14 @@ export class Voice {
         const { invitation } = this.lab.said
         if (invitation === this.offered) return
         this.offered = invitation
+        const { activeElement } = document
+        this.returns = this.invitation.contains(activeElement) || (this.returns && activeElement === document.body)
         this.invitation.hidden = this.skipped || invitation === ""
         if (this.invitation.hidden) return
         tell(this.invited, said(this.texts, `invite.${invitation}`))
         this.act.hidden = !this.lab.said.act
         if (!this.act.hidden) tell(this.act, said(this.texts, `invite.${invitation}_button`))
+        if (this.returns) (this.act.hidden ? this.invited : this.act).focus()
     }
 
     private accept(): void {
@@ -184,8 +192,8 @@ export class Voice {
     private button(name: string, text: string, act: () => void): HTMLButtonElement {
         const button = made("button", name, text)
         button.type = "button"
-        button.addEventListener("click", () => {
-            button.blur() // it may be about to disappear, and the focus with it
+        button.addEventListener("click", event => {
+            if (event.detail) button.blur() // pressed with the mouse: Space is for the lab again
             act()
         })
         return button

@@ -203,7 +203,17 @@ def test_the_help_window_opens_and_closes(tab: Tab) -> None:
     window.get_by_text("Run or pause").wait_for()
     window.get_by_role("button", name="Close", exact=True).click()
     window.wait_for(state="hidden")
-    tab.press("Help and keys")
+    helps = tab.button("Help and keys")
+    helps.focus()
+    tab.page.keyboard.press("Enter")
     window.wait_for()
     tab.page.keyboard.press("Escape")
     window.wait_for(state="hidden")
+    wait_for(lambda: helps.evaluate("each => each === document.activeElement"))
+
+
+def test_viewer_settings_are_not_offered(tab: Tab) -> None:
+    tab.button("Collapse the controls").wait_for()
+    for name in ("Settings of the viewer", "Configuration & diagnostics"):
+        assert tab.page.get_by_role("button", name=name).count() == 0
+    assert not [e for e in tab.page.locator(".tabler-icon-adjustments").all() if e.is_visible()]

@@ -98,6 +98,20 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab.page.context.close()
 
 
+def test_the_introduction_is_followed_with_keys(browser: Browser, server: LabServer) -> None:
+    tab = visit(browser, server, newcomer=True)
+    page = tab.page
+    tab.button("Hold them back").focus()
+    page.keyboard.press("Enter")
+    wait_for(lambda: len(tab.session.forces.held) == 2)
+    expect(tab.button("Let them go")).to_be_focused()
+    page.keyboard.press("Enter")
+    wait_for(lambda: not tab.session.forces.held)
+    expect(page.locator("#op-invited")).to_be_focused()  # it has no button
+    expect(page.locator("#op-invited")).to_have_attribute("aria-live", "polite")
+    page.context.close()
+
+
 def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabServer) -> None:
     tab = visit(browser, server, newcomer=True)
     tab.button("Skip the introduction").click()

@@ -73,7 +73,7 @@ class Grab(Command):
         name = checks.side(self.side)
         target = checks.point(self.target, lab.session.robot.system.p)
         lab.return_to_present()
-        lab.session.forces.grab(name, target, lab.session.targets(name))
+        _grab(lab, name, target)
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +102,7 @@ class MoveHand(Command):
         session, forces = lab.session, lab.session.forces
         name = forces.grabbed or RIGHT
         target = forces.hands.get(name, session.runs[name].shown()["y"])
-        forces.grab(name, displaced(session.robot.frame, target, by), session.targets(name))
+        _grab(lab, name, displaced(session.robot.frame, target, by))
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,3 +114,11 @@ class SetCopy(Command):
     @override
     def apply(self, lab: Lab) -> None:
         lab.session.copy = bool(self.on)
+
+
+def _grab(lab: Lab, name: str, target: Array) -> None:
+    session = lab.session
+    session.forces.grab(name, target, session.targets(name))
+    if not session.running:
+        locked = lab.locked
+        lab.show_message(lab.words.sentence(locked) if locked else lab.words("say.pull_paused"))

@@ -152,7 +152,7 @@ class UndoGoOn(Command):
         if undo_going_on(lab.session):
             lab.remark(lab.words("say.brought_back", time=f"{lab.session.time:.1f}"))
         else:
-            lab.show_message(lab.words("say.nothing_to_undo"))
+            lab.show_message(lab.words("say.nothing_discarded"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.course import read_course
+from onpath.models.paths.distance import path_distance
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import FOLLOWER, assert_sound, do, new_lab, run, states, store, y
 from tests.support.lesson_texts import write_lesson
@@ -158,7 +159,7 @@ def test_a_new_beginning_leaves_nothing_to_bring_back(command: c.Command) -> Non
     do(lab, c.LookAt(0.3), c.GoOn(), command)
     before = states(lab.session)
     do(lab, c.UndoGoOn())
-    assert lab.session.time == 0.0 and "nothing" in lab.message
+    assert lab.session.time == 0.0 and "Nothing" in lab.message
     assert all(np.array_equal(state, before[name]) for name, state in states(lab.session).items())
 
 
@@ -205,3 +206,33 @@ def test_going_on_forgets_what_was_done_later_and_undo_brings_it_back() -> None:
     assert all(event.time <= session.time for event in session.events)
     do(lab, c.UndoGoOn())
     assert tuple(session.events) == all_of_it
+
+
+@pytest.mark.parametrize("running", [True, False])
+@pytest.mark.parametrize(
+    "back", [c.LookAt(0.0), c.Hold(True), c.MovePoint(0, np.array([0.06, 0.0])), c.Reset()]
+)
+def test_in_the_present_time_runs_again_only_if_it_ran_before(
+    back: c.Command, running: bool
+) -> None:
+    lab = new_lab(0.5)
+    do(lab, c.SetRunning(running), c.LookAt(0.3), c.LookAt(0.2))
+    assert not lab.session.running
+    do(lab, back)
+    assert lab.session.viewing is None and lab.session.running == running
+
+
+def test_a_paused_lab_measures_the_distance_from_a_path_that_changes() -> None:
+    lab = new_lab(0.5)
+    session = lab.session
+    do(lab, c.SetRunning(False), c.MovePoint(1, 1.4 * session.editor.points()[1]))
+    run(lab, 3.0)
+    for each in session.runs.values():
+        y = each.shown()["y"][None]
+        expected = path_distance(session.robot.frame, session.editor.curve, y)
+        assert each.distance == pytest.approx(float(expected[0]), abs=1e-6)
+    assert max(each.distance for each in session.runs.values()) > 1e-3
+    before = session.runs["right"].distance
+    do(lab, c.Grab("right", session.runs["right"].shown()["y"]))
+    assert "paused" in lab.message
+    assert session.runs["right"].distance == before
