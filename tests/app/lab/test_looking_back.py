@@ -225,7 +225,8 @@ def test_in_the_present_time_runs_again_only_if_it_ran_before(
 def test_a_paused_lab_measures_the_distance_from_a_path_that_changes() -> None:
     lab = new_lab(0.5)
     session = lab.session
-    do(lab, c.SetRunning(False), c.MovePoint(1, 1.4 * session.editor.points()[1]))
+    do(lab, c.SetRunning(False))
+    do(lab, *[c.MovePoint(i, 1.15 * each) for i, each in enumerate(session.editor.points())])
     run(lab, 3.0)
     for each in session.runs.values():
         y = each.shown()["y"][None]
