@@ -519,9 +519,9 @@ caption-held = festgehalten: { $mm } mm
 caption-waits = wartet: { $mm } mm
 caption-pulled = gezogen: { $mm } mm
 caption-pulled_far = gezogen: { $mm } mm, zieht geradewegs zurück
-caption-pulled_bounded = gezogen: { $mm } mm, Integral am Anschlag
+caption-pulled_bounded = gezogen: { $mm } mm, I-Anteil gesättigt
 caption-returns = weit ab, kehrt geradewegs zurück: { $mm } mm
-caption-off_bounded = neben der Bahn: { $mm } mm, Integral am Anschlag
+caption-off_bounded = neben der Bahn: { $mm } mm, I-Anteil gesättigt
 caption-chases = eilt seinem Punkt nach: { $mm } mm
 caption-off = neben der Bahn: { $mm } mm
 caption-stopped = angehalten
@@ -885,8 +885,7 @@ help-text =
     - **Pfeil**: die Kraft von Hand oder Bremse auf die Spitze.
     - **Drehe die Ansicht** mit der rechten Taste oder zwei Fingern; *Ansicht zurück* stellt sie wieder her.
     - **Ein neues Labor beginnt langsam**: Das gewünschte Tempo steigt von 0 auf 2 rad/s, deshalb sind
-      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das;
-      in Python heißt es `onpath.NEWCOMER`.
+      beide Roboter von Anfang an auf der Bahn. *Tempo* und *Tempo-Rampe* unter *Weitere* ändern das.
 
     Eine Taste, die das gerade gewählte Bedienelement selbst braucht, etwa die Pfeile auf einem
     Schieberegler oder die Leertaste auf einem Knopf, wirkt nur dort.

@@ -434,9 +434,9 @@ caption-held = held back: { $mm } mm
 caption-waits = waits: { $mm } mm
 caption-pulled = pulled: { $mm } mm
 caption-pulled_far = pulled: { $mm } mm, pulls straight back
-caption-pulled_bounded = pulled: { $mm } mm, its integral at the limit
+caption-pulled_bounded = pulled: { $mm } mm, its integral action saturated
 caption-returns = far off, goes straight back: { $mm } mm
-caption-off_bounded = off the path: { $mm } mm, its integral at the limit
+caption-off_bounded = off the path: { $mm } mm, its integral action saturated
 caption-chases = chases its point: { $mm } mm
 caption-off = off the path: { $mm } mm
 caption-stopped = stopped
@@ -797,8 +797,7 @@ help-text = **Hold both back** and watch: under trajectory tracking, the left ro
     - **Arrow**: the force that pulls or holds the end-point.
     - **Turn the view** with the right button or two fingers; *Reset view* restores it.
     - **A new lab begins slowly**: the wanted speed rises from 0 to 2 rad/s, so both robots are on the
-      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that; in Python it is
-      `onpath.NEWCOMER`.
+      path from the beginning. *Speed* and *Speed ramp* under *Advanced* change that.
 
     A key that the focused control uses itself, such as the arrows on a slider or the space bar on a
     button, acts on that control only.
