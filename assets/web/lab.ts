@@ -73,8 +73,9 @@ class Face {
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
-        document.body.append(this.column.element, this.stage, this.element)
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
+        // Before viser's panel, so that Tab and screen readers come to them first.
+        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.column.hear(engine.lesson!)

@@ -70,7 +70,6 @@ export class Voice {
         this.invited.tabIndex = -1
         this.message.hidden = this.invitation.hidden = true
         this.element.append(this.message, this.region, this.invitation)
-        document.body.append(this.element)
         new Tones(engine, ended)
         engine.on(change => change === "state" && this.show(), ended)
         ended.addEventListener("abort", () => this.element.remove())

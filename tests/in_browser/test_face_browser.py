@@ -137,6 +137,16 @@ def test_axe_finds_nothing_serious_in_the_lab(tab: Tab) -> None:
     tab.page.get_by_role("dialog").wait_for(state="hidden")
 
 
+def test_what_acts_on_the_robots_comes_before_the_panel(tab: Tab) -> None:
+    tab.page.evaluate("document.body.tabIndex = -1; document.body.focus()")  # at the top
+    for _ in range(4):
+        tab.page.keyboard.press("Tab")
+        if tab.button("Hold both back").evaluate("each => each === document.activeElement"):
+            break
+    expect(tab.button("Hold both back")).to_be_focused()
+    assert tab.page.get_by_role("heading").first.inner_text() == "OnPath"
+
+
 def test_sliders_their_boxes_and_the_scene_have_names(tab: Tab) -> None:
     page = tab.page
     expect(page.get_by_role("slider", name="K1 across")).to_have_count(1)
