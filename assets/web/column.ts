@@ -249,7 +249,7 @@ export class Column implements Robots {
     private follow(): void {
         const { page, view, student } = this
         this.tasks = page.steps[view?.index ?? -1]?.blocks.flatMap((block, i) =>
-            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell("lesson.passed"))] : [],
+            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell(said(page, "lesson.passed")))] : [],
         ) ?? []
         for (const task of this.tasks) task.follow()
     }
@@ -263,8 +263,8 @@ export class Column implements Robots {
         view?.formulas()
     }
 
-    private tell(key: string): void {
-        this.live.textContent = said(this.page, key)
+    tell(text: string): void {
+        this.live.textContent = text
     }
 
     private press(event: MouseEvent): void {

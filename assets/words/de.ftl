@@ -107,6 +107,7 @@ lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
 lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
+lesson-happened = Der Lauf ist zu Ende. Was geschah, steht im Text.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.

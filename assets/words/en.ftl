@@ -109,6 +109,7 @@ lesson-play = Let it happen
 lesson-read = Read on without it
 lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
+lesson-happened = The run is over. What happened is told in the text.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
 lesson-committed = You have committed to your prediction. Now see what happens.

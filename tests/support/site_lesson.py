@@ -44,6 +44,7 @@ def lesson_one_by_mouse(reader: SiteReader) -> None:
     reader.press("Let it happen")
     reader.played(8.5)
     assert page.locator(".step.open .compared").get_by_text("Yes: 49.5 mm.").is_visible()
+    assert "Yes: 49.5 mm." in page.locator("#live").inner_text()
     reader.press("Next")
     reader.ready()
     reader.slide("K1", 600)
