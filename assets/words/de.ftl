@@ -80,6 +80,7 @@ lesson-minutes_optional = und { $minutes } min freiwillig
 lesson-optional = freiwillig
 lesson-branch = zu deiner Antwort
 lesson-past_optional = Die freiwilligen Schritte überspringen, zu Schritt { $step }
+lesson-past_all = Die freiwilligen Schritte überspringen und abschließen
 lesson-tasks =
     { $all ->
         [one] { $done } von 1 Aufgabe

@@ -82,6 +82,7 @@ lesson-minutes_optional = and { $minutes } min optional
 lesson-optional = optional
 lesson-branch = for your answer
 lesson-past_optional = Skip the optional steps, to step { $step }
+lesson-past_all = Skip the optional steps and finish
 lesson-tasks =
     { $all ->
         [one] { $done } of 1 task

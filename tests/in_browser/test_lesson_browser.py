@@ -116,6 +116,7 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
         tab.page.keyboard.press("PageDown")
         wait_for(lambda step=step: tab.lab.lessons.index == step)
     wait_for_heading(tab, "Hold it yourself")
+    expect(tab.page.locator(".step.open .words")).to_be_focused()
     tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held
     hold_for(tab, 2.6)
