@@ -91,6 +91,6 @@ def _past(run: LessonView) -> list[Way]:
     if past is None or not run.may_go(past):
         return []
     if not past:
-        return [Way(run.words("lesson.finish"), [FINISH])]
+        return [Way(run.words("lesson.past_all"), [FINISH])]
     name = run.words("lesson.past_optional", step=run.index + 1 + past)
     return [Way(name, [{"do": "GoToStep", "by": past}])]

@@ -89,6 +89,7 @@ export class Column implements Robots {
     private place = "" // symbols that mean something on this robot, lesson and step
     private view: StepView | null = null
     private tasks: Task[] = []
+    private turned = false // whether a key has turned the page
 
     constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
         light: (symbol: string) => void, ended: AbortSignal) {
@@ -128,7 +129,7 @@ export class Column implements Robots {
         if (!this.open) return this.leave("")
         const place = `${Object.keys(message.symbols)} ${message.lesson}.${message.ended ? END : message.index}`
         const isNew = place !== this.place
-        const reads = element.contains(document.activeElement)
+        const reads = this.turned || element.contains(document.activeElement)
         if (isNew) this.leave(place)
         for (const step of message.steps) for (const block of step.blocks) this.bend(block)
         Object.assign(page, { lesson: message.lesson, symbols: message.symbols, steps: message.steps, test: message.test })
@@ -232,7 +233,7 @@ export class Column implements Robots {
         if (view) this.follow()
     }
 
-    /** A step has been opened, perhaps by someone whose focus was in the column. */
+    /** A step has been opened, perhaps by a key or by someone whose focus was in the column. */
     private begin(reads: boolean): void {
         const { section, view } = this
         const words = section.querySelector<HTMLElement>(".words")!
@@ -242,14 +243,15 @@ export class Column implements Robots {
         this.follow()
         view?.place()
         words.scrollTo(0, 0)
-        if (reads) words.focus({ preventScroll: true }) // whoever pressed Next reads on
+        if (reads) words.focus({ preventScroll: true }) // whoever turns the page reads on
+        this.turned = false
     }
 
     /** Follow the tasks of the open step. */
     private follow(): void {
         const { page, view, student } = this
         this.tasks = page.steps[view?.index ?? -1]?.blocks.flatMap((block, i) =>
-            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell("lesson.passed"))] : [],
+            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell(said(page, "lesson.passed")))] : [],
         ) ?? []
         for (const task of this.tasks) task.follow()
     }
@@ -263,8 +265,8 @@ export class Column implements Robots {
         view?.formulas()
     }
 
-    private tell(key: string): void {
-        this.live.textContent = said(this.page, key)
+    tell(text: string): void {
+        this.live.textContent = text
     }
 
     private press(event: MouseEvent): void {
@@ -281,6 +283,7 @@ export class Column implements Robots {
         const by = { PageDown: 1, PageUp: -1 }[event.key]
         if (!by || !this.open || isTyped(event) || document.querySelector("[role=dialog]")) return
         event.preventDefault()
+        this.turned = true
         this.engine.send({ do: "GoToStep", by })
     }
 }

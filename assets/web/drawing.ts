@@ -1,11 +1,11 @@
-// Draws a prediction on a chart: with the mouse, a finger, or nine sliders for keys.
+// Draws a prediction on a chart: with the mouse, a finger, or a row of sliders for keys.
 
 import { firstAfter, valueAt, type Chart, type Curve } from "./chart"
 import { made } from "./controls"
 import { niceStep } from "./ink"
 import { said, significant } from "./words"
 
-const POINTS = 9 // that keys move
+const POINTS = 33 // that keys move; in eight seconds, four a second
 const MOST = 160 // points that are kept
 const STEPS: Record<string, number> = { ArrowUp: 1, ArrowDown: -1, PageUp: 5, PageDown: -5, Home: -1000, End: 1000 }
 
@@ -20,8 +20,9 @@ export class Drawing {
         this.points = Array.from({ length: POINTS }, (_, i) => {
             const point = made("div", "point")
             const name = said(texts, "chart.point", { time: significant(texts, this.time(i), 3) })
-            Object.assign(point, { tabIndex: 0, role: "slider", ariaLabel: name, ariaOrientation: "vertical" })
+            Object.assign(point, { tabIndex: i ? -1 : 0, role: "slider", ariaLabel: name, ariaOrientation: "vertical" })
             point.addEventListener("keydown", event => this.key(event, i))
+            point.addEventListener("focus", () => this.points.forEach(each => (each.tabIndex = each === point ? 0 : -1))) // one stop of Tab
             return point
         })
         plot.classList.add("drawn")

@@ -135,7 +135,7 @@ export class Player implements Robots {
         student.recorded = stage.simulation
         if (step.kind === "predict" || !step.running) stage.run(false)
         this.tasks = step.blocks.flatMap((block, i) =>
-            block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell("lesson.passed"))] : [],
+            block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell(said(page, "lesson.passed")))] : [],
         )
         this.run()
     }
@@ -189,8 +189,8 @@ export class Player implements Robots {
         view?.run()
     }
 
-    private tell(key: string): void {
-        document.querySelector("#live")!.textContent = said(this.page, key)
+    tell(text: string): void {
+        document.querySelector("#live")!.textContent = text
     }
 
     /** Show the student's own answers, where the student is, and what comes next. */

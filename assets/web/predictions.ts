@@ -1,6 +1,6 @@
 // Predictions: a choice or a curve, to which a student commits before the run.
 
-import { made } from "./controls"
+import { made, tell } from "./controls"
 import { judged } from "./asked"
 import type { BlockData, PageData, Script, SketchData, StepData } from "./lesson_data"
 import { said, significant, type Texts } from "./words"
@@ -36,15 +36,16 @@ export interface Form {
     commit: HTMLButtonElement
     /** Where a curve is drawn; null if there is nothing to draw. */
     board: HTMLElement | null
+    /** Show what has been committed, if anything: it cannot be changed. */
+    show(): void
     /** Leave it out, unless it has been made. */
     skip(): void
 }
 
 /** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
 export function predict(page: PageData, prediction: Prediction, student: Student): Form {
-    const { notes } = student
     const element = elementOf(prediction)
-    const key = String(prediction.step)
+    const answerKept = () => student.notes.answers[String(prediction.step)]
     const { data } = prediction
     const told = element.querySelector<HTMLElement>(".verdict")!
     const commit = element.querySelector<HTMLButtonElement>(".commit")!
@@ -53,10 +54,13 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     let answer: Answer = {}
     const answers = () => {
         commit.disabled = answer.times === undefined && answer.option === undefined
+        const before = element.offsetHeight
         element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
+        if (getComputedStyle(element).position === "sticky") // what was read above it is still seen
+            element.closest(".words")!.scrollTop += element.offsetHeight - before
     }
     let board: HTMLElement | null = null
-    let committed = () => {}
+    let committed = (_: Answer) => {}
     commit.disabled = true
     if (data.kind === "sketch") {
         const chart = chartOf(page, prediction, data, () => {
@@ -65,7 +69,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         })
         const seconds = significant(page, data.seconds, 4)
         chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
-        chart.ghost = curveOf(notes.answers[key])
+        chart.ghost = curveOf(answerKept())
         const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
         hint()
         const drawing = new Drawing(chart, () => {
@@ -78,7 +82,12 @@ export function predict(page: PageData, prediction: Prediction, student: Student
         })
         board = chart.element
         told.textContent = said(page, "site.draw_first")
-        committed = () => (drawing.open = false)
+        committed = kept => {
+            drawing.open = false
+            chart.ghost = curveOf(kept)
+            hint()
+            chart.draw()
+        }
     } else
         element.addEventListener("change", event => {
             const input = event.target as HTMLInputElement
@@ -87,13 +96,13 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             answers()
         })
     const show = () => {
-        const kept = notes.answers[key]
+        const kept = answerKept()
         if (!kept) return
-        told.textContent = said(page, given(kept) ? "lesson.committed" : "site.skipped")
-        if (!given(kept)) return
+        if (given(kept) || commit.disabled) tell(told, said(page, given(kept) ? "lesson.committed" : "site.skipped"))
+        if (!given(kept) || asked.hidden) return
         asked.hidden = true
         element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
-        committed()
+        committed(kept)
         if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
     }
     const finish = (own: Answer) => {
@@ -102,7 +111,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     }
     commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
     show()
-    return { commit, board, skip: () => void (notes.answers[key] ?? finish({})) }
+    return { commit, board, show, skip: () => void (answerKept() ?? finish({})) }
 }
 
 /** How a prediction compares with what happened. */
@@ -120,6 +129,11 @@ export class Comparison {
             drawn(chart, data, this.answer, undefined)
             this.elements.push(chart.element, this.again)
         } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
+    }
+
+    /** The verdict on a choice, in words. */
+    get words(): string[] {
+        return this.chart ? [] : this.elements.flatMap(each => [...each.children]).map(each => each.textContent!)
     }
 
     /** Draw what happened, too; if that is not kept, the page says how to see it again. */

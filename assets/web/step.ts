@@ -17,6 +17,8 @@ export interface Robots {
     readonly ready: boolean
     readonly playing: boolean
     play(): void
+    /** Say something to those who do not see the page. */
+    tell(text: string): void
     /** Perform the actions of a link: its number among those of a text. */
     act(block: number, link: number): void
 }
@@ -32,11 +34,11 @@ export interface Places {
 }
 
 export class StepView {
-    readonly prediction: Prediction | null
     /** The form of a prediction that is asked here. */
     form: Form | null = null
     private compared: Comparison | null = null
     private shown = "" // what it compares
+    private played = false // whether the run was on when it was last looked at
 
     constructor(
         private readonly page: PageData,
@@ -45,7 +47,6 @@ export class StepView {
         private readonly robots: Robots,
         private readonly places: Places,
     ) {
-        this.prediction = predictionAt(page.steps, index)
         const { section } = places
         section.dataset["kind"] = page.steps[index]!.kind
         page.steps[index]!.blocks.forEach((_, i) => this.prepare(i))
@@ -73,6 +74,8 @@ export class StepView {
     }
 
     private get notes(): Notes { return this.student.notes }
+    /** What is predicted here; what is right is known only after the run. */
+    get prediction(): Prediction | null { return predictionAt(this.page.steps, this.index) }
     /** Whether a prediction is pending. */
     get waits(): boolean { return this.prediction !== null && this.notes.answers[String(this.prediction.step)] === undefined }
     /** Whether its own prediction was committed. */
@@ -101,11 +104,12 @@ export class StepView {
         }
     }
 
-    /** Show of a run what may be seen: nothing before the prediction, the words after it. */
+    /** Show what was committed, and of a run what may be seen: nothing before the prediction, the words after it. */
     run(): void {
         const { page, index, notes, robots, prediction } = this
         const { section } = this.places
         const step = page.steps[index]!
+        this.form?.show()
         if (step.kind !== "run") return
         const told = section.querySelector<HTMLElement>(".play")
         const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")
@@ -135,6 +139,9 @@ export class StepView {
             told?.append(" ", reading)
         }
         this.compare()
+        if (this.played && happened && !robots.playing)
+            robots.tell([said(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
+        this.played = robots.playing
         if (happened && !waits && !robots.playing) this.draw(notes.truths[String(prediction?.step)])
     }
 

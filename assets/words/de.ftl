@@ -80,6 +80,7 @@ lesson-minutes_optional = und { $minutes } min freiwillig
 lesson-optional = freiwillig
 lesson-branch = zu deiner Antwort
 lesson-past_optional = Die freiwilligen Schritte überspringen, zu Schritt { $step }
+lesson-past_all = Die freiwilligen Schritte überspringen und abschließen
 lesson-tasks =
     { $all ->
         [one] { $done } von 1 Aufgabe
@@ -107,6 +108,7 @@ lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
 lesson-replay = Noch einmal geschehen lassen
 lesson-playing = Es läuft: Sieh zu.
+lesson-happened = Der Lauf ist zu Ende. Was geschah, steht im Text.
 lesson-step = Schritt { $step } von { $steps }
 lesson-commit = Auf diese Vorhersage festlegen
 lesson-committed = Du hast dich festgelegt. Sieh jetzt, was geschieht.
@@ -1629,7 +1631,7 @@ site-read_done = Gelesen.
 site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
-site-draw_first = Zeichne mit der Maus oder dem Finger in das Diagramm, von links nach rechts. Mit Tasten: Tab führt zu seinen Punkten, und die Pfeile bewegen sie.
+site-draw_first = Zeichne mit der Maus oder dem Finger in das Diagramm, von links nach rechts. Mit Tasten: Tab führt zu seinen Punkten, die Pfeile nach links und rechts zum nächsten, und die nach oben und unten bewegen ihn.
 site-to_robots = Roboter
 site-to_text = Text
 site-commit_short = Festlegen

@@ -82,6 +82,7 @@ lesson-minutes_optional = and { $minutes } min optional
 lesson-optional = optional
 lesson-branch = for your answer
 lesson-past_optional = Skip the optional steps, to step { $step }
+lesson-past_all = Skip the optional steps and finish
 lesson-tasks =
     { $all ->
         [one] { $done } of 1 task
@@ -109,6 +110,7 @@ lesson-play = Let it happen
 lesson-read = Read on without it
 lesson-replay = Let it happen again
 lesson-playing = It is happening: watch.
+lesson-happened = The run is over. What happened is told in the text.
 lesson-step = Step { $step } of { $steps }
 lesson-commit = Commit to this prediction
 lesson-committed = You have committed to your prediction. Now see what happens.
@@ -1270,7 +1272,7 @@ site-read_done = Read.
 site-no_progress = This file contains no progress in this course.
 site-not_kept = This browser keeps nothing for this page. Your progress lasts until you close it.
 site-skipped = You skipped the prediction. You can still make it here.
-site-draw_first = Draw in the chart with the mouse or a finger, from left to right. With keys: Tab goes to its points, and the arrows move them.
+site-draw_first = Draw in the chart with the mouse or a finger, from left to right. With keys: Tab goes to its points, the arrows left and right go on to the next, and those up and down move it.
 site-to_robots = Robots
 site-to_text = Text
 site-commit_short = Commit

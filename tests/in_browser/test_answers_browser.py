@@ -53,6 +53,38 @@ def test_answers_are_pressed_by_mouse_finger_and_keys(browser: Browser, server: 
     context.close()
 
 
+def test_a_committed_choice_is_locked_and_judged_when_its_run_is_over(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    page = tab.page
+    tab.ask(c.TakeStep(TIMETABLE, 4))
+    wrong = page.get_by_role("radio", name=re.compile("A few millimetres"))
+    wrong.click()
+    text, card = page.get_by_text("We make the spring"), page.locator(".step.open .asked")
+    page.get_by_label("Why?").wait_for()
+    above, below = text.bounding_box(), card.bounding_box()
+    assert above is not None and below is not None
+    assert above["y"] + above["height"] <= below["y"]  # it does not hide what it asks about
+    tab.button("Commit to this prediction").click()
+    page.get_by_text("You have committed to your prediction").wait_for()
+    expect(wrong).to_be_checked()
+    for option in card.get_by_role("radio").all():
+        expect(option).to_be_disabled()
+    assert page.get_by_label("Why?").is_hidden()
+    tab.press("Let it happen")
+    wait_for(lambda: tab.lab.lessons.playing)
+    tab.ask(c.SetRate(4.0))
+    wait_for(lambda: tab.lab.lessons.has_played())
+    for told in (page.locator(".compared"), page.locator("#op-column > .step + [role=status]")):
+        expect(told).to_contain_text("Not quite.")
+        expect(told).to_contain_text("A few millimetres")
+        expect(told).to_contain_text("As far as before")
+    assert tab.errors == []
+    context.close()
+
+
 def test_how_sure_why_a_number_and_a_text_are_typed_and_kept(
     browser: Browser, server: LabServer
 ) -> None:

@@ -80,6 +80,8 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
         pass
     commit.click()
     expect(tab.button("Let it happen")).to_be_in_viewport()
+    tab.page.get_by_text("You have committed to your prediction").wait_for()
+    assert tab.page.locator(".plot.drawn").count() == 0  # it cannot be drawn again
     answer = wait_for(tab.lab.lessons.answer)
     assert len(answer.times) > 4 and 0 < min(answer.times) < 3 < 5 < max(answer.times)
     assert max(answer.values) > 1.3 * answer.values[0] and max(answer.values) > answer.values[-1]
@@ -114,6 +116,7 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
         tab.page.keyboard.press("PageDown")
         wait_for(lambda step=step: tab.lab.lessons.index == step)
     wait_for_heading(tab, "Hold it yourself")
+    expect(tab.page.locator(".step.open .words")).to_be_focused()
     tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held
     hold_for(tab, 2.6)

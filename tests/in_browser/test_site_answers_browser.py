@@ -64,7 +64,7 @@ def test_a_text_has_the_numbers_of_the_curve_that_was_drawn(browser: Browser, ad
     page.evaluate("site.open(5)")
     assert "You drew nothing, and chose: –." in page.locator(".step.open").inner_text()
     page.evaluate("site.open(1)")
-    for place, ups in ((0, 1), (4, 5), (8, 1)):
+    for place, ups in ((0, 1), (16, 5), (32, 1)):
         page.locator(".step.open .point").nth(place).focus()
         for _ in range(ups):
             page.keyboard.press("ArrowUp")

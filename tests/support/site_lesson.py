@@ -43,7 +43,8 @@ def lesson_one_by_mouse(reader: SiteReader) -> None:
     reader.ready()
     reader.press("Let it happen")
     reader.played(8.5)
-    assert page.locator(".step.open .compared").get_by_text("Yes: 49.5 mm.").is_visible()
+    assert page.locator(".step.open .compared").get_by_text("Yes: nearly 50 mm.").is_visible()
+    assert "Yes: nearly 50 mm." in page.locator("#live").inner_text()
     reader.press("Next")
     reader.ready()
     reader.slide("K1", 600)
@@ -80,11 +81,20 @@ def lesson_one_by_keys(reader: SiteReader) -> None:
     keys.press("h")
     wait_for(lambda: "torn off" in page.locator(".step.open .stage").inner_text(), WAIT)
     keys.press("PageDown")
-    point = page.get_by_role("slider", name="Your prediction at 4 s")
-    reader.focus(point)
-    for _ in range(8):
+    start = page.get_by_role("slider", name="Your prediction at 0 s")
+    reader.focus(start)
+    for _ in range(13):
+        keys.press("ArrowRight")
+    for _ in range(4):
         keys.press("PageUp")
-    assert point.get_attribute("aria-valuetext") == "40 mm"
+        keys.press("PageUp")
+        keys.press("ArrowRight")
+        keys.press("ArrowRight")
+    told = ("0 mm", "10 mm", "0 mm", "10 mm", "0 mm", "10 mm", "0 mm", "10 mm", "0 mm")
+    for time, value in zip((3, 3.25, 3.5, 3.75, 4, 4.25, 4.5, 4.75, 5), told, strict=True):
+        point = page.get_by_role("slider", name=f"Your prediction at {time:g} s", exact=True)
+        assert point.get_attribute("aria-valuetext") == value
+    assert page.locator(".step.open .point[tabindex='0']").count() == 1  # one stop of Tab
     reader.focus(reader.button("Commit to this prediction"))
     keys.press("Enter")
     keys.press("PageDown")

@@ -226,6 +226,17 @@ def test_verdicts_and_curves_are_measured(lab: Lab) -> None:
         assert all(set(each) == {"passed", "words"} for each in verdicts)
 
 
+def test_what_is_optional_is_named_so_on_the_way_to_the_end_and_there(lab: Lab) -> None:
+    do(lab, c.SetLanguage("en"))
+    at(lab, "01-path-or-timetable", 9)
+    pager = told(lab)["pager"]
+    assert "Skip the optional steps and finish" in pager and ">Finish<" not in pager
+    do(lab, c.FinishLesson())
+    end = html(told(lab))
+    assert "0 of 2 tasks passed" in end
+    assert (end.count("○ Not passed yet"), end.count("(optional)")) == (3, 1)
+
+
 @pytest.mark.parametrize("name", COURSE.lessons)
 def test_the_end_has_a_place_for_each_chart(lab: Lab, name: str) -> None:
     do(lab, c.SetLanguage("en"))
