@@ -2,7 +2,7 @@
 // after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
 
 import { made } from "./controls"
-import { disc, letters, niceStep, Sheet, stroke, tones, type Pixel, type Tone } from "./ink"
+import { covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "./ink"
 import { said, significant, written, type Texts } from "./words"
 
 export interface Curve {
@@ -39,13 +39,6 @@ const HALF = 8 // [px], of the height of a label
 const TRIED = 25 // times at which a line may be named
 const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], from the line to the middle of its name
 const LEAST_PEAK = 0.004 // of the height, below which a peak is not labelled
-
-interface Box {
-    left: number
-    right: number
-    top: number
-    bottom: number
-}
 
 export class Chart {
     readonly plot: HTMLElement
@@ -274,9 +267,7 @@ export class Chart {
 
     /** Whether a box covers another one; if not, it is taken now. */
     private taken(box: Box): boolean {
-        const covers = ({ left, right, top, bottom }: Box) =>
-            box.left < right && box.right > left && box.top < bottom && box.bottom > top
-        if (this.boxes.some(covers)) return true
+        if (this.boxes.some(other => covers(box, other))) return true
         this.boxes.push(box)
         return false
     }

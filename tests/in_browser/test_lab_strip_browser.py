@@ -46,6 +46,12 @@ COVERED = """() => [...document.querySelectorAll("#op-strip button, #root button
 """Buttons in the window that something covers."""
 
 
+BLURRED = """() => [...document.querySelectorAll(".lens canvas, #op-strip canvas")].filter(each => {
+    const {width} = each.getBoundingClientRect()
+    return Math.abs(each.width - width * devicePixelRatio) > 1
+}).length"""
+
+
 def number(tab: Tab, title: str) -> float:
     """The large number of a robot, [mm]."""
     return float(tab.page.get_by_role("group", name=title).inner_text().split()[0])
@@ -103,8 +109,10 @@ def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> Non
     assert (
         read["x"] + read["width"] <= scene["x"] + 1 or scene["x"] + scene["width"] <= read["x"] + 1
     )
+    wait_for(lambda: tab.page.evaluate(BLURRED) == 0)
     tab.ask(c.CloseLesson())
     expect(column).to_be_hidden()
+    wait_for(lambda: tab.page.evaluate(BLURRED) == 0)
     expect(strip).to_be_visible()
 
 
