@@ -75,6 +75,7 @@ class Face {
         this.element.ariaLabel = said(texts, "chart.title")
         document.body.append(this.column.element, this.stage, this.element)
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
+        head.prepend(this.voice.invitation)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.column.hear(engine.lesson!)

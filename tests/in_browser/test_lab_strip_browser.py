@@ -252,3 +252,22 @@ def test_nothing_lies_on_a_board_and_it_stays_high_enough_to_be_read(charted: Ta
     assert page.evaluate(COLLISIONS) == []
     after = page.locator(".plot:visible").last.bounding_box()
     assert after is not None and after["height"] > 110
+
+
+@pytest.mark.parametrize("size", CHARTED, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_an_invitation_covers_neither_robots_nor_the_strip(
+    browser: Browser, server: LabServer, size: tuple[int, int]
+) -> None:
+    context = fresh(browser, viewport={"width": size[0], "height": size[1]})
+    context.add_init_script(f"({REMEMBER})()")
+    newcomer = Tab(server, context, draws=False, newcomer=True)
+    invitation = newcomer.page.locator("#op-invitation")
+    expect(invitation).to_be_visible()
+    newcomer.ask(c.Hold(True))
+    expect(invitation).to_contain_text("torn off")
+    newcomer.page.evaluate(THREE_FRAMES)
+    box, boxes = invitation.bounding_box(), newcomer.page.evaluate(BOXES)
+    assert box is not None and box["y"] >= boxes["scene"]["bottom"] - 1
+    assert box["y"] + box["height"] <= boxes["chart"]["top"] and boxes["chart"]["height"] > 70
+    assert newcomer.page.evaluate(COLLISIONS) == []
+    context.close()
