@@ -1,4 +1,4 @@
-"""The first minute in the lab: invitations in the scene, one after the other, each once."""
+"""The first minute in the lab: invitations in the strip, one after the other, each once."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 // after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
 
 import { made } from "./controls"
-import { disc, letters, niceStep, Sheet, stroke, tones, type Pixel, type Tone } from "./ink"
+import { covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "./ink"
 import { said, significant, written, type Texts } from "./words"
 
 export interface Curve {
@@ -39,13 +39,6 @@ const HALF = 8 // [px], of the height of a label
 const TRIED = 25 // times at which a line may be named
 const ASIDES = [[-14, 14], [-32, 32], [-50, 50]] // [px], from the line to the middle of its name
 const LEAST_PEAK = 0.004 // of the height, below which a peak is not labelled
-
-interface Box {
-    left: number
-    right: number
-    top: number
-    bottom: number
-}
 
 export class Chart {
     readonly plot: HTMLElement
@@ -93,6 +86,7 @@ export class Chart {
         const ink = this.sheet.cleared()
         if (!ink) return
         this.boxes = []
+        this.unit(ink)
         this.shade(ink)
         this.grid(ink)
         ink.save()
@@ -121,11 +115,22 @@ export class Chart {
         return times.slice(first, last).map((time, i) => [this.x(time), this.y(values[first + i]!)])
     }
 
+    /** The unit, above the numbers of its axis. */
+    private unit(ink: CanvasRenderingContext2D): void {
+        const { unit } = this.axes
+        ink.font = FONT
+        ink.textBaseline = "middle"
+        ink.textAlign = "right"
+        const { width } = ink.measureText(unit)
+        const right = Math.max(MARGIN.left - 6, width + 2)
+        this.boxes.push({ left: right - width, right: right + 4, top: 9 - HALF, bottom: 9 + HALF })
+        ink.fillStyle = tones().soft
+        ink.fillText(unit, right, 9)
+    }
+
     private shade(ink: CanvasRenderingContext2D): void {
         const { from, until, axes } = this
-        ink.font = FONT
         ink.textAlign = "center"
-        ink.textBaseline = "middle"
         for (const span of this.spans) {
             const [left, right] = [Math.max(span.from, from), Math.min(span.until, until)].map(this.x) as [number, number]
             if (right <= left) continue
@@ -142,7 +147,7 @@ export class Chart {
 
     private grid(ink: CanvasRenderingContext2D): void {
         const { axes, from, until, texts, sheet } = this
-        const { top, bottom, unit, mark } = axes
+        const { top, bottom, mark } = axes
         const { ink: dark, soft, grid, paper } = tones()
         const [left, right] = [this.x(from), this.x(until)]
         const rows = Math.max(2, Math.floor((sheet.height - MARGIN.top - MARGIN.bottom) / 34))
@@ -154,14 +159,12 @@ export class Chart {
             stroke(ink, [[left, y], [right, y]], grid, 1)
             ink.fillText(significant(texts, value, 4), left - 6, y)
         }
-        ink.textAlign = "left"
-        letters(ink, unit, left + 4, MARGIN.top + 9, soft, paper)
         const apart = niceStep((64 * (until - from)) / (right - left))
         ink.textAlign = "center"
         ink.fillStyle = dark
         for (let time = Math.ceil(from / apart - 1e-9) * apart; time <= until + 1e-9; time += apart) {
             const text = significant(texts, time, 4)
-            ink.fillText(time < from + apart ? `${text} s` : text, this.x(time), sheet.height - 10)
+            ink.fillText(time < from + apart ? `${text} s` : text, this.x(time), sheet.height - 7)
         }
         if (!mark || mark.value > top || mark.value < bottom) return
         const y = Math.round(this.y(mark.value)) + 0.5
@@ -170,8 +173,8 @@ export class Chart {
         ink.setLineDash([])
         ink.textAlign = "right"
         const { width } = ink.measureText(mark.label)
-        this.boxes.push({ left: right - width - 4, right, top: y - 16, bottom: y })
-        letters(ink, mark.label, right - 4, y - 8, soft, paper)
+        const row = [y - HALF, y + HALF].find(each => !this.taken({ left: right - width - 4, right, top: each - HALF, bottom: each + HALF }))
+        if (row) letters(ink, mark.label, right - 4, row, soft, paper)
     }
 
     private shadow(ink: CanvasRenderingContext2D, ghost: Curve): void {
@@ -274,9 +277,7 @@ export class Chart {
 
     /** Whether a box covers another one; if not, it is taken now. */
     private taken(box: Box): boolean {
-        const covers = ({ left, right, top, bottom }: Box) =>
-            box.left < right && box.right > left && box.top < bottom && box.bottom > top
-        if (this.boxes.some(covers)) return true
+        if (this.boxes.some(other => covers(box, other))) return true
         this.boxes.push(box)
         return false
     }
@@ -284,7 +285,7 @@ export class Chart {
     /** Whether a line runs through a box. */
     private crossed({ left, right, top, bottom }: Box): boolean {
         const [from, until] = [left, right].map(x => this.inverse(x, 0)[0]) as [number, number]
-        return this.lines.some(({ times, values }) => {
+        return [...this.lines, ...(this.ghost ? [this.ghost] : [])].some(({ times, values }) => {
             for (let i = Math.max(firstAfter(times, from) - 1, 0); i < times.length && times[i]! <= until; i++) {
                 const y = this.y(values[i]!)
                 if (y > top - 2 && y < bottom + 2) return true

@@ -109,6 +109,17 @@ export function arrow(ink: CanvasRenderingContext2D, from: Pixel, to: Pixel, col
     ink.fill()
 }
 
+export interface Box {
+    left: number
+    right: number
+    top: number
+    bottom: number
+}
+
+export function covers(a: Box, b: Box): boolean {
+    return a.left < b.right && a.right > b.left && a.top < b.bottom && a.bottom > b.top
+}
+
 /** Letters with a rim, so that they can be read on lines. */
 export function letters(ink: CanvasRenderingContext2D, text: string, x: number, y: number, colour: string, rim: string): void {
     ink.strokeStyle = rim

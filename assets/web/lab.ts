@@ -74,6 +74,7 @@ class Face {
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
+        head.prepend(this.voice.invitation)
         // Before viser's panel, so that Tab and screen readers come to them first.
         document.body.prepend(this.stage, this.voice.element, this.column.element, this.element)
         document.documentElement.classList.add("op-stripped")
@@ -99,7 +100,7 @@ class Face {
         document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
     }
 
-    /** Follow viser's canvas, which changes its size, or is replaced. */
+    /** Follow viser's canvas, which changes its size, or is replaced. Not while sizes are observed: a lens would miss its own. */
     place(): void {
         const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
         const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
@@ -110,7 +111,7 @@ class Face {
         Object.assign(this, { width, height })
         if (canvas !== this.canvas && canvas) {
             this.canvas = canvas
-            const observer = new ResizeObserver(() => this.place())
+            const observer = new ResizeObserver(() => requestAnimationFrame(() => this.ended.signal.aborted || this.place()))
             observer.observe(canvas)
             this.ended.signal.addEventListener("abort", () => observer.disconnect())
         }

@@ -2,7 +2,7 @@
 
 import { made, tell } from "./controls"
 import { shown, type Engine, type PathShape, type SideSample, type Vector } from "./engine"
-import { arrow, disc, letters, niceStep, Sheet, stroke, tones, type Pixel } from "./ink"
+import { arrow, covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel } from "./ink"
 import type { Point } from "./figure_data"
 import { drawShapes, shapesOf } from "./symbols"
 import { said, significant, written, type Texts } from "./words"
@@ -11,8 +11,9 @@ const FACTORS = [1.5, 3, 6, 12, 20]
 const FITS = 0.62 // of the radius: what is to be seen is within
 const CLOSER = 0.45 // the same before the lens goes closer
 const HIGHER = 0.92 // of the radius: the middle of what is to be seen is above the bar
-const LOWEST = 1.55 // of the radius: names are above the bar
-const SMALL = 55 // [px], of a radius with no room for words
+const RIM = 5 // [px], from the edge, which letters keep off
+const HALF = 8 // [px], of the height of letters
+const [SMALL, TINY] = [55, 40] // [px], of a radius with no room for words, and none for a scale
 const PATIENCE = 900 // [ms] for which it could have gone closer
 const GLIDE = 120 // [ms], in which most of a change of scale is done
 const TRACE = 2 // [s]
@@ -37,6 +38,7 @@ export class Lens {
     private drawn = 0 // pixels for a metre, at present
     private could = 0 // [ms], since when it could go closer
     private last = 0
+    private boxes: Box[] = [] // that letters do not cover
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly side: number, ended?: AbortSignal) {
         this.sheet = new Sheet(() => (this.stale = true), ended)
@@ -64,7 +66,7 @@ export class Lens {
         const view = viewOf(sample, engine.path)
         const flat = (point: Vector): Pixel => [dot(point, view[0]), -dot(point, view[1])]
         const seen = [sample.tip, sample.closest, ...(sample.reference ? [sample.reference] : []), ...(sample.straight ? [sample.straight] : [])]
-        const [middle, reach] = around(seen.map(flat))
+        const [middle, reach] = extent(seen.map(flat))
         this.zoom(reach, radius || 80, now)
         this.read(sample)
         if (!ink || radius < 10) return
@@ -83,7 +85,7 @@ export class Lens {
         if (this.lit) this.light(ink, sample, view, ([x, y]) => [
             radius + (x - middle[0]) * this.drawn, HIGHER * radius - (y + middle[1]) * this.drawn,
         ])
-        if (radius > SMALL) this.bar(ink, radius)
+        if (radius >= TINY) this.bar(ink, radius)
         ink.restore()
         ink.lineWidth = 3
         ink.strokeStyle = tones()[`side${engine.texts[side]!.side}`]
@@ -146,7 +148,7 @@ export class Lens {
         stroke(ink, [...trace, tip], colour, 4)
         ink.globalAlpha = 1
         this.normal(ink, tip, closest)
-        if (sample.straight) this.straight(ink, tip, pixel(sample.straight), radius)
+        if (sample.straight) this.straight(ink, tip, pixel(sample.straight))
         const from = sample.reference ? pixel(sample.reference) : closest
         if (far(from, tip) > 12) arrow(ink, from, tip, dark, 2)
         disc(ink, closest, 5.5, all.paper)
@@ -160,18 +162,12 @@ export class Lens {
         }
         disc(ink, tip, 7.5, all.paper)
         disc(ink, tip, 5.5, colour)
+        this.boxes = [around(tip, 8), around(closest, 6), around(from, sample.reference ? 10 : 6)]
         this.force(ink, tip, pixel, sample, radius)
-        ink.font = "11px system-ui, sans-serif"
-        ink.textBaseline = "middle"
-        if (radius < SMALL) return
-        const named: [Pixel, string][] = [[closest, "lens.closest"]]
-        if (sample.reference) named.unshift([from, "lens.reference"])
-        const placed: Pixel[] = []
-        for (const [at, key] of named)
-            if (far(at, tip) > 34 && placed.every(each => far(each, at) > 18)) {
-                placed.push(at)
-                this.name(ink, said(texts, key), at, tip, radius, dark)
-            }
+        const named: [Pixel, string][] = [[closest, said(texts, "lens.closest")]]
+        if (sample.reference) named.unshift([from, said(texts, "lens.reference")])
+        for (const [at, name] of named) this.name(ink, name, at, tip, radius, dark)
+        if (sample.straight) this.name(ink, said(texts, "lens.straight"), pixel(sample.straight), tip, radius, all.soft)
     }
 
     /** Show what a symbol means, in the plane in which the lens looks. */
@@ -187,17 +183,32 @@ export class Lens {
         drawShapes(ink, shapesOf(this.lit, seen), pixel, tones().selected)
     }
 
-    /** A name beside a point, on the side that the end-point is not on. */
+    /** A name beside a point that is away from the end-point, on the side that the end-point is not on. */
     private name(ink: CanvasRenderingContext2D, text: string, at: Pixel, tip: Pixel, radius: number, colour: string): void {
-        const { width } = ink.measureText(text)
-        const half = (y: number) => Math.sqrt(Math.max(0, radius ** 2 - (Math.abs(y - radius) + 7) ** 2)) - 5
-        const fits = (x: number, y: number) => y < LOWEST * radius && x >= radius - half(y) && x + width <= radius + half(y)
-        const away = at[1] > tip[1] ? 18 : -18
-        const sides = at[0] < tip[0] ? [-13 - width, 13] : [13, -13 - width]
-        const tried: Pixel[] = [...sides.map((x): Pixel => [at[0] + x, at[1]]), [at[0] - width / 2, at[1] + away], [radius - width / 2, at[1] + away]]
-        const [x, y] = tried.find(place => fits(...place)) ?? [Math.min(Math.max(at[0], 0.7 * radius), 1.3 * radius) - width / 2, at[1] - away]
-        ink.textAlign = "left"
-        letters(ink, text, x, y, colour, tones().paper)
+        if (far(at, tip) <= 34 || radius < SMALL) return
+        ink.font = "11px system-ui, sans-serif"
+        const aside = ink.measureText(text).width / 2 + 13
+        const [x, y] = at
+        const [right, down] = [x < tip[0] ? -aside : aside, y > tip[1] ? 18 : -18]
+        this.write(ink, text, [[x + right, y], [x - right, y], [x, y + down], [x, y - down]], radius, colour)
+    }
+
+    /** Write letters at the first free of some places, moved into the lens and above its bar; `always`: even if none is free. */
+    private write(ink: CanvasRenderingContext2D, text: string, tried: Pixel[], radius: number, colour: string, always = false): void {
+        const half = ink.measureText(text).width / 2 + 2
+        const chord = (away: number) => Math.sqrt(Math.max((radius - RIM) ** 2 - away ** 2, 0))
+        const boxes = tried.map(([x, y]): Box => {
+            const row = between(y, radius - chord(half) + HALF, barOf(radius) - 5 - HALF)
+            const aside = Math.max(chord(Math.abs(row - radius) + HALF) - half, 0)
+            const middle = between(x, radius - aside, radius + aside)
+            return { left: middle - half, right: middle + half, top: row - HALF, bottom: row + HALF }
+        })
+        const box = boxes.find(each => !this.boxes.some(other => covers(each, other))) ?? (always ? boxes[0] : undefined)
+        if (!box) return
+        this.boxes.push(box)
+        ink.textAlign = "center"
+        ink.textBaseline = "middle"
+        letters(ink, text, box.left + half, box.top + HALF, colour, tones().paper)
     }
 
     /** A broken line along the normal, from the path to the end-point. */
@@ -211,7 +222,7 @@ export class Lens {
     }
 
     /** Where the tip would be if the link were straight. */
-    private straight(ink: CanvasRenderingContext2D, tip: Pixel, at: Pixel, radius: number): void {
+    private straight(ink: CanvasRenderingContext2D, tip: Pixel, at: Pixel): void {
         const { soft, paper } = tones()
         ink.setLineDash([1, 5])
         stroke(ink, [at, tip], soft, 2)
@@ -225,10 +236,6 @@ export class Lens {
         ink.closePath()
         ink.fill()
         ink.stroke()
-        if (far(at, tip) < 30 || radius < SMALL) return
-        ink.font = "11px system-ui, sans-serif"
-        ink.textBaseline = "middle"
-        this.name(ink, said(this.texts, "lens.straight"), at, tip, radius, soft)
     }
 
     private force(ink: CanvasRenderingContext2D, tip: Pixel, pixel: (point: Vector) => Pixel, { tip: at, force }: SideSample, radius: number): void {
@@ -237,20 +244,22 @@ export class Lens {
         const end = pixel(at.map((each, k) => each + force[k]! / size))
         const away = far(end, tip) || 1
         const length = Math.min(Math.max(FORCE * size, 12), LONGEST)
-        const to: Pixel = [tip[0] + ((end[0] - tip[0]) / away) * length, tip[1] + ((end[1] - tip[1]) / away) * length]
+        const [x, y] = [(end[0] - tip[0]) / away, (end[1] - tip[1]) / away]
+        const to: Pixel = [tip[0] + x * length, tip[1] + y * length]
         arrow(ink, tip, to, tones().force, 3)
         if (radius < SMALL) return
         ink.font = "600 12px system-ui, sans-serif"
-        ink.textAlign = "center"
-        ink.textBaseline = "middle"
         const text = `${significant(this.texts, Math.max(size, 0.1), size < 1 ? 1 : 2)} N`
-        letters(ink, text, to[0] + ((end[0] - tip[0]) / away) * 16, to[1] + ((end[1] - tip[1]) / away) * 12, tones().force, tones().paper)
+        const beside = (from: Pixel, dx: number, dy: number): Pixel => [from[0] + 30 * dx, from[1] + 16 * dy]
+        this.boxes.push(around(to, 2))
+        this.write(ink, text, [[to[0] + 24 * x, to[1] + 12 * y], beside(to, -y, x), beside(to, y, -x), beside(tip, -x, -y)],
+            radius, tones().force, true)
     }
 
     /** A bar of a round number of millimetres. */
     private bar(ink: CanvasRenderingContext2D, radius: number): void {
         const length = niceStep((0.28 * radius) / this.drawn)
-        const half = (length * this.drawn) / 2, y = 2 * radius - Math.max(0.2 * radius, 25)
+        const half = (length * this.drawn) / 2, y = barOf(radius)
         stroke(ink, [[radius - half, y - 4], [radius - half, y], [radius + half, y], [radius + half, y - 4]], tones().ink, 1.5)
         ink.font = "11px system-ui, sans-serif"
         ink.textAlign = "center"
@@ -288,12 +297,16 @@ function along(point: Vector, lines: PathShape["lines"]): Vector {
 }
 
 /** The middle of points, and the largest distance from it. */
-function around(points: readonly Pixel[]): [Pixel, number] {
+function extent(points: readonly Pixel[]): [Pixel, number] {
     const [xs, ys] = [points.map(each => each[0]), points.map(each => each[1])]
     const middle: Pixel = [(Math.min(...xs) + Math.max(...xs)) / 2, (Math.min(...ys) + Math.max(...ys)) / 2]
     return [middle, Math.max(...points.map(each => far(each, middle)))]
 }
 
+/** The height at which a lens has its bar. */
+const barOf = (radius: number): number => 2 * radius - Math.max(0.2 * radius, 25)
+const around = ([x, y]: Pixel, half: number): Box => ({ left: x - half, right: x + half, top: y - half, bottom: y + half })
+const between = (value: number, least: number, most: number): number => Math.min(Math.max(value, least), most)
 const far = (a: Pixel, b: Pixel): number => Math.hypot(a[0] - b[0], a[1] - b[1])
 const dot = (a: Vector, b: Vector): number => a.reduce((sum, each, k) => sum + each * b[k]!, 0)
 const unit = (a: Vector): Vector => a.map(each => each / Math.hypot(...a))

@@ -13,6 +13,7 @@ export class Transport {
     private readonly rate: HTMLSelectElement
     private readonly past: HTMLElement
     private readonly goes: HTMLButtonElement
+    private readonly brakes: HTMLButtonElement[]
     private readonly hints = new Map<HTMLElement, string>()
 
     /** `offered`: names of the controls, "hold", "run", "step", and "reset". */
@@ -24,10 +25,11 @@ export class Transport {
         private readonly offers: readonly number[] = RATES,
     ) {
         this.held = this.button("main", "", "run.hold_hint", () => this.toggleHold())
+        this.brakes = [this.held, this.press()]
         this.run = this.button("", "run.run", "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
         const every: Record<string, HTMLElement[]> = {
-            hold: [this.held, this.press()],
+            hold: this.brakes,
             run: [this.run],
             step: [this.button("", "run.step", "key.right", () => this.engine.act({ do: "step" }))],
             reset: [this.button("", "run.reset", "key.reset", () => this.engine.act({ do: "reset" }))],
@@ -64,6 +66,7 @@ export class Transport {
         const chosen = this.offers.indexOf(state.rate)
         if (rate.selectedIndex !== chosen) rate.selectedIndex = chosen
         past.hidden = state.past === null
+        for (const brake of this.brakes) brake.hidden = !past.hidden // the buttons of the past take their place
         goes.hidden = !state.branches
         this.freeze(state.frozen)
     }

@@ -516,9 +516,9 @@ readout-most = höchstens
 readout-paused = t = { $time } s, angehalten
 readout-running = t = { $time } s, läuft mit { $speed }×
 
-caption-torn_off = weggerissen: { $mm } mm
-caption-held = festgehalten: { $mm } mm
-caption-waits = wartet: { $mm } mm
+caption-torn_off = weggerissen: bis zu { $mm } mm
+caption-held = festgehalten: bis zu { $mm } mm
+caption-waits = wartet: bis zu { $mm } mm
 caption-pulled = gezogen: { $mm } mm
 caption-pulled_far = gezogen: { $mm } mm, zieht geradewegs zurück
 caption-pulled_bounded = gezogen: { $mm } mm, I-Anteil gesättigt

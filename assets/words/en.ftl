@@ -431,9 +431,9 @@ readout-most = most
 readout-paused = t = { $time } s, paused
 readout-running = t = { $time } s, running at { $speed }×
 
-caption-torn_off = torn off: { $mm } mm
-caption-held = held back: { $mm } mm
-caption-waits = waits: { $mm } mm
+caption-torn_off = torn off: up to { $mm } mm
+caption-held = held back: up to { $mm } mm
+caption-waits = waits: up to { $mm } mm
 caption-pulled = pulled: { $mm } mm
 caption-pulled_far = pulled: { $mm } mm, pulls straight back
 caption-pulled_bounded = pulled: { $mm } mm, its integral action saturated

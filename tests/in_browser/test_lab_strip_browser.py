@@ -15,11 +15,46 @@ from playwright.sync_api import Browser, expect
 from onpath.app.lab import commands as c
 from onpath.app.server.lab_server import LabServer
 from onpath.models.control.sides import LEFT, RIGHT
-from tests.support.browser import WAIT, Tab, wait_for
+from tests.support.browser import THREE_FRAMES, WAIT, Tab, wait_for
 from tests.support.free_lab import fresh
 
 expect.set_options(timeout=WAIT * 1e3)
 WINDOWS = [(1280, 800), (1366, 768), (820, 1180), (390, 844)]
+CHARTED = [(1280, 800), (390, 844), (844, 390)]
+REMEMBER = """() => {
+    const {prototype} = CanvasRenderingContext2D
+    const {fillText, clearRect} = prototype
+    prototype.clearRect = function (...box) {
+        this.canvas.letters = []
+        clearRect.apply(this, box)
+    }
+    prototype.fillText = function (text, x, y) {
+        const {width} = this.measureText(text), ratio = this.getTransform().a
+        const left = {center: x - width / 2, left: x, right: x - width}[this.textAlign]
+        const box = [left, y - 5, left + width, y + 5].map(each => each * ratio)
+        this.canvas.letters?.push([text, ...box])
+        fillText.call(this, text, x, y)
+    }
+}"""
+COLLISIONS = """() => {
+    const found = []
+    for (const canvas of document.querySelectorAll(".plot canvas")) {
+        if (!canvas.checkVisibility()) continue
+        const {left, top, width} = canvas.getBoundingClientRect(), ratio = canvas.width / width
+        for (const [text, ...box] of canvas.letters ?? [])
+            found.push([text, ...box.map((each, i) => each / ratio + (i % 2 ? top : left))])
+    }
+    const parts = ".handle span, summary, button, .value, .whose, .clock"
+    for (const each of document.querySelectorAll(`#op-strip :is(${parts})`)) {
+        const {left, top, right, bottom, width} = each.getBoundingClientRect()
+        if (!each.checkVisibility() || each.closest("details")?.clientWidth === 1) continue
+        found.push([each.textContent || each.className, left, top, right, bottom])
+    }
+    const shared = (a, b, k) => Math.min(a[k + 2], b[k + 2]) - Math.max(a[k], b[k])
+    const covers = (a, b) => shared(a, b, 1) > 1 && shared(a, b, 2) > 1
+    return found.flatMap((a, i) => found.slice(i + 1).filter(b => covers(a, b)).map(b => [a, b]))
+}"""
+"""What is written in and beside the charts, where it lies on something else."""
 BOXES = """() => {
     const box = (each) => each.getBoundingClientRect().toJSON()
     const seen = [...document.querySelectorAll("#op-strip button, #op-strip select")].filter(
@@ -44,6 +79,12 @@ COVERED = """() => [...document.querySelectorAll("#op-strip button, #root button
     return !each.contains(found)
 }).map(each => each.textContent)"""
 """Buttons in the window that something covers."""
+
+
+BLURRED = """() => [...document.querySelectorAll(".lens canvas, #op-strip canvas")].filter(each => {
+    const {width} = each.getBoundingClientRect()
+    return Math.abs(each.width - width * devicePixelRatio) > 1
+}).length"""
 
 
 def number(tab: Tab, title: str) -> float:
@@ -103,8 +144,10 @@ def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> Non
     assert (
         read["x"] + read["width"] <= scene["x"] + 1 or scene["x"] + scene["width"] <= read["x"] + 1
     )
+    wait_for(lambda: tab.page.evaluate(BLURRED) == 0)
     tab.ask(c.CloseLesson())
     expect(column).to_be_hidden()
+    wait_for(lambda: tab.page.evaluate(BLURRED) == 0)
     expect(strip).to_be_visible()
 
 
@@ -145,3 +188,86 @@ def test_everything_fits_into_windows_of_all_shapes(shaped: Tab) -> None:
         assert button["height"] >= 30 and button["bottom"] <= boxes["chart"]["top"] + 1
     for lens in boxes["lenses"]:
         assert lens["width"] > 60 and lens["left"] >= 0 and lens["right"] <= size["width"]
+
+
+@pytest.fixture(params=CHARTED, ids=lambda size: f"{size[0]}x{size[1]}")
+def charted(browser: Browser, server: LabServer, request: pytest.FixtureRequest) -> Iterator[Tab]:
+    width, height = request.param
+    context = fresh(browser, viewport={"width": width, "height": height})
+    context.add_init_script(f"({REMEMBER})()")
+    yield Tab(server, context, draws=False)
+    context.close()
+
+
+def height_of(tab: Tab) -> float:
+    box = tab.page.locator("#op-strip .plot").first.bounding_box()
+    assert box is not None
+    return box["height"]
+
+
+def test_nothing_in_the_strip_lies_on_something_else(charted: Tab) -> None:
+    """While robots are free, held, pulled, and in the past, where the chart stays as high."""
+    page = charted.page
+
+    def is_tidy() -> None:
+        for _ in range(3):
+            charted.elapse(0.4)
+            page.evaluate(THREE_FRAMES)
+            assert page.evaluate(COLLISIONS) == []
+
+    is_tidy()
+    charted.ask(c.Hold(True))
+    is_tidy()
+    charted.ask(c.Hold(False))
+    page.keyboard.press("d")
+    is_tidy()
+    page.keyboard.press("x")
+    high = height_of(charted)
+    assert high > 80
+    charted.ask(c.LookBack(1.0))
+    expect(charted.button("Go on from here")).to_be_visible()
+    page.evaluate(THREE_FRAMES)
+    assert page.evaluate(COLLISIONS) == []
+    assert height_of(charted) == pytest.approx(high, abs=1)
+
+
+def test_nothing_lies_on_a_board_and_it_stays_high_enough_to_be_read(charted: Tab) -> None:
+    page = charted.page
+    lesson = next(iter(charted.lab.lessons.course.lessons))
+    charted.ask(c.OpenLesson(lesson), c.TakeStep(lesson, 0), c.TakeStep(lesson, 1))
+    board = page.locator(".plot.drawn")
+    board.scroll_into_view_if_needed()
+    box = board.bounding_box()
+    assert box is not None
+    page.mouse.move(box["x"] + 60, box["y"] + 100)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 200, box["y"] + 40, steps=5)
+    page.mouse.move(box["x"] + box["width"] - 20, box["y"] + 90, steps=5)
+    page.mouse.up()
+    page.evaluate(THREE_FRAMES)
+    assert page.evaluate(COLLISIONS) == []
+    charted.press("Commit to this prediction")
+    expect(charted.button("Let it happen")).to_be_visible()
+    page.evaluate(THREE_FRAMES)
+    assert page.evaluate(COLLISIONS) == []
+    after = page.locator(".plot:visible").last.bounding_box()
+    assert after is not None and after["height"] > 110
+
+
+@pytest.mark.parametrize("size", CHARTED, ids=lambda size: f"{size[0]}x{size[1]}")
+def test_an_invitation_covers_neither_robots_nor_the_strip(
+    browser: Browser, server: LabServer, size: tuple[int, int]
+) -> None:
+    context = fresh(browser, viewport={"width": size[0], "height": size[1]})
+    context.add_init_script(f"({REMEMBER})()")
+    newcomer = Tab(server, context, draws=False, newcomer=True)
+    invitation = newcomer.page.locator("#op-invitation")
+    expect(invitation).to_be_visible()
+    newcomer.ask(c.Hold(True))
+    expect(invitation).to_contain_text("torn off")
+    newcomer.page.evaluate(THREE_FRAMES)
+    box, boxes = invitation.bounding_box(), newcomer.page.evaluate(BOXES)
+    assert box is not None and box["y"] >= boxes["scene"]["bottom"] - 1
+    assert box["y"] + box["height"] <= boxes["chart"]["top"] and boxes["chart"]["height"] > 70
+    assert newcomer.page.evaluate(COLLISIONS) == []
+    context.close()

@@ -302,6 +302,57 @@ def _glides_no_more(page: Page, i: int) -> bool:
     return page.evaluate(f"!onpath.lenses[{i}].stale")
 
 
+LETTERS_IN_A_LENS = """() => {
+    const [lens] = onpath.lenses, {engine} = onpath
+    const {canvas, width} = lens.sheet, ink = canvas.getContext("2d")
+    const size = Math.min(width, lens.sheet.height), sample = structuredClone(engine.present)
+    Object.defineProperty(engine, "present", {value: sample, configurable: true})
+    const {fillText} = ink, found = []
+    for (const newtons of [0.3, 6.1, 12, 140])
+        for (let degrees = 0; degrees < 360; degrees += 15) {
+            const boxes = []
+            ink.fillText = function (text, x, y) {
+                const half = ink.measureText(text).width / 2
+                boxes.push({text, left: x - half, right: x + half, top: y - 5, bottom: y + 5})
+                fillText.call(ink, text, x, y)
+            }
+            const way = [Math.cos(degrees * Math.PI / 180), Math.sin(degrees * Math.PI / 180)]
+            for (const side of sample.sides) side.force = way.map(each => newtons * each)
+            Object.assign(lens, {stale: true, drawn: 0, could: 0})
+            lens.draw()
+            found.push({newtons, degrees, boxes})
+        }
+    delete ink.fillText
+    delete engine.present
+    return [size / 2, found]
+}"""
+
+
+@pytest.mark.parametrize("size", [75, 99, 144, 184, 260])
+def test_letters_in_a_lens_are_whole_and_apart(page: Page, size: int) -> None:
+    """Whatever the lens and the force: inside the rim, and off each other and the bar."""
+    page.evaluate("size => (onpath.lenses[0].element.style.width = `${size}px`)", size)
+    page.evaluate("onpath.advance(1000)")
+    page.evaluate("onpath.simulation.hold(true)")
+    for ticks in (0, 130, 170, 210, 390):
+        page.evaluate(f"onpath.advance({ticks})")
+        page.evaluate(THREE_FRAMES)
+        radius, pictures = page.evaluate(LETTERS_IN_A_LENS)
+        assert radius == pytest.approx(size / 2, abs=1)
+        for picture in pictures:
+            boxes = picture["boxes"]
+            assert radius < 40 or sum(box["text"].endswith(" mm") for box in boxes) == 1
+            assert radius < 55 or sum(box["text"].endswith(" N") for box in boxes) == 1
+            for box in boxes:
+                across = max(radius - box["left"], box["right"] - radius)
+                down = max(radius - box["top"], box["bottom"] - radius)
+                assert np.hypot(across, down) < radius - 3, picture
+            for one, two in itertools.combinations(boxes, 2):
+                across = min(one["right"], two["right"]) - max(one["left"], two["left"])
+                down = min(one["bottom"], two["bottom"]) - max(one["top"], two["top"])
+                assert min(across, down) <= 0, picture
+
+
 @pytest.mark.parametrize("robot", onpath.robots())
 def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> None:
     """Lengths in it are those in space; a link that bends has a straight tip beside its own."""
