@@ -34,10 +34,11 @@ class Pupil(Keyboard):
         self.tab.wait_until_built()
 
     def sketch(self, *keys: str) -> None:
-        """Draw a curve with the sliders on the chart, one key for each."""
-        for place, key in enumerate(keys):
-            self.reach(self.tab.page.get_by_role("slider", name="at ").nth(place))
+        """Draw the beginning of a curve with the sliders on the chart, one key for each."""
+        self.reach(self.tab.page.get_by_role("slider", name="at ").first)
+        for key in keys:
             self.press(key)
+            self.press("ArrowRight")
 
     def choose(self, place: int, question: int = 0) -> None:
         """Choose an option of a question."""
@@ -142,7 +143,7 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
         pupil.reach(tab.page.get_by_role("button", name="Check", exact=True).nth(question))
         pupil.press("Enter")
         wait_for(lambda question=question: len(lessons.notes.quiz) == question + 1)
-    pupil.act("Finish")
+    pupil.act("Skip the optional steps and finish")
     wait_for(lambda: lessons.ended)
     tab.page.get_by_role("heading", name="What you predicted, and what happened").wait_for()
     assert pupil.unseen == {}
