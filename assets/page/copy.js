@@ -1,4 +1,4 @@
-// Buttons that copy the code beside them, and pictures that press the button below them.
+// Buttons that copy the code beside them, and cards that press the button above them.
 (() => {
   "use strict";
 
@@ -17,6 +17,6 @@
     if (!(event.target instanceof Element)) return;
     const button = event.target.closest("[data-copy]");
     if (button !== null) copy(button);
-    event.target.closest("[data-card]")?.parentElement.nextElementSibling?.querySelector("button")?.click();
+    event.target.closest("[data-card]")?.parentElement.previousElementSibling?.querySelector("button")?.click();
   });
 })();

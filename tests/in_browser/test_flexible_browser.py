@@ -34,7 +34,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     tab.press("Robot…")
     for entry in (FIVE_BAR, FLEXIBLE):
         tab.page.get_by_alt_text(entry.label).wait_for()
-    tab.press(FLEXIBLE.label)
+    tab.page.get_by_alt_text(FLEXIBLE.label).click()
     wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for()
     tab.settle()

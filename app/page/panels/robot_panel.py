@@ -38,7 +38,6 @@ class RobotPanel:
             for entry in ROBOTS.values():
                 label = robot_label(entry.name, words)
                 text = words.get(f"machine.{entry.name}.text", entry.text)
-                self._gui.add_html(_card(picture_of(entry), label, text))
                 now = entry is self._chosen
                 choose = self._gui.add_button(
                     words("robots.this", robot=label) if now else label,
@@ -46,6 +45,7 @@ class RobotPanel:
                     color="gray" if now else None,
                 )
                 on_press(choose, lambda name=entry.name: self._choose(name, close))
+                self._gui.add_html(_card(picture_of(entry), label, text))
         return close
 
     def _choose(self, name: str, close: Callable[[], None]) -> None:
