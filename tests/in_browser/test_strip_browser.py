@@ -279,7 +279,7 @@ def test_the_table_has_what_the_chart_shows(page: Page) -> None:
 
 def test_a_lens_shows_what_there_is_to_see_at_each_size_of_error(page: Page) -> None:
     """Everything is within the glass, and small errors are seen from near."""
-    steps = {1.5, 3, 6, 12, 20}
+    steps, used = {1.5, 3, 6, 12, 20}, (set[float](), set[float]())
     view = """i => { const {side, factor, drawn, sheet, scale} = onpath.lenses[i]
         const sample = onpath.engine.present.sides[side]
         return {factor, drawn, scale, width: sheet.width, sample} }"""
@@ -291,11 +291,12 @@ def test_a_lens_shows_what_there_is_to_see_at_each_size_of_error(page: Page) -> 
             seen = page.evaluate(view, i)
             sample, factor = seen["sample"], seen["factor"]
             assert factor in steps
+            used[i].add(factor)
             points = [sample["tip"], sample["closest"], *[p for p in [sample["reference"]] if p]]
             reach = np.linalg.norm(np.ptp(np.array(points), axis=0)) / 2 * factor * seen["scale"]
             assert reach < seen["width"] / 2 or factor == 1.5
-    assert page.evaluate("onpath.lenses[1].factor") == 20
-    assert page.evaluate("onpath.lenses[0].factor") < 20
+    assert used[1] == {20}
+    assert min(used[0]) < 20  # while it is torn off; it swings through the path
 
 
 def _glides_no_more(page: Page, i: int) -> bool:
