@@ -591,7 +591,7 @@ def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
     do(lab, c.Undo())
     assert lab.session.editor.design is first
     do(lab, c.Undo())
-    assert lab.session.editor.design is first and "nothing" in lab.message
+    assert lab.session.editor.design is first and "no change" in lab.message
 
 
 @pytest.mark.parametrize("beyond", [(0.15, 0.15), (0.0, -0.18), (-0.1, 0.0)])
