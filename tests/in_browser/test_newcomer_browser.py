@@ -130,7 +130,7 @@ def test_the_plot_a_step_speaks_of_is_seen_with_its_text_and_both_robots(tab: Ta
     box = plot.bounding_box()
     assert box is not None
     wait_for(lambda: all(tab.placed(name, tab.tip(name))[0] < box["x"] for name in SIDES))
-    expect(tab.page.get_by_role("heading").first).to_be_in_viewport()
+    expect(tab.page.locator("#op-column").get_by_role("heading").first).to_be_in_viewport()
     take(tab, 1)
     expect(plot).to_have_count(0)
 
