@@ -104,9 +104,7 @@ class Breakdown:
         end = max(stopped)
         begin = max(end - SPAN, session.time - session.history.span())
         self._replay = _Replay(begin, end, session.exaggeration)
-        if session.viewing is None:
-            session.resumes = session.running
-        session.running, session.viewing = False, begin
+        session.look_at(begin)
         if session.entry.flexible_link is not None:
             session.exaggeration = max(session.exaggeration, LARGER)
         return True

@@ -19,11 +19,8 @@ from onpath.models.control.laws.own import short_name
 
 def look_back(session: Session, ago: float) -> None:
     """Pause and view the state `ago` seconds before now, or the oldest one stored."""
-    if session.viewing is None:
-        session.resumes = session.running
-    session.running = False
     session.forces.release()
-    session.viewing = session.time - min(ago, session.history.span())
+    session.look_at(session.time - min(ago, session.history.span()))
 
 
 def forget_history(session: Session) -> None:

@@ -246,13 +246,19 @@ class Session:
             project(list(self.runs.values()), self.editor.curve)
 
     def _bend_paused(self, seconds: float) -> None:
-        """Advance the blend of an edited path, from which the robots then have other distances."""
+        """Advance the blend of an edited path while time stands still, and measure distances."""
         before = self.editor.curve
         self._bend(seconds)
         if (curve := self.editor.curve) is not before:
             for run in self.runs.values():
                 if run.diverged is None:
                     run.measure(curve)
+
+    def look_at(self, time: float) -> None:
+        """Pause and view a past instant, [s]."""
+        if self.viewing is None:
+            self.resumes = self.running
+        self.viewing, self.running = time, False
 
     def return_to_present(self) -> None:
         """Stop viewing the past, if it is being viewed; time runs again if it ran before."""

@@ -100,7 +100,7 @@ class Face {
         document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
     }
 
-    /** Follow viser's canvas, which changes its size, or is replaced. Not while sizes are observed: a lens would miss its own. */
+    /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
     place(): void {
         const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
         const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()

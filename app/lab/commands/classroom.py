@@ -83,7 +83,7 @@ class TakeStep(Command):
 
 @dataclass(frozen=True, slots=True)
 class DemonstrateStep(Command):
-    """Play a step's demonstration, wherever the lab is; a prediction that it awaits is skipped."""
+    """Play a step's demonstration, whatever is open in the lab; a pending prediction is skipped."""
 
     from_teacher: ClassVar[bool] = True
     lesson: str

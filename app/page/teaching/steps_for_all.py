@@ -38,7 +38,7 @@ class StepsForAll:
         return None
 
     def demonstration(self, display: Display) -> DemonstrateStep | None:
-        """That of the displayed step, or of the step that shows what it asks for; None without."""
+        """The displayed step's demonstration, or that of the run after it; None if it has none."""
         lesson, index = self.place(display)
         steps = self._steps(lesson)
         for at in range(index, min(index + 2, len(steps))):
