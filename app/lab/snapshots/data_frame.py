@@ -113,7 +113,9 @@ class FrameSource:
             last = latest[-1]
             if last.flags == flags and all(map(is_, slots, last.slots)):
                 return
-            if len(latest) >= MOST:
+            if len(latest) > 1 and last.time == session.time:  # a path was bent while time stood
+                latest.pop()
+            elif len(latest) >= MOST:
                 del latest[1:]
                 self._behind = True
         latest.append(Sample(session.time, flags, slots))

@@ -217,6 +217,22 @@ def test_what_changes_while_time_stands_still_is_told(command: c.Command) -> Non
     assert_knows(reader, lab)
 
 
+def test_a_time_is_told_once_while_the_path_is_bent_in_a_pause() -> None:
+    lab, reader = new_lab(0.5), Reader()
+    do(lab, c.ChoosePath("ellipse"))
+    lab.advance(FRAME)
+    reader.see(lab)
+    do(lab, c.SetRunning(False))
+    for _ in range(3):
+        lab.advance(FRAME)
+        reader.see(lab, reads=False)
+    reader.see(lab)
+    do(lab, c.SetRunning(True))
+    lab.advance(FRAME)
+    reader.see(lab)
+    assert_knows(reader, lab)
+
+
 def test_another_lab_is_told_from_its_beginning() -> None:
     """A teacher looks at one student after the other."""
     one, other, reader = new_lab(2.0), new_lab(1.0), Reader()

@@ -88,6 +88,6 @@ def test_an_address_asks_so_often_and_others_are_served(tmp_path: Path) -> None:
             told += [status(waiting.pop(each)) for each in select([*waiting], [], [], 0)[0]]
         assert len(told) + len(waiting) > burst
         assert status(ask(NEIGHBOUR)) == NOBODY
-        slowed_down = {status(each) for each in waiting.values()}
-        assert slowed_down == {NOBODY} and set(told) <= {NOBODY, REFUSED}
+        others = {status(each) for each in waiting.values()}  # slowed down, or refused as well
+        assert NOBODY in others and others.union(told) == {NOBODY, REFUSED}
         assert status(ask(FLOOD)) == NOBODY
