@@ -306,9 +306,9 @@ class LabRegistry:
                 return entry
         return None
 
-    def remembered(self, code: str, known: str | None) -> str:
+    def remembered(self, code: str, known: str) -> str:
         """The list of codes for the browser to keep, newest first."""
-        codes = [code, *(CODE.findall(known[:200]) if known else [])]
+        codes = [code, *CODE.findall(known[:200])]
         return ",".join(list(dict.fromkeys(codes))[:MOST_CODES])
 
     def __len__(self) -> int:

@@ -53,6 +53,7 @@ from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import class_address, storage_key
 from onpath.app.viser_adapter.connections import disconnect
 from onpath.app.viser_adapter.data_channel import DataChannel
+from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
@@ -261,9 +262,9 @@ class LabServer:
         """Give a newly admitted client its session, if it is still connected."""
         if client.client_id in self.server.get_clients():
             entry = self.sessions.join(client.client_id, known, language)
-            self._newcomers.submit(client, partial(self._show, client, entry, known))
+            self._newcomers.submit(client, partial(self._show, client, entry))
 
-    def _show(self, client: viser.ClientHandle, entry: RegisteredLab, known: str | None) -> None:
+    def _show(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """Show a session to a client, if both still exist."""
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
@@ -271,8 +272,7 @@ class LabServer:
         if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
             return  # another process owns it now
         try:
-            key = storage_key(STORAGE_KEY, self._places.get(client.client_id, ""))
-            client.local_storage.set_item(key, self.sessions.remembered(entry.code, known))
+            self._remember(client, entry.code)
             view = self._view(client, entry)
         except Exception as error:
             log_error(error)
@@ -282,6 +282,15 @@ class LabServer:
         self._tabs.watch(client, entry.scheduled, view)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
+
+    def _remember(self, client: viser.ClientHandle, code: str) -> None:
+        """Let a browser keep a code before those of its other labs."""
+        key = storage_key(STORAGE_KEY, self._places.get(client.client_id, ""))
+
+        def put(kept: str) -> None:
+            client.local_storage.set_item(key, self.sessions.remembered(code, kept))
+
+        ask_item(client, key, put)
 
     def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
         """Build the page of a lab, or of a teacher, and return its feed."""
@@ -354,7 +363,7 @@ class LabServer:
             view.close()
         with one_at_a_time:  # part of the page may be under construction
             clear_page(client)
-        self._show(client, entry, None)
+        self._show(client, entry)
 
     def _disconnected(self, client: viser.ClientHandle) -> None:
         self._tabs.forget(client.client_id)

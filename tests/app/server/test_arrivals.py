@@ -83,6 +83,21 @@ def test_a_late_answer_returns_to_the_same_lab(lab: LabServer) -> None:
         assert student.code == code and len(lab.sessions) == 1
 
 
+def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabServer) -> None:
+    address = f"ws://127.0.0.1:{lab.server.get_port()}"
+    with Student(address) as one, Student(address) as other:
+        for student in (one, other):
+            student.open()
+            student.read(lambda student=student: student.code and student.has_widget("Path"))
+        codes = [other.code, one.code]
+        other.close()
+        wait_for(lambda: len(lab.server.get_clients()) == 1)
+        (client,) = lab.server.get_clients().values()
+        lab._enter(client, codes[0])
+        one.read(lambda: one.code == codes[0])
+        assert ",".join(codes) in one.kept.values()
+
+
 # The questions alone, without a server.
 
 

@@ -42,7 +42,7 @@ class Desk:
         known = self.storage.get(browser)
         entry = self.sessions.join(self._clients, known)
         entry.scheduled.view = _View()
-        self.storage[browser] = self.sessions.remembered(entry.code, known)
+        self.storage[browser] = self.sessions.remembered(entry.code, known or "")
         return self._clients, entry
 
 
