@@ -53,6 +53,10 @@ class Course:
         """Whether there is a lesson or a test of this name."""
         return name in self.lessons or name in self.tests
 
+    def has_steps(self, name: str, first: int, last: int) -> bool:
+        """Whether a lesson or a test has a range of steps, given by their indices."""
+        return self.has(name) and 0 <= first <= last < len(self.lesson(name, DEFAULT).steps)
+
     def lesson(self, name: str, language: str) -> Lesson:
         """A lesson or test in a language; failing that, in English or else in any language.
 

@@ -23,6 +23,7 @@ from onpath.app.storage.lab_state import keep
 from onpath.app.storage.records import HeldElsewhere, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import class_address, storage_key
+from onpath.lessons.course import Course
 from onpath.models.errors import CodedError
 
 TEACHER_KEY = "onpath_teacher"  # in the browser's storage
@@ -33,6 +34,7 @@ class ClassService:
 
     Args:
         place: of its page, see `app.viser_adapter.addresses`.
+        course: the lessons, which may have changed since the class was stored.
         records: store the class, and students' data, which a teacher may delete.
         keeper: stores a student's lab on joining.
         lost: called with the clients of the class when another process has taken it over.
@@ -43,11 +45,12 @@ class ClassService:
         classroom: Classroom,
         sessions: LabRegistry,
         place: str,
+        course: Course,
         records: Records | None = None,
         keeper: WriteBehind | None = None,
         lost: Callable[[set[int]], None] = lambda _: None,
     ) -> None:
-        self._class, self._sessions = classroom, sessions
+        self._class, self._sessions, self._course = classroom, sessions, course
         self._records, self._keeper, self._lost = records, keeper, lost
         self._clients = set[int]()
         self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
@@ -86,6 +89,9 @@ class ClassService:
         """
         if self._class_keeper is not None and not self._class_keeper.open():
             return False
+        pace = self._class.orders.pace
+        if pace is not None and not self._course.has_steps(pace.lesson, pace.first, pace.last):
+            self._class.keep_within(None)
         self._clients.add(client.client_id)
         if shown is not None and self._class.is_pass(shown):
             self._teachers[client.client_id] = (shown, TeacherChoices())

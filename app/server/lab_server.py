@@ -224,6 +224,7 @@ class LabServer:
             classroom,
             sessions=self.sessions,
             place=place,
+            course=self._course,
             records=self._records,
             keeper=self._keeper,
             lost=self._send_away,
