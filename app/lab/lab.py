@@ -74,6 +74,7 @@ class Lab:
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
         message: message to the user.
+        messages: number of messages shown so far; one may be shown again with the same words.
         message_level: "info", "warning", "error", "replay" while it is shown why a robot has
             stopped, or "stop" while the teacher has stopped the lab.
         law_refusals: why the law that was last typed for a side was refused, by side.
@@ -94,7 +95,7 @@ class Lab:
         self.session = Session(store, entry)
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
-        self.message, self.message_level = "", "info"
+        self.message, self.message_level, self.messages = "", "info", 0
         self._caution: Message | None = None
         self._forecast: tuple[tuple[object, ...], Message | None] | None = None
         self.law_refusals: dict[str, str] = {}
@@ -251,16 +252,17 @@ class Lab:
         return text, "error" if is_error else "warning"
 
     def show_message(self, message: str, level: str = "info") -> None:
-        """Show a message to the user."""
+        """Show a message to the user; an empty one clears the last."""
         self.message, self.message_level = message, level
+        self.messages += message != ""
 
     def clear_message(self) -> None:
         """Clear the message, or show again why robots are stopped."""
-        self.show_message("")
+        self.message, self.message_level = "", "info"
         if text := self.fault_words("say.stopped"):
-            self.show_message(text, "error")
+            self.message, self.message_level = text, "error"
         elif self._caution is not None:
-            self.show_message(self.words.sentence(self._caution), "warning")
+            self.message, self.message_level = self.words.sentence(self._caution), "warning"
 
     def remark(self, message: str) -> None:
         """Show a message, unless a robot is stopped, which is more important."""

@@ -63,6 +63,10 @@ class FirstMinute:
         self._since: float | None = None
         ask_item(client, KEPT_AS, self._begin)
 
+    def end(self) -> None:
+        """Show no more invitations."""
+        self._next, self.shown = len(INVITATIONS), None
+
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the next invitation, or remove the one that has been followed."""
         if self._next >= len(INVITATIONS):

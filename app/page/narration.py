@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
-from onpath.app.page.first_minute import INVITATIONS, FirstMinute
+from onpath.app.page.first_minute import FirstMinute
 from onpath.app.scene.captions import Captions, spoken
 from onpath.lessons.labels import parameter_label, path_label, value_label
 from onpath.lessons.sides import side_titles
@@ -36,7 +36,6 @@ class Said(Struct, frozen=True):
         sounds: whether the distances are to be heard.
         invitation: name of what a newcomer is invited to do; empty: nothing.
         act: the command that follows it, as JSON; None: it is followed in the scene itself.
-        invitations: number of all invitations.
     """
 
     voice: str = ""
@@ -48,7 +47,6 @@ class Said(Struct, frozen=True):
     sounds: bool = False
     invitation: str = ""
     act: Mapping[str, str] | None = None
-    invitations: int = len(INVITATIONS)
 
 
 class Narration:

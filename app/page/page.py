@@ -226,9 +226,15 @@ class Page:
         self._parts.append(column)
         return column
 
+    def end_introduction(self) -> None:
+        """Show no more invitations, nor when this browser comes again."""
+        end_first_minute(self._client)
+        if self._narration.first_minute is not None:
+            self._narration.first_minute.end()
+
     def _open_first_lesson(self, post: Post) -> None:
         """Open the first lesson, to which the invitations of the first minute lead."""
-        end_first_minute(self._client)
+        self.end_introduction()
         post(c.OpenLesson(next(iter(self._context.course.lessons), "")))
 
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:

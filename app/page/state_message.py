@@ -46,6 +46,7 @@ def state_message(
         "undo": run.can_undo_going_on,
         "message": snapshot.message,
         "level": snapshot.message_level if snapshot.message else "",
+        "messages": snapshot.messages,
         "said": said,
         "presenting": snapshot.key.presenting,
         "height": round(seen.height, 3),

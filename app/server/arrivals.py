@@ -75,7 +75,7 @@ class Arrivals:
         surplus = self._silent.add(number, address)
         if surplus is not None:
             self._silent.discard(surplus)  # its page may connect again; then it is the newest
-            turn_away(self._server, surplus, "a newcomer that answers nothing")
+            turn_away(self._server, surplus, "a new client that does not answer")
         kept = Kept()
 
         def answered(key: str, value: str) -> None:

@@ -20,6 +20,7 @@ from onpath.app.viser_adapter.data_channel import DataChannel, Message
 from onpath.models.systems.robots import Robot
 
 RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
+SKIP = '{"is":"skip"}'  # the user wants no introduction
 RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
 LIGHTS = {f'{{"is":"light","symbol":"{name}"}}': name for name in ("", *AT_JOINTS)}
 """Messages that ask what a symbol of a joint means; with an empty name, nothing any more."""
@@ -43,7 +44,7 @@ class PageData:
         self._path: PathView | None = None
         self._robot: object = None
         self._state: dict[str, Any] = {}
-        self._is_resized = self._wants_record = False
+        self._is_resized = self._wants_record = self._skips = False
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
         self._lit: tuple[str, bytes] = "", b""  # the last one told, and the robots at that time
@@ -102,6 +103,9 @@ class PageData:
         if self._wants_record:
             self._wants_record = False
             page.exporter.report()
+        if self._skips:
+            self._skips = False
+            page.end_introduction()
         if not self._stream.is_open or self._stream.is_busy:
             return
         page.has_script = True
@@ -140,6 +144,9 @@ class PageData:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
         if text == RESIZED:
             self._is_resized = True
+            return b""
+        if text == SKIP:
+            self._skips = True
             return b""
         if text == RECORD:
             self._wants_record = True

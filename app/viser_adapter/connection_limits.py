@@ -164,7 +164,7 @@ class ConnectionLimits:
     ) -> tuple[HTTPStatus, str] | None:
         """Why a request is refused, or None: too many connections, or too many new tabs."""
         if not self.admits(connection, request):
-            return HTTPStatus.SERVICE_UNAVAILABLE, "Too many are here.\n"
+            return HTTPStatus.SERVICE_UNAVAILABLE, "Too many connections.\n"
         if "Upgrade" in request.headers and not self._allowance_of(connection.address).take():
             return HTTPStatus.TOO_MANY_REQUESTS, "Too many tabs at once.\n"
         return None

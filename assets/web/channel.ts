@@ -51,10 +51,9 @@ export interface Said {
     /** A label of the settings that were good, if there are any. */
     earlier: string
     sounds: boolean
-    /** The name of an invitation, the command that follows it, if a button can, and how many there are. */
+    /** The name of an invitation, and the command that follows it, if a button can. */
     invitation: string
     act: Record<string, unknown> | null
-    invitations: number
 }
 
 /** Texts of the lab, and what is set. Lists have the left robot first. */
@@ -83,6 +82,8 @@ export interface LabState {
     /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
     message: string
     level: string
+    /** How many have been shown so far: the same one may be shown again. */
+    messages: number
     said: Said
     height: number
     apart: number

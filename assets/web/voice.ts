@@ -9,7 +9,6 @@ import { said, type Texts } from "./words"
 const AGAIN = 8000 // [ms], between announcements that differ only in numbers
 const REST = 1500 // [ms], between any two
 const STAYS = 8000, PER_LETTER = 60 // [ms] that a notice stays, unless it is pointed at
-const KEPT_AS = "viser-user:first_minute" // see app/page/first_minute.py
 const LOW = 220, OCTAVE = 25 // [Hz], [mm]
 const LOUD = 0.08, SOON = 0.06 // [s]
 const TONES = 100 // [ms] between changes of the tones
@@ -35,6 +34,7 @@ export class Voice {
     /** What newcomers are invited to do; a part of the strip, where it covers nothing. */
     readonly invitation: HTMLElement
     private told = "" // a message that was closed or replaced by a summary does not come back
+    private messages: number // shown so far: the same one may be shown again
     private summaries: number
     private stopped: string // the message of a stop that has been replayed, or had happened before
     private touches = 0
@@ -47,11 +47,12 @@ export class Voice {
     private skipped = false
 
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, private readonly isUpright: () => boolean, private readonly ended: AbortSignal) {
-        const { said: now, message } = this.lab
+        const { said: now, message, messages } = this.lab
         this.element.id = "op-said"
         this.region.id = "op-voice"
         this.region.setAttribute("aria-live", "polite")
         this.text.setAttribute("role", "status")
+        this.messages = messages
         this.summaries = now.summaries
         this.stopped = now.replays ? message : ""
         this.acts = Object.fromEntries(Object.entries(ACTS).map(([name, command]) =>
@@ -86,9 +87,10 @@ export class Voice {
     private get lab(): LabState { return this.engine.lab! }
 
     private show(): void {
-        const { message, level, said: now } = this.lab
-        if (message !== this.told) {
+        const { message, level, messages, said: now } = this.lab
+        if (message !== this.told || messages !== this.messages) {
             this.told = message
+            this.messages = messages
             this.notify(message, level)
         }
         const labels: Record<string, string> = { earlier: now.earlier }
@@ -113,7 +115,7 @@ export class Voice {
 
     private notify(text: string, level: string): void {
         const { message } = this
-        this.text.textContent = text
+        if (message.hidden || this.text.textContent !== text) this.text.textContent = text // or it is read aloud again and again
         message.dataset["level"] = level
         message.dataset["place"] = level === "replay" && this.isUpright() ? "top" : "bottom"
         message.hidden = text === ""
@@ -177,16 +179,14 @@ export class Voice {
 
     private accept(): void {
         const { act, invitation } = this.lab.said
-        if (act) this.engine.send(act)
         if (invitation === "lesson") this.skip()
+        if (act) this.engine.send(act)
     }
 
     /** Users who skip the invitations are not asked again. */
     private skip(): void {
         this.skipped = this.invitation.hidden = true
-        try {
-            localStorage.setItem(KEPT_AS, String(this.lab.said.invitations))
-        } catch {} // a browser without storage asks again next time
+        this.engine.send({ is: "skip" })
     }
 
     private button(name: string, text: string, act: () => void): HTMLButtonElement {

@@ -259,7 +259,7 @@ class-code = Klassencode
 class-code_hint = Er steht auf der Leinwand
 class-nickname = Spitzname
 class-nickname_hint = Höchstens 24 Zeichen; es muss nicht dein richtiger Name sein
-class-stored = Dein Labor speichert, und deine Lehrkraft sieht unter deinem Spitznamen: deine Vorhersagen und gezeichneten Kurven, deine Antworten und eigenen Worte, Aufgaben, Verstärkungen und wann du zuletzt etwas getan hast. Der Spitzname wird gelöscht, wenn du die Klasse verlässt oder sie endet, das Übrige, { $days ->
+class-stored = Dein Labor speichert deine Vorhersagen und gezeichneten Kurven, deine Antworten, auch die in eigenen Worten, deine Aufgaben und Verstärkungen und wann du zuletzt etwas getan hast. Deine Lehrkraft sieht das alles unter deinem Spitznamen. Der Spitzname wird gelöscht, wenn du die Klasse verlässt oder sie endet, das Übrige, { $days ->
         [0] wenn der Server endet
         [one] wenn es einen Tag lang nicht benutzt wurde
        *[other] wenn es { $days } Tage lang nicht benutzt wurde
@@ -574,7 +574,7 @@ run-let_both_go = Beide loslassen
 run-let_go = Loslassen
 run-hold_hint = Hält die Spitzen längs der Bahn fest, bis du noch einmal drückst. Taste: H
 run-press = Solange gedrückt
-run-press_hint = Hält die Spitzen fest, solange die Maustaste unten ist.
+run-press_hint = Hält die Spitzen fest, solange du drückst.
 run-direction = Halten
 run-direction_along = längs der Bahn
 run-direction_across = quer zur Bahn
@@ -582,7 +582,7 @@ run-direction_both = in beiden Richtungen
 run-direction_hint = In welchen Richtungen eine Bremse die Spitzen hält; in den anderen sind sie frei
 run-run = Laufen lassen
 run-pause = Pause
-run-run_hint = Die simulierte Zeit steht still. Taste: Leertaste
+run-run_hint = Hält die simulierte Zeit an oder lässt sie weiterlaufen. Taste: Leertaste
 run-step = Schritt
 run-reset = Zurücksetzen
 run-view = Ansicht zurück
@@ -1569,7 +1569,7 @@ chart-pulled = gezogen
 chart-centre = Mittelpunkt des Kreises
 chart-table = Als Tabelle
 chart-time = Zeit [s]
-chart-acts = was wirkt
+chart-acts = gehalten oder gezogen
 chart-look = Zurückblicken
 chart-look_hint = Ziehen, um über die letzte Minute zurückzublicken; mit Tasten: Pfeile, Bild auf und ab, Pos1 und Ende
 chart-at = { $time } s: { $values }

@@ -261,7 +261,7 @@ class-code = Class code
 class-code_hint = Shown on the projector
 class-nickname = Nickname
 class-nickname_hint = At most 24 characters; it need not be your real name
-class-stored = Your lab stores, and your teacher sees under your nickname: your predictions and drawn curves, your answers and own words, tasks, gains, and when you were last active. The nickname is deleted when you leave the class or it ends, the rest { $days ->
+class-stored = Your lab stores your predictions and drawn curves, your answers, including those in your own words, your tasks and gains, and when you were last active. Your teacher sees all of it under your nickname. The nickname is deleted when you leave the class or it ends, the rest { $days ->
         [0] when the server stops
         [one] after a day without use
        *[other] after { $days } days without use
@@ -489,7 +489,7 @@ run-let_both_go = Let both go
 run-let_go = Let go
 run-hold_hint = Holds the end-points back along the path until pressed again. Key: H
 run-press = Hold while pressed
-run-press_hint = Holds the end-points back as long as the mouse button is down.
+run-press_hint = Holds the end-points back for as long as you press it.
 run-direction = Hold
 run-direction_along = along the path
 run-direction_across = across the path
@@ -497,7 +497,7 @@ run-direction_both = in both directions
 run-direction_hint = Directions in which a brake holds the end-points; in the others they are free
 run-run = Run
 run-pause = Pause
-run-run_hint = Simulated time stops. Key: space
+run-run_hint = Stops or resumes simulated time. Key: space
 run-step = Step
 run-reset = Reset
 run-view = Reset view
@@ -1210,7 +1210,7 @@ chart-pulled = pulled
 chart-centre = centre of the circle
 chart-table = As a table
 chart-time = time [s]
-chart-acts = what acts
+chart-acts = held or pulled
 chart-look = Look back
 chart-look_hint = Drag to look back over the last minute; with keys: arrows, Page Up and Page Down, Home and End
 chart-at = { $time } s: { $values }

@@ -118,6 +118,10 @@ def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabS
     tab = visit(browser, server, newcomer=True)
     tab.button("Skip the introduction").click()
     expect(tab.page.locator("#op-invitation")).to_be_hidden()
+    tab.press("Hold both back")
+    wait_for(lambda: tab.session.forces.held)
+    tab.press("Let both go")
+    wait_for(lambda: not tab.session.forces.held)
     tab.reload()
     time = tab.session.time
     wait_for(lambda: tab.session.time > time + 1)
@@ -211,6 +215,15 @@ def test_a_summary_is_told_on_demand(tab: Tab) -> None:
     tab.page.keyboard.press("q")
     expect(message).to_contain_text(told)
     message.get_by_role("button").click()
+
+
+def test_a_refusal_that_was_closed_is_told_again(tab: Tab) -> None:
+    message = tab.page.locator("#op-message")
+    for _ in range(2):
+        tab.ask(c.SetRate(1000))
+        expect(message).to_contain_text("1000")
+        message.get_by_role("button", name="Close").click()
+        expect(message).to_be_hidden()
 
 
 AUDIO = """window.AudioContext = class {

@@ -113,7 +113,7 @@ class FrameSource:
             last = latest[-1]
             if last.flags == flags and all(map(is_, slots, last.slots)):
                 return
-            if len(latest) > 1 and last.time == session.time:  # a path was bent while time stood
+            if len(latest) > 1 and last.time == session.time:  # a path was bent in a pause
                 latest.pop()
             elif len(latest) >= MOST:
                 del latest[1:]

@@ -258,7 +258,7 @@ class Snapshot:
         grabbed: side of the robot whose end-point is being pulled, or None.
         pulled: sides of the robots at which a hand pulls now; empty while the past is viewed.
         message: message to the user (a divergence, a refusal), plain text, or "".
-        message_level: see `Lab`.
+        message_level, messages: see `Lab`.
         note: remark on the scale of the drawing, or "".
         key: see `PageKey`.
         wall: a point of the wall's surface [m], and two unit vectors: along the wall in the path's
@@ -276,6 +276,7 @@ class Snapshot:
     grabbed: str | None
     message: str
     message_level: str
+    messages: int = 0
     note: str = ""
     key: PageKey = PageKey()
     wall: np.ndarray = field(default_factory=_nothing)

@@ -136,6 +136,7 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
         "grabbed": session.forces.grabbed,
         "message": message,
         "message_level": level,
+        "messages": lab.messages,
         "note": scale_note(session, lab.words),
         "key": key,
         "wall": drawn_wall(session),

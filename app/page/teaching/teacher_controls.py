@@ -8,6 +8,7 @@ from onpath.app.common.templates import render
 from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.slow_presses import on_slow_press
 from onpath.app.page.panels.widgets import note, on_press
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
@@ -28,7 +29,7 @@ class TeacherControls:
         stop = gui.add_button(words("class.stop_teaching"), color="gray", icon=viser.Icon.DOOR_EXIT)
         on_press(send, self._send_own)
         on_press(push, lambda: self._send_code(code.value))
-        stop.on_click(lambda _: teaching.stop())
+        on_slow_press(stop, teaching.stop)  # builds the page anew
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show whether all labs stand still."""

@@ -91,7 +91,7 @@ def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabSe
             student.read(lambda student=student: student.code and student.has_widget("Path"))
         codes = [other.code, one.code]
         other.close()
-        wait_for(lambda: len(lab.server.get_clients()) == 1)
+        wait_for(lambda: len(lab._views) == 1)  # the lab is free then
         (client,) = lab.server.get_clients().values()
         lab._enter(client, codes[0])
         one.read(lambda: one.code == codes[0])

@@ -190,6 +190,8 @@ def test_a_command_that_is_not_possible_is_told_in_the_pages_language(
         state = script.read_until("state", lambda state: state["message"])
         assert state["level"] == "warning" and "1000" in state["message"]
         assert state["titles"] != ["Trajectory tracking", "Path following"]
+        script.do("SetRate", rate=1000)  # told again, though nothing else changes
+        assert script.read_until("state", lambda new: new["messages"] != state["messages"])
 
 
 def test_a_canvas_of_another_size_is_framed_anew(server: LabServer, student: Student) -> None:
