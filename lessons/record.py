@@ -98,11 +98,13 @@ class Record:
         """
         held = self._during(robot, "hold", "let_go")
         pulled = self._during(robot, "pull", "release")
+        free = ~(held | pulled)
         chosen: Mask = {
             "always": np.ones(len(self.times), dtype=bool),
             "held": held,
             "pulled": pulled,
-            "free": ~(held | pulled),
+            "free": free,
+            "released": free & np.logical_or.accumulate(~free),
         }[window.during]
         if window.last > 0:
             steps: Array = chosen * self._steps()

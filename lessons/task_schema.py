@@ -7,7 +7,7 @@ from typing import Literal
 from onpath.lessons.action_schema import Data, RobotName, Script, Value
 
 Stat = Literal["max", "min", "mean", "rms", "final", "settling", "overshoot"]
-During = Literal["always", "held", "pulled", "free"]
+During = Literal["always", "held", "pulled", "free", "released"]
 EventName = Literal[
     "hold",
     "let_go",
@@ -27,7 +27,8 @@ class Window(Data, frozen=True):
     """The instants of a run that a check evaluates.
 
     Attributes:
-        during: "always", "held", "pulled", or "free" (neither held nor pulled).
+        during: "always", "held", "pulled", "free" (neither held nor pulled), or "released" (free
+            again, after the first hold or pull).
         last: the latest seconds of those to consider, [s]; 0 for all.
         least: least total duration, [s].
     """

@@ -137,9 +137,14 @@ export function chosen(record: RunRecord, robot: Robot, window: Window): boolean
     let mask = record.times.map(() => true)
     if (window.during === "held") mask = held()
     if (window.during === "pulled") mask = pulled()
-    if (window.during === "free") {
+    if (window.during === "free" || window.during === "released") {
         const [one, other] = [held(), pulled()]
-        mask = mask.map((_, i) => !one[i] && !other[i])
+        let counts = window.during === "free"
+        mask = mask.map((_, i) => {
+            const free = !one[i] && !other[i]
+            counts ||= !free
+            return free && counts
+        })
     }
     if (window.last > 0) {
         const lasting = steps(record).map((step, i) => (mask[i] ? step : 0))

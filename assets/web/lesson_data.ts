@@ -33,7 +33,7 @@ export interface SiteFigure extends FigureData {
 }
 
 export interface Window {
-    during: "always" | "held" | "pulled" | "free"
+    during: "always" | "held" | "pulled" | "free" | "released"
     last: number
     least: number
 }

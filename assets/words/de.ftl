@@ -33,6 +33,7 @@ during-always = { "" }
 during-held = , solange festgehalten
 during-pulled = , solange gezogen
 during-free = , solange frei
+during-released = , nach dem Loslassen
 
 check-below = unter { $limit } { $unit }
 check-above = über { $limit } { $unit }

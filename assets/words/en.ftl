@@ -35,6 +35,7 @@ during-always = { "" }
 during-held = { " " }while held
 during-pulled = { " " }while pulled
 during-free = { " " }while free
+during-released = { " " }after letting go
 
 check-below = below { $limit } { $unit }
 check-above = above { $limit } { $unit }

@@ -72,7 +72,11 @@ class Frames:
         Args:
             last: ticks; 0 for all.
         """
-        chosen = {"always": np.ones_like(self.held), "held": self.held, "free": ~self.held}[during]
+        held = self.held
+        first = int(held.argmax()) if held.any() else len(held)
+        released = ~held & (np.arange(len(held)) > first)
+        every = np.ones_like(held)
+        chosen = {"always": every, "held": held, "free": ~held, "released": released}[during]
         ticks = np.where(chosen, self.ticks, 0)
         later = np.cumsum(ticks[::-1])[::-1] - ticks
         if last:
@@ -98,7 +102,7 @@ segments = st.builds(
 )
 runs = st.lists(segments, min_size=1, max_size=8).map(frames_of)
 seconds = st.sampled_from([0.0, 0.05, 0.3, 0.5, 0.95, 1.0, 2.0, 2.2, 3.0])
-durings = st.sampled_from(["always", "held", "free"])
+durings = st.sampled_from(["always", "held", "free", "released"])
 
 
 def frames(*ticks: int) -> Frames:

@@ -14,7 +14,7 @@ from onpath.models.systems.catalogue import ROBOTS as CATALOGUE
 
 EVENTS = ("hold", "let_go", "pull", "release", "set", "path", "reset", "diverged")
 STATS: tuple[Stat, ...] = ("max", "min", "mean", "rms", "final", "settling", "overshoot")
-DURING = ("always", "held", "pulled", "free")
+DURING = ("always", "held", "pulled", "free", "released")
 CHANGED = ("K1", "K2", "stiction", "path", "left")
 GAINS = (5e-7, 0.005, 400.0, 600.1, 600.7, 1600.5)
 PLACES = ("left", "right", "path", "robot", "length", "K1", "K2", "task", "encoder_counts")
