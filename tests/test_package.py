@@ -7,6 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.support.checkout import FOLDERS, ROOT
 from tests.support.lab_process import WAIT, LabProcess, free_ports
 from tests.support.waiting import wait_for
@@ -31,6 +33,7 @@ def test_the_checkout_has_no_links() -> None:
     assert [path for path in links if "node_modules" not in path.parts] == []
 
 
+@pytest.mark.thorough
 def test_each_file_is_one_module_under_its_real_path() -> None:
     """Else each class would exist twice; and tracebacks name the files that git knows."""
     command = [sys.executable, "-c", FILES]
@@ -47,6 +50,7 @@ def test_each_file_is_one_module_under_its_real_path() -> None:
         assert file.resolve() == file
 
 
+@pytest.mark.thorough
 def test_it_is_imported_and_serves_where_linuxs_parts_are_missing(tmp_path: Path) -> None:
     database = f"sqlite:///{tmp_path / 'labs.db'}"
     (port,) = free_ports(1)
@@ -60,6 +64,7 @@ def test_it_is_imported_and_serves_where_linuxs_parts_are_missing(tmp_path: Path
         assert lab.process.wait(60) == 0
 
 
+@pytest.mark.thorough
 def test_a_socket_that_a_system_does_not_have_is_refused_in_one_line(tmp_path: Path) -> None:
     command = [sys.executable, *ELSEWHERE, "serve", "--socket", str(tmp_path / "lab.sock")]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)

@@ -160,6 +160,7 @@ def test_a_decimal_comma_is_part_of_its_number() -> None:
     assert "<mn>2</mn><mo>,</mo><mn>3</mn>" in to_html("$(2, 3)$")
 
 
+@pytest.mark.thorough
 @given(st.text(max_size=400))
 @settings(max_examples=150, deadline=None)
 def test_whatever_is_typed_gives_a_lesson_or_problems(text: str) -> None:

@@ -163,6 +163,7 @@ def test_everything_that_the_page_names_has_words(language: str) -> None:
         assert words(f"arena.{name}_text")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("language", COMPLETE)
 def test_a_trial_is_described_with_its_numbers(language: str) -> None:
     words, found = Words(language), set[str]()

@@ -106,6 +106,7 @@ def wait_for_ever(_upload: Upload, _language: str) -> None:
     threading.Event().wait()
 
 
+@pytest.mark.thorough
 def test_a_library_that_fails_is_not_quoted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(path_upload, "read_upload", fail)
     monkeypatch.setattr(path_upload, "log_error", lambda _: None)

@@ -273,6 +273,7 @@ class Client:
         self.sent[name] = content
 
 
+@pytest.mark.thorough
 def test_it_is_sent_as_it_was_when_it_was_requested(course: Course) -> None:
     lab, client = Lab(store(), FIVE_BAR, course), Client()
     do(lab, c.OpenLesson(NAME), c.GoToStep(1))

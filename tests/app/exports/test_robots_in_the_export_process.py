@@ -21,6 +21,7 @@ def equations(robot: str) -> list[float]:
     return system.function("output")([0.1, 0.2, 0.3], [0.0] * 3, numbers).full()[:, 0].tolist()
 
 
+@pytest.mark.thorough
 def test_the_process_knows_robots_from_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

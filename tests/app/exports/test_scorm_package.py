@@ -87,6 +87,7 @@ def test_titles_are_texts(template: str) -> None:
     assert title in [each.text for each in found.iter()]
 
 
+@pytest.mark.thorough
 def test_what_cannot_be_packed_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

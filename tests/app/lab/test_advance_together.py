@@ -69,6 +69,7 @@ def now(lab: Lab) -> list[object]:
     return [session.time, lab.message, runs]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.thorough)])
 def test_advancing_together_equals_advancing_one_by_one(seed: int) -> None:
     stopped, labs, others = set[str](), list[Lab](), list[Lab]()

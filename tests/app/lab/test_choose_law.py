@@ -36,6 +36,7 @@ def change(lab: Lab, side: str, law: str) -> None:
     lab.session.change_law(side, law)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("law", laws_for())
 @pytest.mark.parametrize("side", SIDES)
 def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
@@ -135,6 +136,7 @@ def changing() -> Lab:
     return lab
 
 
+@pytest.mark.thorough
 def test_history_is_replayed_to_the_last_bit_across_changes() -> None:
     lab = new_lab(0.5)
     seen: list[tuple[str, float, np.ndarray, np.ndarray]] = []
@@ -226,6 +228,7 @@ def test_a_set_up_carries_the_laws() -> None:
     assert other.session.laws == DEFAULT_LAWS
 
 
+@pytest.mark.thorough
 def test_files_tell_the_side_and_the_law_of_every_row() -> None:
     lab = changing()
     change(lab, RIGHT, "set_point")  # both alike

@@ -57,6 +57,7 @@ def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
         assert np.abs(np.diff(log.fields["y"], axis=0)).max() < 1e-3  # [m] in a tick: no jump
 
 
+@pytest.mark.thorough
 def test_going_back_to_before_the_load_goes_on_with_it() -> None:
     lab = flexible_lab(1.0)
     do(lab, c.SetParameter("payload", 0.02))

@@ -78,6 +78,7 @@ def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: st
     assert [type(loop) for loop in made] == [InterpretedLoop, CompiledLoop]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_the_page_says_once_that_it_is_interpreted_and_why(
     store: LoopCache, law: str, language: str

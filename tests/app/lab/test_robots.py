@@ -90,6 +90,7 @@ def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> Non
         sys.modules.pop("onpath.models.systems.other", None)
 
 
+@pytest.mark.thorough
 def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
     lab = lab_with(entry, 2.0)
     session = lab.session

@@ -197,6 +197,7 @@ def test_every_command_is_tried() -> None:
     assert set(COMMANDS) == {one for one in commands - {c.Command} if not one.from_teacher}
 
 
+@pytest.mark.thorough
 @settings(max_examples=50, deadline=None)
 @given(
     st.lists(

@@ -26,6 +26,7 @@ def softly(now: Any) -> tuple[float, float]:
     return -now.K5 * (now.theta_rate - now.speed), -300 * now.xi[0] - 30 * now.xi_rate[0]
 
 
+@pytest.mark.thorough
 def test_it_gives_the_numbers_of_the_command(tmp_path: Path, capsys: Any) -> None:
     laws = [f"{FILE}:SlidingMode", "path_following"]
     given = ["--only", "--robot=five_bar", "--rounds=1", "--seed=4", "--processes=1"]

@@ -107,6 +107,7 @@ def test_every_step_is_told_with_all_its_parts(
             command_from(json.dumps({"do": "Act", "actions": link}))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "index"), STEPS)
 def test_no_answer_is_told_before_it_is_due(lab: Lab, name: str, index: int) -> None:
     """Nor what is right: pages could be read by whoever wants to know."""
@@ -154,6 +155,7 @@ def test_a_number_and_a_text_are_kept_and_the_model_answer_is_told(lab: Lab, kin
         assert 'class="after"' not in told(lab)["sections"][str(index)]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("name", "index", "place"), [*places(Choice), *places(Sketch)])
 def test_what_is_right_is_told_by_the_run_that_shows_it(
     lab: Lab, name: str, index: int, place: int

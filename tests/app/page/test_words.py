@@ -8,7 +8,7 @@ import pickle
 import re
 import sys
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -90,7 +90,7 @@ OTHERS = [language for language in languages() if language != "en"]
 TRANSLATED = [language for language in COMPLETE if language != "en"]
 
 
-@lru_cache
+@cache
 def parsed(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 

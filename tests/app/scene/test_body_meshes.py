@@ -67,6 +67,7 @@ def test_bodies_without_a_mesh_reach_from_joint_to_joint_and_the_base_stands_on_
         assert beside == pytest.approx(np.ptp(mesh.vertices, axis=0).min(), abs=0.02)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["planar_arm", "seven_axes"])
 def test_the_tip_of_our_own_robots_is_at_the_end_of_their_last_mesh(robot: str) -> None:
     source = read_robot(asset_path(f"robots/{robot}.urdf"), Options()).entry.source
@@ -92,6 +93,7 @@ def robot_with(folder: Path, **meshes: Any) -> Chain:
     return chain_of(text, folder)
 
 
+@pytest.mark.thorough
 def test_a_process_reads_meshes_and_leaves_out_what_it_cannot_read(
     tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
@@ -145,6 +147,7 @@ MJCF = """<mujoco><asset><mesh name="wedge" file="wedge.stl"/></asset><worldbody
   <site name="tip" pos=".25 0 0"/></body></body></worldbody></mujoco>"""
 
 
+@pytest.mark.thorough
 def test_a_robot_from_mjcf_is_drawn_as_mujoco_draws_it(tmp_path: Path) -> None:
     """Vertices of its mesh are where MuJoCo has them, although it moves the mesh to its centre."""
     api: Any = pytest.importorskip("mujoco")

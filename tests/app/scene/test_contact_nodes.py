@@ -22,6 +22,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, new_lab, run, take_snapshot
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ROBOTS)
 def test_an_end_point_that_is_held_back_slides_in_its_guide(name: str) -> None:
     lab = new_lab()

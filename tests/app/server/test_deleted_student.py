@@ -78,6 +78,7 @@ def gone(student: Student) -> bool:
     return False
 
 
+@pytest.mark.thorough
 def test_a_teacher_deletes_one_student_and_then_the_own_class_and_nobody_else(
     server: LabServer, file: Path
 ) -> None:

@@ -53,7 +53,7 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
     headers: Any = {"Accept-Language": "de-AT,de;q=0.9,en;q=0.5"}
     with Student(address, **headers) as student:
         student.open()
-        student.read(lambda: student.has_widget("Bahn"))
+        student.read(lambda: student.has_widget("Bahn") and student.code)
         lab = server.sessions.find(student.code)
         assert lab is not None and lab.scheduled.lab.words.language == "de"
 

@@ -105,6 +105,7 @@ def new_sessions(held: Held) -> LabRegistry:
     return LabRegistry(SimulationThread(), make, load=held.load, is_current=current, keeper=keeper)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", ["enter", "join"])
 def test_a_lab_that_is_waited_for_holds_up_nobody_else(held: Held, way: str) -> None:
     sessions = new_sessions(held)

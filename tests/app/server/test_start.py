@@ -125,6 +125,7 @@ def test_with_few_open_files_idle_connections_keep_nobody_away(tmp_path: Path) -
     assert "Traceback" not in served.said and "Too many open files" not in served.said
 
 
+@pytest.mark.thorough
 @pytest.mark.skipif(sys.platform == "win32", reason="no such limit")
 def test_too_few_open_files_are_refused(tmp_path: Path) -> None:
     told = ["--port", "0", "--database", "sqlite://"]

@@ -31,6 +31,7 @@ print(*sorted({"scipy", "trimesh", "matplotlib"} & sys.modules.keys()))
 """
 
 
+@pytest.mark.thorough
 def test_the_first_picture_needs_no_slow_module() -> None:
     run = subprocess.run([sys.executable, "-c", FIRST_PICTURE], capture_output=True, text=True)
     assert run.returncode == 0, run.stderr
@@ -76,6 +77,7 @@ def test_what_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {*warm_up.LATER} <= {*done}
 
 
+@pytest.mark.thorough
 def test_the_loops_of_a_robots_first_lab_are_compiled_with_progress(
     caplog: pytest.LogCaptureFixture,
 ) -> None:

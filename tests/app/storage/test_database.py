@@ -110,6 +110,7 @@ JSON = st.recursive(
 )
 
 
+@pytest.mark.thorough
 @settings(max_examples=25, deadline=None)
 @given(st.dictionaries(st.text(min_size=1, max_size=64), st.dictionaries(st.text(), JSON)))
 def test_any_states_under_any_codes(labs: dict[str, dict[str, Any]]) -> None:
@@ -443,6 +444,7 @@ def test_processes_that_open_and_write_at_once(file: Path) -> None:
         assert [(records.load(name) or {})["n"] for name in names] == [29] * 4
 
 
+@pytest.mark.thorough
 def test_processes_that_find_a_broken_file_at_once(file: Path) -> None:
     file.parent.mkdir()
     file.write_bytes(b"broken" * 1000)

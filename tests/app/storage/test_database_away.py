@@ -121,6 +121,7 @@ def is_kept(server: Server, code: str, lab: Lab) -> bool:
 # The student is told
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("language", ["en", "de"])
 @pytest.mark.parametrize("fault", [lambda server: locked(server.file), full, no_folder])
 def test_the_page_says_that_a_lab_is_not_kept_and_when_it_is_again(
@@ -235,6 +236,7 @@ def put_rubbish(file: Path) -> None:
     os.replace(rubbish, file)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("lose", [delete, delete_folder, put_another, put_rubbish])
 def test_a_file_that_is_deleted_or_replaced_is_noticed_and_labs_in_use_are_kept_anew(
     server: Server, lose: Callable[[Path], None], caplog: Any
@@ -285,6 +287,7 @@ def granted(server: Server) -> list[float]:
     return waits
 
 
+@pytest.mark.thorough
 def test_a_returning_user_waits_for_four_seconds_at_most_is_told_and_finds_the_lab_later(
     server: Server, granted: list[float], monkeypatch: pytest.MonkeyPatch
 ) -> None:

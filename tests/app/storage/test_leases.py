@@ -169,7 +169,7 @@ class TwoOwners(RuleBasedStateMachine):
         assert [each.save() for each in self.owners if not each.is_open] == [False]
 
 
-TestTwoOwners = TwoOwners.TestCase
+TestTwoOwners = pytest.mark.thorough(TwoOwners.TestCase)
 TestTwoOwners.settings = settings(max_examples=50, stateful_step_count=25, deadline=None)
 
 

@@ -102,6 +102,7 @@ def operations(kernel: Kernel) -> int:
     return len(re.findall(r" = (?:fadd|fsub|fmul|fdiv|fneg|fcmp|call) ", translate(kernel)))
 
 
+@pytest.mark.thorough
 def test_llvm_is_loaded_only_where_it_is_needed() -> None:
     script = """
 import sys

@@ -241,6 +241,7 @@ def test_the_tip_itself_stays_on_the_path() -> None:
     assert (theta[-1] - theta[-101]) / 0.1 == pytest.approx(-2.0, rel=0.01)
 
 
+@pytest.mark.thorough
 def test_it_is_prediction_that_does_it() -> None:
     """Without, the rigid link would be on the path and the tip as far off as it bends."""
     states, _ = run("composite", tuple(START), TASK)
@@ -258,6 +259,7 @@ def fading(states: Array) -> float:
     return float(np.flatnonzero(left > 0.1 * left[:100].max())[-1] * DT)
 
 
+@pytest.mark.thorough
 def test_vibration_after_a_pull_dies_out_sooner_than_by_the_structure_alone() -> None:
     """alpha = 0 holds the joints still: the beam is left to its own damping."""
     damped, _ = run("composite", LOWEST, PULL)

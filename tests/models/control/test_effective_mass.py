@@ -13,6 +13,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
 @given(st.floats(-0.03, 0.03), st.floats(-0.03, 0.03), st.floats(0.0, 6.28))
 def test_it_is_force_by_acceleration(entry: RobotEntry, x: float, y: float, angle: float) -> None:

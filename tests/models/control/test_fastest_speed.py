@@ -50,6 +50,7 @@ def time_of(curve: Curve, found: Array) -> float:
     return float(np.trapezoid(1 / np.sqrt(np.maximum(x, 1e-9)), theta))
 
 
+@pytest.mark.thorough
 @settings(max_examples=25, deadline=None)
 @given(
     st.sampled_from(("five_bar", "two_link_arm")),

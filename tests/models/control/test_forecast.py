@@ -133,6 +133,7 @@ def test_an_upright_pendulum_falls_and_a_hanging_one_does_not(law: str) -> None:
         assert fell == (pendulum == "upright" and moves)
 
 
+@pytest.mark.thorough
 def test_of_a_law_that_stabilizes_the_pendulum_nothing_is_foretold() -> None:
     (law,) = (name for name in laws_for(CART.name) if LAWS[name].stabilizes)
     for pendulum in ("hanging", "upright"):

@@ -32,6 +32,7 @@ def off(path: str, beside: float = 0.006) -> np.ndarray:
     return curve.at(np.array(0.4)) + beside * normal
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("path", [SQUARE, EGG])
 def test_the_end_point_comes_to_where_s_is_0(path: str) -> None:
     found = onpath.simulate(path=path, across="level_set", start=off(path), duration=4.0, speed=3.0)

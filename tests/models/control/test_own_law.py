@@ -135,6 +135,7 @@ def test_the_integral_runs_although_k3_is_zero_and_stops_while_a_torque_saturate
         assert np.array_equal(motion(kernel, typed), motion(kernel, wanted))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("entry", ROBOTS.values(), ids=list(ROBOTS))
 def test_a_law_with_everything_in_it_is_compiled_to_the_same_bits(entry: RobotEntry) -> None:
     text = (

@@ -181,6 +181,7 @@ def test_a_tool_path_means_the_same_however_it_is_written(way: str) -> None:
     assert plain.closed and plain.length() == pytest.approx(0.14 + 0.04 + np.pi * 0.02, rel=0.02)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("clockwise", [True, False])
 @given(st.floats(-3, 3), st.floats(0.3, 6.0), st.floats(75, 120))
 def test_an_arc_by_its_radius_is_the_one_by_its_centre(
@@ -443,6 +444,7 @@ WHOLE = (
 """Refusals of a whole file, which no line explains."""
 
 
+@pytest.mark.thorough
 @settings(max_examples=400, deadline=2000)
 @given(mangled(), st.sampled_from([{}, {"fit": 0.1}, {"corners": "round"}, {"closed": False}]))
 @example(("a.svg", DRAWING.replace("C8", "A 0 0 0 0 0").encode()), {})

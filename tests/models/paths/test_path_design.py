@@ -407,6 +407,7 @@ def peanut(waist: float, bulge: float) -> Curve:
     return closed_through(np.column_stack([0.08 * np.cos(theta), np.sin(theta) * height]))
 
 
+@pytest.mark.thorough
 @settings(max_examples=60, deadline=None)
 @given(
     st.one_of(

@@ -188,6 +188,7 @@ def flat(half_width: float) -> Curve:
     return ellipse((0.06, half_width))
 
 
+@pytest.mark.thorough
 def test_lab_and_page_agree_on_both_sides_of_every_threshold() -> None:
     """Where a check changes its mind on the way from one curve to another, to the last bit."""
     rng, seen, name = np.random.default_rng(1), set[str](), "five_bar"

@@ -82,6 +82,7 @@ def test_with_the_remedy_path_following_keeps_the_path_better_than_tracking() ->
         assert max(distances("path_following", name)) < min(distances("trajectory_tracking", name))
 
 
+@pytest.mark.thorough
 def test_every_law_that_commands_an_acceleration_gets_the_remedy_at_a_torque_limit() -> None:
     for law in CONTEST.laws():
         name = "weak_motors" if LAWS[law].plan else "too_fast"  # a plan is not too fast

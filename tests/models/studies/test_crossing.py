@@ -46,6 +46,7 @@ def test_of_three_ways_only_the_global_search_jumps_to_the_other_strand() -> Non
     assert elsewhere == {True, False}  # noise decides
 
 
+@pytest.mark.thorough
 def test_without_noise_no_law_stops_and_none_leaves_its_strand_in_passing() -> None:
     for law in laws_for():
         trajectory = run(quiet(duration=3.0), law)

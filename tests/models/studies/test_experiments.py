@@ -74,6 +74,7 @@ def test_held_back_the_follower_stays_on_the_circle_and_the_tracker_does_not(
     assert torque["trajectory_tracking"] > 2 * torque["path_following"]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
 def test_wherever_it_is_held_the_follower_ends_on_the_path(robot: str) -> None:
     """(18): the integral knows of no brake, and works against it."""

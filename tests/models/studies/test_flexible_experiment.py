@@ -107,6 +107,7 @@ def test_critical_alpha_grows_with_one_over_rho_unit_modes(
     assert limits[0] == pytest.approx(2 * limits[1], rel=1e-3)
 
 
+@pytest.mark.thorough
 def test_picture_is_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "zero.png"
     assert run_command(["zero-dynamics", "--at", "0.02", "-0.03", "--plot", str(file)]) == 0

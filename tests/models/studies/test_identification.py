@@ -194,6 +194,7 @@ def worst(lab: Lab) -> float:
     return lab.session.runs[FOLLOWER].max_distance
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("encoder", [0, 2000])
 def test_lab_finds_its_robot_and_follows_better(encoder: int) -> None:
     lab = made_lab(error_M11=30, error_b1=-50, encoder_counts=encoder)

@@ -105,6 +105,7 @@ def test_dry_friction_is_found_where_there_is_some(tmp_path: Path) -> None:
 NOISY = {"encoder_counts": 2000, "sensor_noise": 5e-4}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("values", [{"encoder_counts": 500}, {"sensor_noise": 1e-3}, NOISY])
 @pytest.mark.parametrize("robot", RIGID)
 def test_the_file_has_the_angles_that_the_loop_reads(robot: str, values: dict[str, float]) -> None:
@@ -141,6 +142,7 @@ def test_measured_angles_are_written_and_used(
         assert f"from the {angles} angles" in table and "95 %" in table
 
 
+@pytest.mark.thorough
 def test_a_record_of_another_robot_or_in_degrees_is_doubted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -255,6 +257,7 @@ def test_the_command_prints_a_table_and_json(
     assert values["M11"] == pytest.approx(0.0246, rel=1e-3) and data["not_excited"] == []
 
 
+@pytest.mark.thorough
 def test_the_file_of_a_lab_is_read_with_its_sides_and_typed_laws(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

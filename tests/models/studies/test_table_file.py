@@ -116,6 +116,7 @@ SPREADSHEETS = st.builds(
 )
 
 
+@pytest.mark.thorough
 @given(SPREADSHEETS, st.floats(0, 1e5), st.integers(0, 99))
 @example(Spreadsheet(encoding="utf-8-sig", separator=";", decimal=",", end="\r\n"), 0.0, 0)
 @example(Spreadsheet(encoding="utf-16", separator="\t", decimal=","), 0.0, 0)

@@ -74,6 +74,7 @@ def test_bias_is_lagrange_s(modes: int) -> None:
         assert np.abs(found - expected).max() < 1e-10 * np.abs(expected).max()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("plant", PLANTS)
 @MODES
 def test_acceleration_solves_the_equation_of_motion(plant: str, modes: int) -> None:

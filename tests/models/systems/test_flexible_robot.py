@@ -152,6 +152,7 @@ def test_the_controller_s_model_is_wrong_where_asked_and_only_there() -> None:
 # How it runs --------------------------------------------------------------------------------------
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("controller", ["path_following", "trajectory_tracking"])
 @pytest.mark.parametrize("modes, plant", [(1, "unit_modes"), (3, "lagrangian"), (6, "lagrangian")])
 def test_compiled_and_interpreted_loops_agree(controller: str, modes: int, plant: str) -> None:

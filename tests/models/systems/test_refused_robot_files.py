@@ -300,6 +300,7 @@ def test_a_mangled_mjcf_file_is_a_robot_or_refused(tmp_path: Path, data: st.Data
 NUMBERS = st.sampled_from(["0", "-1", "1e9", "1e-9", "-1e9", "3.14159", "1e-300", "1000"])
 
 
+@pytest.mark.thorough
 @settings(
     suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=25
 )

@@ -238,6 +238,7 @@ def test_each_motor_gives_no_more_than_the_share_of_its_own_limit(tmp_path: Path
     assert most[1] == pytest.approx(np.minimum(most[1], 0.06 * efforts)) and most[1].max() > 0.5
 
 
+@pytest.mark.thorough
 def test_without_a_posture_the_arm_falls_to_a_limit_while_its_tip_stays(tmp_path: Path) -> None:
     """η1 of (5): with gains no joint does; without them one does; the tip stays on its path."""
     file = written(tmp_path, urdf("seven", SEVEN))

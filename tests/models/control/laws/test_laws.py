@@ -138,6 +138,7 @@ def test_the_compiled_loop_is_the_interpreted_one_bit_by_bit(law: str) -> None:
             assert np.array_equal(one, other)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.parametrize("law", LAWS)
 def test_every_law_moves_every_robot_that_it_suits(law: str, name: str) -> None:
@@ -164,6 +165,7 @@ def test_laws_that_command_torques_refuse_composite_control() -> None:
         kernel_of(FLEXIBLE.make(parameters), kind_of("velocity_field", parameters, CIRCLE))
 
 
+@pytest.mark.thorough
 def test_a_set_point_regulator_cuts_across_the_circle_and_path_following_does_not() -> None:
     """Experiment 1: from θ = 0 to the opposite side."""
     values = {"task": "position", "target": 3.0}
@@ -292,6 +294,7 @@ def test_a_hand_gets_no_more_energy_from_the_velocity_field_than_it_stores(
     assert work.min() < 0  # the hand has worked, too
 
 
+@pytest.mark.thorough
 def test_a_bead_slides_on_the_virtual_constraint() -> None:
     """With a speed along the path it stays on it, and its kinetic energy is constant."""
     for curve in PATHS:

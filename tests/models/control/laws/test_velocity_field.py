@@ -166,6 +166,7 @@ def test_it_makes_no_energy_and_is_never_in_debt_in_many_runs(name: str, seed: i
     check(name, 150, 6.0, 100 + seed)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rate", [1000, 250, 50])
 @pytest.mark.parametrize("name", SUITED)
 def test_nor_with_other_gains_and_at_lower_control_rates(name: str, rate: int) -> None:
