@@ -76,6 +76,7 @@ def links(host: str) -> list[str]:
     ]
 
 
+@pytest.mark.thorough
 def test_no_link_leads_the_page_to_a_foreign_server(
     browser: Browser, server: LabServer, stranger: Stranger
 ) -> None:
@@ -94,7 +95,13 @@ def parameters(tab: Tab) -> list[str]:
     return names
 
 
-@pytest.mark.parametrize("path", ["/", "/index.html", "/c/abc234/"])
+@pytest.mark.parametrize(
+    "path",
+    [
+        "/",
+        *(pytest.param(path, marks=pytest.mark.thorough) for path in ("/index.html", "/c/abc234/")),
+    ],
+)
 def test_no_address_to_copy_names_the_server(
     browser: Browser, server: LabServer, path: str
 ) -> None:
@@ -235,7 +242,11 @@ def test_the_lab_in_a_folder_as_the_readme_says_with_tls(
 
 @needs_nginx
 @pytest.mark.parametrize(
-    ("locale", "said"), [("de-AT", "antwortet nicht"), ("fr", "does not answer")]
+    ("locale", "said"),
+    [
+        ("de-AT", "antwortet nicht"),
+        pytest.param("fr", "does not answer", marks=pytest.mark.thorough),
+    ],
 )
 def test_who_waits_in_vain_is_told_so_and_then_shown_the_lab(
     browser: Browser, server: LabServer, tmp_path: Path, locale: str, said: str

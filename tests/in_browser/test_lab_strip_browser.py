@@ -20,7 +20,11 @@ from tests.support.free_lab import fresh
 
 expect.set_options(timeout=WAIT * 1e3)
 WINDOWS = [(1280, 800), (1366, 768), (820, 1180), (390, 844)]
-CHARTED = [(1280, 800), (390, 844), (844, 390)]
+CHARTED = [
+    pytest.param((1280, 800), marks=pytest.mark.thorough),
+    (390, 844),
+    pytest.param((844, 390), marks=pytest.mark.thorough),
+]
 REMEMBER = """() => {
     const {prototype} = CanvasRenderingContext2D
     const {fillText, clearRect} = prototype

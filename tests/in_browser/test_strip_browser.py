@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser, Locator, Page
 
 WAIT = 30.0  # [s]
+SOME = "five_bar", "seven_axes"  # robots of every run of the tests
 README = ROOT / "app" / "exports" / "standalone" / "README.md"
 PARTS = """() => ({
     spans: onpath.strip.chart.spans,
@@ -354,7 +355,13 @@ def test_letters_in_a_lens_are_whole_and_apart(page: Page, size: int) -> None:
                 assert min(across, down) <= 0, picture
 
 
-@pytest.mark.parametrize("robot", onpath.robots())
+@pytest.mark.parametrize(
+    "robot",
+    [
+        robot if robot in SOME else pytest.param(robot, marks=pytest.mark.thorough)
+        for robot in onpath.robots()
+    ],
+)
 def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> None:
     """Lengths in it are those in space; a link that bends has a straight tip beside its own."""
     page = opened(browser, tmp_path, robot=robot, paths="circle")
