@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.panels.widgets import Post, on_user_update
+from onpath.app.page.panels.widgets import LabValue, Post, on_user_update
 from onpath.lessons.words import Words
 
 
@@ -17,9 +17,10 @@ class CopyBox:
         self._box = gui.add_checkbox(
             words("controls.copy"), first.run.copy, hint=words("controls.copy_hint")
         )
-        on_user_update(self._box, lambda on: post(c.SetCopy(on)))
+        self._copies = LabValue(post)
+        on_user_update(self._box, lambda on: self._copies.change(c.SetCopy(on)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's choice, which every set-up brings with it."""
-        if self._box.value != snapshot.run.copy:
+        if self._copies.is_new(snapshot.run.copy):
             self._box.value = snapshot.run.copy

@@ -12,7 +12,13 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, add_menu, on_user_update
+from onpath.app.page.panels.widgets import (
+    LabValue,
+    ParameterWidgets,
+    Post,
+    add_menu,
+    on_user_update,
+)
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.systems.parameters import Parameters
@@ -109,11 +115,12 @@ class Exaggeration:
             initial_value=first.run.exaggeration,
             hint=words("flexible.larger_hint"),
         )
-        on_user_update(self._slider, lambda factor: post(c.SetExaggeration(factor)))
+        self._factor = LabValue(post)
+        on_user_update(self._slider, lambda x: self._factor.change(c.SetExaggeration(x)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's value."""
-        if self._slider.value != snapshot.run.exaggeration:
+        if self._factor.is_new(snapshot.run.exaggeration):
             self._slider.value = snapshot.run.exaggeration
 
 

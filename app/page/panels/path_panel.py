@@ -13,6 +13,7 @@ from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.panels.widgets import (
+    LabValue,
     ParameterWidgets,
     Post,
     add_buttons,
@@ -45,26 +46,29 @@ class PathChoice:
         for name in presets():
             if key := remark_on(name, robot_of(first)):
                 self._shown[name] = words(key, path=self._shown[name])
-        names = {shown: name for name, shown in self._shown.items()}
+        self._names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
             self._options(first),
             initial_value=self._shown.get(first.edit.name, self._custom),
             hint=words("design.path_hint"),
         )
-        on_user_update(
-            self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
-        )
+        self._name = LabValue(post)
+        on_user_update(self._choice, self._choose)
         rises = ["rise"] if "rise" in first.parameters else []
         self._rise = ParameterWidgets(gui, words, post, names=rises, first=first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the current preset and rise."""
         self._rise.follow(snapshot)
-        shown = self._shown.get(snapshot.edit.name, self._custom)
-        if self._choice.value != shown:
+        name = snapshot.edit.name
+        if self._name.is_new(name):
             self._choice.options = self._options(snapshot)
-            self._choice.value = shown
+            self._choice.value = self._shown.get(name, self._custom)
+
+    def _choose(self, shown: str) -> None:
+        if shown in self._names:  # and not the user's own path, which is followed already
+            self._name.change(c.ChoosePath(self._names[shown]))
 
     def _options(self, snapshot: PageSnapshot) -> list[str]:
         """The presets, and an entry for the user's own path while there is one."""

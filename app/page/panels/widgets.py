@@ -115,11 +115,35 @@ def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
         handle.value = shown
 
 
+class LabValue:
+    """A value of the lab that a user changes with widgets, and that they show.
+
+    The first snapshot after a change may be older than it, so it does not set the widgets back; the
+    next one is right, and does so if the lab has refused the change.
+    """
+
+    def __init__(self, post: Post) -> None:
+        self._post, self._just_changed = post, False
+        self._shown: tuple[object, ...] = ()  # empty if the next value is to be shown anyway
+
+    def change(self, command: Command) -> None:
+        """Post a command that changes the value."""
+        self._just_changed = True
+        self._post(command)
+
+    def is_new(self, value: object) -> bool:
+        """Whether the widgets are to show a snapshot's value."""
+        if self._just_changed:
+            self._just_changed, self._shown = False, ()
+            return False
+        if self._shown == (value,):
+            return False
+        self._shown = (value,)
+        return True
+
+
 class ParameterWidgets:
     """Widgets for parameters that post changes and follow the lab's values.
-
-    The first snapshot after a change may have been taken before it, so it does not set the changed
-    widget back; the next one is right.
 
     Args:
         gui: parent of the widgets.
@@ -131,8 +155,7 @@ class ParameterWidgets:
         self, gui: viser.GuiApi, words: Words, post: Post, names: list[str], first: PageSnapshot
     ) -> None:
         self._handles: dict[str, Any] = {}
-        self._just_changed: set[str] = set()
-        self._followed: ParameterValues = {}
+        self._values = {name: LabValue(post) for name in names}
         self._post, self._words = post, words
         self._specs = specs(ROBOTS[first.key.robot].parameters)
         for name in names:
@@ -143,19 +166,13 @@ class ParameterWidgets:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
-            value = snapshot.parameters[name]
-            if name in self._just_changed:
-                self._just_changed.discard(name)
-                self._followed.pop(name, None)
-            elif value != self._followed.get(name):
-                self._followed[name] = value
+            if self._values[name].is_new(snapshot.parameters[name]):
                 shown = self._shown(name, snapshot.parameters)
                 if handle.value != shown:
                     handle.value = shown
 
     def _change(self, name: str, value: Any) -> None:
-        self._just_changed.add(name)
-        self._post(SetParameter(name, value))
+        self._values[name].change(SetParameter(name, value))
 
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
