@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.panels.widgets import LabValue, Post, on_user_update
+from onpath.app.page.panels.widgets import LabValue, Post, on_user_update, put
 from onpath.lessons.words import Words
 
 
@@ -23,4 +23,4 @@ class CopyBox:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's choice, which every set-up brings with it."""
         if self._copies.is_new(snapshot.run.copy):
-            self._box.value = snapshot.run.copy
+            put(self._box, value=snapshot.run.copy)

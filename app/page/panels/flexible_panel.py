@@ -18,6 +18,7 @@ from onpath.app.page.panels.widgets import (
     Post,
     add_menu,
     on_user_update,
+    put,
 )
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
@@ -121,7 +122,7 @@ class Exaggeration:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's value."""
         if self._factor.is_new(snapshot.run.exaggeration):
-            self._slider.value = snapshot.run.exaggeration
+            put(self._slider, value=snapshot.run.exaggeration)
 
 
 class FlexiblePanel:
@@ -181,9 +182,7 @@ class FlexiblePanel:
         if shown != self._shown:
             self._shown = shown
             self._bar.content = alpha_bar(alpha, critical, used, self._words, beam=beam)
-        numbers = deflections(snapshot, self._words)
-        if self._numbers.content != numbers:
-            self._numbers.content = numbers
+        put(self._numbers, content=deflections(snapshot, self._words))
 
     def _set(self, command: c.Command) -> None:
         """Post a command; changing alpha also selects output redefinition, which uses it."""

@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.panels.widgets import LabValue, Post, add_menu
+from onpath.app.page.panels.widgets import LabValue, Post, add_menu, put
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.obstacles import DIRECTIONS
 
@@ -30,4 +30,4 @@ class HoldDirection:
         """Show the lab's direction."""
         direction = snapshot.run.hold_direction
         if self._direction.is_new(direction):
-            self._menu.value = self._labels[direction]
+            put(self._menu, value=self._labels[direction])

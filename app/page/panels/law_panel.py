@@ -15,7 +15,7 @@ from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
 from onpath.app.page.panels.slow_presses import on_menu_press
-from onpath.app.page.panels.widgets import LabValue, Post, add_menu
+from onpath.app.page.panels.widgets import LabValue, Post, add_menu, put
 from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import OWN, is_text, tidy
@@ -63,9 +63,7 @@ class LawPanel:
                 if is_text(law):
                     self._boxes[side].take(law)
             if self._values[side].is_new((law, refusal)):
-                label = self._label(side, law)
-                if menu.value != label:
-                    menu.value = label
+                put(menu, value=self._label(side, law))
                 self._boxes[side].show(is_text(law) or side in self._typing)
                 self._boxes[side].follow(refusal)
         if run.laws != self._laws:

@@ -20,6 +20,8 @@ from onpath.app.page.panels.widgets import (
     note,
     on_press,
     on_user_update,
+    put,
+    put_number,
     refused,
 )
 from onpath.lessons.labels import parameter_heading, parameter_help, path_label
@@ -63,17 +65,17 @@ class PathChoice:
         self._rise.follow(snapshot)
         name = snapshot.edit.name
         if self._name.is_new(name):
-            self._choice.options = self._options(snapshot)
-            self._choice.value = self._shown.get(name, self._custom)
+            shown = self._shown.get(name, self._custom)
+            put(self._choice, options=self._options(snapshot), value=shown)
 
     def _choose(self, shown: str) -> None:
         if shown in self._names:  # and not the user's own path, which is followed already
             self._name.change(c.ChoosePath(self._names[shown]))
 
-    def _options(self, snapshot: PageSnapshot) -> list[str]:
+    def _options(self, snapshot: PageSnapshot) -> tuple[str, ...]:
         """The presets, and an entry for the user's own path while there is one."""
-        presets = list(self._shown.values())
-        return presets if snapshot.edit.name in self._shown else [*presets, self._custom]
+        presets = tuple(self._shown.values())
+        return presets if snapshot.edit.name in self._shown else (*presets, self._custom)
 
 
 @lru_cache(maxsize=64)
@@ -220,7 +222,7 @@ class PathPanel:
         """Show the selected point's coordinates, if one is selected."""
         self._latest = snapshot
         for name, box in self._plane.items():  # a refused value goes back
-            self._set(box, float(snapshot.parameters[name]))
+            put(box, value=float(snapshot.parameters[name]))
         edit = snapshot.edit
         if edit.version == self._version:
             return
@@ -230,16 +232,10 @@ class PathPanel:
             ranks = rank_map(robot_of(snapshot), parameters_of(snapshot), edit.sampled)
             self._rank.content = self._words("design.rank", number=f"{float(np.min(ranks)):.2f}")
         selected = edit.selected
-        self._set(self._which, 0 if selected is None else selected + 1)
+        put(self._which, value=0 if selected is None else selected + 1)
         for coordinate in (self._first, self._second):
-            if coordinate.visible is not (selected is not None):
-                coordinate.visible = selected is not None
+            put(coordinate, visible=selected is not None)
         if selected is not None and selected < len(edit.points):
             z = edit.points[selected] * 1e3
-            self._set(self._first, round(float(z[0]), 1))
-            self._set(self._second, round(float(z[1]), 1))
-
-    @staticmethod
-    def _set(handle: viser.GuiInputHandle[float], value: float) -> None:
-        if handle.value != value:
-            handle.value = value
+            put_number(self._first, float(z[0]))
+            put_number(self._second, float(z[1]))

@@ -11,7 +11,7 @@ import viser
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.panels.widgets import LabValue, Post, add_buttons, on_user_update, set_number
+from onpath.app.page.panels.widgets import LabValue, Post, add_buttons, on_user_update, put_number
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import BOUNDS
 
@@ -72,4 +72,4 @@ class StartPanel:
         """Show the lab's start."""
         if self._start.is_new(snapshot.beginning):
             for name, value in asdict(snapshot.beginning).items():
-                set_number(self._numbers[name], value / UNITS[name])
+                put_number(self._numbers[name], value / UNITS[name])

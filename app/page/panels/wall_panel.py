@@ -10,7 +10,7 @@ from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
-from onpath.app.page.panels.widgets import LabValue, Post, on_user_update, set_number
+from onpath.app.page.panels.widgets import LabValue, Post, on_user_update, put, put_number
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 
@@ -62,24 +62,21 @@ class WallPanel:
         wall = snapshot.obstacle
         if not self._wall.is_new(wall):
             return
-        if self._switch.value != (wall is not None):
-            self._switch.value = wall is not None
+        put(self._switch, value=wall is not None)
         self._show_rest(wall is not None)
         if wall is None:
             return
-        set_number(self._first, wall.z1 * 1e3)
-        set_number(self._second, wall.z2 * 1e3)
-        set_number(self._angle, math.degrees(wall.angle))
+        put_number(self._first, wall.z1 * 1e3)
+        put_number(self._second, wall.z2 * 1e3)
+        put_number(self._angle, math.degrees(wall.angle))
         titles = side_titles(snapshot.laws, self._words)
         forces = [
             (OF_SIDE[side].hex, titles[side], self._words.written(f"{force:.1f}"))
             for side, force in wall.forces.items()
         ]
         content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
-        if self._forces.content != content:
-            self._forces.content = content
+        put(self._forces, content=content)
 
     def _show_rest(self, visible: bool) -> None:
         for handle in (*self._numbers, self._forces):
-            if handle.visible != visible:
-                handle.visible = visible
+            put(handle, visible=visible)

@@ -108,11 +108,16 @@ def refused(reason: str) -> str:
     return render("panel/refusal.html", reason=reason)
 
 
-def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
-    """Show a number in a box, to a tenth, unless it is shown already."""
-    shown = round(value, 1) + 0.0  # turns -0 into 0
-    if handle.value != shown:
-        handle.value = shown
+def put(handle: Any, **properties: object) -> None:
+    """Set those properties that differ: setting one takes 20 times as long as reading it."""
+    for name, value in properties.items():
+        if getattr(handle, name) != value:
+            setattr(handle, name, value)
+
+
+def put_number(handle: viser.GuiInputHandle[float], value: float) -> None:
+    """Show a number in a box, to a tenth."""
+    put(handle, value=round(value, 1) + 0.0)  # turns -0 into 0
 
 
 class LabValue:
@@ -167,9 +172,7 @@ class ParameterWidgets:
         """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
             if self._values[name].is_new(snapshot.parameters[name]):
-                shown = self._shown(name, snapshot.parameters)
-                if handle.value != shown:
-                    handle.value = shown
+                put(handle, value=self._shown(name, snapshot.parameters))
 
     def _change(self, name: str, value: Any) -> None:
         self._values[name].change(SetParameter(name, value))
@@ -238,8 +241,7 @@ class OwnGainWidgets(ParameterWidgets):
     def _show(self, snapshot: PageSnapshot) -> None:
         used = {name for law in snapshot.run.laws.values() for name in law_named(law).gain_names}
         for name, handle in self._handles.items():
-            if handle.visible != (name in used):
-                handle.visible = name in used
+            put(handle, visible=name in used)
 
 
 class SwitchedParameter(ParameterWidgets):
@@ -266,10 +268,8 @@ class SwitchedParameter(ParameterWidgets):
         """Show the lab's value, and the slider only while checked."""
         super().follow(snapshot)
         on = snapshot.parameters[self._name] != 0
-        if self._switch.value != on:
-            self._switch.value = on
-        if self._slider.visible != on:
-            self._slider.visible = on
+        put(self._switch, value=on)
+        put(self._slider, visible=on)
 
     def _turn(self, on: bool) -> None:
         self._post(SetParameter(self._name, self._on if on else 0.0))
