@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -23,7 +22,6 @@ from onpath.models.systems.parameter_specs import Spec
 
 Post = Callable[[Command], None]
 Option = TypeVar("Option")
-PRESS_ENDS = 0.35  # [s] without a "held" message after which the button counts as released
 
 
 def on_user_update(handle: Any, act: Callable[[Any], None]) -> None:
@@ -43,29 +41,6 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
         act()
 
     handle.on_click(pressed)
-
-
-def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> None:
-    """Call `begin()` when the button is pressed and `end()` when it is released.
-
-    The browser reports a held button ten times a second, but sends nothing on release.
-    """
-    ending: asyncio.TimerHandle | None = None
-
-    def ended() -> None:
-        nonlocal ending
-        ending = None
-        end()
-
-    async def held_down(_: viser.GuiEvent[Any]) -> None:
-        nonlocal ending
-        if ending is None:
-            begin()
-        else:
-            ending.cancel()
-        ending = asyncio.get_running_loop().call_later(PRESS_ENDS, ended)
-
-    handle.on_hold(held_down)
 
 
 def add_menu(
