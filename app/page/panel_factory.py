@@ -11,6 +11,7 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.background import Submit
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
@@ -80,7 +81,7 @@ class PanelFactory:
         words: Words,
         post: Post,
         exporter: Exporter,
-        submit: Callable[[Callable[[], None]], None],
+        submit: Submit,
         scene: Scene,
         overlays: Overlays,
         context: PageContext,
