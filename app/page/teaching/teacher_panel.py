@@ -211,11 +211,7 @@ class TeacherPanel:
         self._client.send_file_download(name, data, save_immediately=True)
 
     def _end(self) -> None:
-        try:
-            message = self._words("class.ended", count=self._class.end())
-        except OSError as error:
-            message = self._words.sentence(error)
-        self._outcome.content = note(message)
+        self._outcome.content = note(self._words("class.ended", count=self._class.end()))
         self._look_again()
 
     def _forget(self) -> None:
