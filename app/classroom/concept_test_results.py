@@ -33,7 +33,7 @@ def item_distribution(
         index: index of the question.
         name: name of the test.
     """
-    block = list(questions(test).values())[index]
+    block = question_at(test, index)
     handed = [notes for each in students if (notes := notes_of(each, name)) is not None]
     chosen = [chosen_in(test, notes)[index] for notes in handed]
     counts = tuple(chosen.count(option) for option in range(len(block.options)))

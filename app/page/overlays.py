@@ -14,6 +14,7 @@ import viser
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.lab.snapshots.snapshot import Motion
+from onpath.app.page.background import Background, Submit
 from onpath.app.scene.error_nodes import ErrorNodes
 from onpath.app.scene.mark_nodes import MarkNodes
 from onpath.app.scene.mass_nodes import MassNodes
@@ -26,8 +27,6 @@ from onpath.lessons.action_schema import SceneMark
 from onpath.models.control.rank_test import RankGrid
 from onpath.models.systems.robots import Robot
 
-Submit = Callable[[Callable[[], None]], None]
-Result = TypeVar("Result")
 Node = TypeVar("Node", RobotLabels, TubeNodes, PlaneNodes, ErrorNodes, MassNodes, MarkNodes)
 
 
@@ -50,37 +49,6 @@ class Switches:
     rank: bool = False
     errors: bool = False
     mass: bool = False
-
-
-class Background(Generic[Result]):
-    """The latest result of a computation in another thread.
-
-    Args:
-        submit: runs a function in another thread.
-
-    Attributes:
-        key, value: of the latest result; None before the first one.
-    """
-
-    def __init__(self, submit: Submit) -> None:
-        self._submit, self._busy = submit, False
-        self._asked: Hashable = None
-        self.key: Hashable = None
-        self.value: Result | None = None
-
-    def ask(self, key: Hashable, compute: Callable[[], Result]) -> None:
-        """Compute, unless this key was the last one asked for or a computation is under way."""
-        if self._busy or key == self._asked:
-            return
-        self._asked, self._busy = key, True
-
-        def work() -> None:
-            try:
-                self.value, self.key = compute(), key
-            finally:
-                self._busy = False
-
-        self._submit(work)
 
 
 class Drawn(Generic[Node]):

@@ -11,10 +11,12 @@ from onpath.app.exports.exporter import Exporter
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.background import Submit
 from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
+from onpath.app.page.panels.copy_box import CopyBox
 from onpath.app.page.panels.export_folder import add_exports
 from onpath.app.page.panels.flexible_panel import Exaggeration, FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
@@ -26,7 +28,7 @@ from onpath.app.page.panels.robot_panel import RobotPanel
 from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press, on_user_update
+from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press
 from onpath.app.page.plots import MORE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
@@ -79,7 +81,7 @@ class PanelFactory:
         words: Words,
         post: Post,
         exporter: Exporter,
-        submit: Callable[[Callable[[], None]], None],
+        submit: Submit,
         scene: Scene,
         overlays: Overlays,
         context: PageContext,
@@ -161,7 +163,7 @@ class PanelFactory:
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
             "laws": lambda: LawPanel(gui, words, post, first),
-            "copy": lambda: self._copy(first),
+            "copy": lambda: CopyBox(gui, words, post, first),
             "flexible": lambda: self._flexible(first),
             "larger": lambda: Exaggeration(gui, words, post, first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
@@ -216,14 +218,6 @@ class PanelFactory:
             choose_pull=choose,
             submit=self._submit,
         )
-
-    def _copy(self, first: PageSnapshot) -> None:
-        copy = self._gui.add_checkbox(
-            self._words("controls.copy"),
-            first.run.copy,
-            hint=self._words("controls.copy_hint"),
-        )
-        on_user_update(copy, lambda on: self._post(c.SetCopy(on)))
 
 
 def _sliders(scene: StepSetup, first: PageSnapshot) -> list[str]:

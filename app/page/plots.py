@@ -1,4 +1,4 @@
-"""Live plots of one client: a permanent distance plot and a selectable second plot."""
+"""The plots beside the strip's chart."""
 
 from __future__ import annotations
 
@@ -45,22 +45,31 @@ Fields = tuple[tuple[str, int], ...]
 
 @dataclass(frozen=True, slots=True)
 class Plot:
-    """Description of a plot over time.
+    """One of the plots.
 
     Attributes:
         name: identifier in the message catalogue and in lessons.
-        field: name of the field in a snapshot's samples.
-        scale: factor from SI to displayed units.
-        lines: names of the field's components; one name for a single line.
-        least: minimum range of the axis, so that a ripple of a micrometre does not fill the chart,
-            and the axis has numbers when the robot is at rest. None to fit the data.
+        field: name of the field in a snapshot's samples that it needs.
     """
 
     name: str
     field: str
+
+
+@dataclass(frozen=True, slots=True)
+class TimePlot(Plot):
+    """Description of a plot over time.
+
+    Attributes:
+        scale: factor from SI to displayed units.
+        lines: names of the field's components; one name for a single line.
+        least: minimum range of the axis, so that a ripple of a micrometre does not fill the chart,
+            and the axis has numbers when the robot is at rest.
+    """
+
     scale: float
     lines: Callable[[Fields], list[str]]
-    least: tuple[float, float] | None = None
+    least: tuple[float, float]
 
 
 def _numbered(symbol: str, field: str) -> Callable[[Fields], list[str]]:
@@ -85,31 +94,28 @@ def _alone(_: Fields) -> list[str]:
     return [""]
 
 
-DISTANCE = Plot("distance", "distance", 1e3, _alone, least=(0.0, 1.0))
-PHASE = Plot(PHASE_NAME, "xi_rate", 1e3, _alone)
-"""Not a plot over time; see `PhasePlot`."""
-MORE = {
+PHASE = Plot(PHASE_NAME, "xi_rate")
+"""See `PhasePlot`."""
+MORE: dict[str, Plot] = {
     plot.name: plot
     for plot in (
         PHASE,
-        Plot("speed", "speed", 1e3, _alone, least=(0.0, 10.0)),
-        Plot("torques", "u", 1.0, _numbered("u", "u"), least=(-0.01, 0.01)),
-        Plot("across", "xi", 1e3, _of_xi("xi", "ξ₁", "ξ₃"), least=(-1.0, 1.0)),
-        Plot("across_rate", "xi_rate", 1e3, _of_xi("xi_rate", "ξ₂", "ξ₄"), least=(-10.0, 10.0)),
-        Plot("place", "theta", 1.0, _alone, least=(-0.1, 0.1)),
-        Plot("rate", "theta_rate", 1.0, _alone, least=(-0.1, 0.1)),
-        Plot("modes", "modes", 1e3, _numbered("f", "modes"), least=(-0.01, 0.01)),
-        Plot("deflection", "deflection", 1e3, _alone, least=(-0.01, 0.01)),
-        Plot("energy", "internal_energy", 1e3, _alone, least=(0.0, 0.005)),
-        Plot("force", "force", 1.0, _numbered("F", "force"), least=(-0.1, 0.1)),
+        TimePlot("speed", "speed", 1e3, _alone, least=(0.0, 10.0)),
+        TimePlot("torques", "u", 1.0, _numbered("u", "u"), least=(-0.01, 0.01)),
+        TimePlot("across", "xi", 1e3, _of_xi("xi", "ξ₁", "ξ₃"), least=(-1.0, 1.0)),
+        TimePlot("across_rate", "xi_rate", 1e3, _of_xi("xi_rate", "ξ₂", "ξ₄"), least=(-10.0, 10.0)),
+        TimePlot("place", "theta", 1.0, _alone, least=(-0.1, 0.1)),
+        TimePlot("rate", "theta_rate", 1.0, _alone, least=(-0.1, 0.1)),
+        TimePlot("modes", "modes", 1e3, _numbered("f", "modes"), least=(-0.01, 0.01)),
+        TimePlot("deflection", "deflection", 1e3, _alone, least=(-0.01, 0.01)),
+        TimePlot("energy", "internal_energy", 1e3, _alone, least=(0.0, 0.005)),
+        TimePlot("force", "force", 1.0, _numbered("F", "force"), least=(-0.1, 0.1)),
     )
 }
 
 
-def _at_least(limits: tuple[float, float] | None) -> uplot.Scale:
+def _at_least(limits: tuple[float, float]) -> uplot.Scale:
     """Axis range that grows with the data but has a minimum extent."""
-    if limits is None:
-        return uplot.Scale()
     low, high = ({"pad": 0.1, "soft": limit, "mode": 1} for limit in limits)
     return uplot.Scale(range={"min": low, "max": high})
 
@@ -128,7 +134,7 @@ class LivePlot:
         gui: viser.GuiApi,
         words: Words,
         fields: Fields,
-        plot: Plot,
+        plot: TimePlot,
         level_set: bool = False,
         large: bool = False,
         in_lesson: bool = False,
@@ -140,7 +146,7 @@ class LivePlot:
         # with a level set only the first line is drawn: the others have another unit
         self._names, self._laws = [""] if in_level_set else plot.lines(fields), DEFAULT_LAWS
         least = plot.least
-        if in_level_set and least is not None:  # s is 100 mm² at 1 mm beside a circle of 50 mm
+        if in_level_set:  # s is 100 mm² at 1 mm beside a circle of 50 mm
             least = (100 * least[0], 100 * least[1])
         self._scale = plot.scale**2 if in_level_set else plot.scale
         begin = Layout(fields).slices[plot.field].start
@@ -236,7 +242,7 @@ def add_plot(
     in_lesson: bool = False,
 ) -> LivePlot | PhasePlot:
     """Add one of the selectable plots; see `LivePlot`."""
-    if plot is PHASE:
+    if not isinstance(plot, TimePlot):
         return PhasePlot(gui, words, in_lesson)
     return LivePlot(
         gui=gui,

@@ -53,28 +53,6 @@ class Box:
         return np.array([min(max(x, low), high) for x, low, high in bounds])
 
 
-VERTICAL_PLANE = DragPlane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
-
-
-def intersect_ray_plane(
-    origin: np.ndarray, direction: np.ndarray, plane_point: np.ndarray, plane_normal: np.ndarray
-) -> np.ndarray | None:
-    """Where a ray meets a plane, or None if it does not.
-
-    Args:
-        origin: start of the ray, shape (3,), [m].
-        direction: of the ray, shape (3,), any length.
-        plane_point: a point on the plane, shape (3,), [m].
-        plane_normal: shape (3,), any length.
-
-    Returns:
-        The point, shape (3,), [m]; None when the ray runs parallel to the plane, when the plane
-        lies behind its origin, or when anything is not finite.
-    """
-    point = _meeting(*map(_numbers, (origin, direction, plane_point, plane_normal)))
-    return None if point is None else np.array(point)
-
-
 def _numbers(vector: ArrayLike) -> list[float]:
     """The numbers of a vector as a list, which for three of them is faster than an array."""
     return np.asarray(vector, dtype=float).tolist()
@@ -83,7 +61,7 @@ def _numbers(vector: ArrayLike) -> list[float]:
 def _meeting(
     start: list[float], direction: list[float], there: list[float], normal: list[float]
 ) -> list[float] | None:
-    """The point where a ray from `start` meets a plane; see `intersect_ray_plane`."""
+    """The point where a ray meets the plane through `there`, or None; see `pointer_on_plane`."""
     lengths, closing = hypot(*direction) * hypot(*normal), _dot(direction, normal)
     if not isfinite(lengths) or abs(closing) <= PARALLEL_COSINE * lengths:
         return None
@@ -118,7 +96,8 @@ def pointer_on_plane(
         box: the result is clamped to it.
 
     Returns:
-        The point in the robot's frame, shape (3,), [m], or None if there is none.
+        The point in the robot's frame, shape (3,), [m]; None when the ray runs parallel to the
+        plane, when the plane lies behind the camera, or when anything is not finite.
     """
     origin, there, foot = map(_numbers, (camera, pointer, base))
     start, direction = list(map(sub, origin, foot)), list(map(sub, there, origin))

@@ -15,7 +15,7 @@ class Tones:
     Attributes:
         wall: behind the robots, which assets/page/style.css draws; traces fade into it.
         floor, cells, sections: the ground, and its fine and coarse lines.
-        line: strokes, axes and hatches, and text on a board.
+        line: strokes, axes and hatches.
         arc: arcs of the angles.
         path, point: the path and its control points.
         frame: the robots' bases.

@@ -92,5 +92,5 @@ def _succeeds(part: Callable[[], None]) -> bool:
 
 
 def _import_picture_formats() -> None:
-    """Encode a picture as viser does for a sketch board, which imports all formats."""
+    """Encode a picture as viser does for an image in the scene, which imports all formats."""
     import_module("imageio.v3").imwrite(BytesIO(), np.zeros((1, 1, 3), np.uint8), extension=".png")

@@ -12,7 +12,6 @@ _PLAIN = (
     *("site.draw_first", "site.skipped", "site.again", "site.link_only_lab", "site.symbols"),
 )
 _FILLED = {
-    "lesson.passed_best": ("best", "unit"),
     "chart.point": ("time",),
     "site.sketch": ("quantity", "unit", "seconds"),
 }

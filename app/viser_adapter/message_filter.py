@@ -8,7 +8,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import viser
-from viser import _gui_handles
 from viser import _messages as wire
 from viser.infra import ClientId, WebsockMessageHandler
 from websockets.asyncio.server import ServerConnection
@@ -38,7 +37,7 @@ class Limits:
             data channel; more closes the connection.
         change_burst: of those at once.
         max_text_length: of a text widget, [characters]; longer texts are cut.
-        max_magnitude: of any number in a drag, pointer, gizmo or camera message.
+        max_magnitude: of any number in a drag, click or camera message.
         max_upload_bytes: of a file, one file at a time, [B]; 0 refuses all.
         max_connections: in total, including those that request a file.
         max_connections_each: per address; sixty students behind one address have five each,
@@ -129,11 +128,6 @@ class MessageFilter:
                 if widget is not None:
                     await self._update(client_id, widget, message)
                 return
-            case wire.GuiButtonHoldMessage():
-                passes = isinstance(widget, viser.GuiButtonHandle) and not widget.disabled
-            case wire.GuiFormDirtyMessage():
-                form = self._gui._container_handle_from_uuid.get(message.uuid)
-                passes = isinstance(form, _gui_handles.GuiFormHandle)
             case wire.FileTransferStartUpload():
                 passes = self._takes_file(client_id, message)
             case wire.FileTransferPart():
@@ -156,8 +150,7 @@ class MessageFilter:
             description = f"an update of a {type(widget).__name__} ({refused})"
             warn_once(self._connections.get(client_id), description)
         finally:
-            as_asked = accepted == (tuple(asked) if isinstance(asked, list) else asked)
-            if not as_asked and not widget._impl.removed:
+            if accepted != asked and not widget._impl.removed:
                 truth = wire.GuiUpdateMessage(message.uuid, {"value": widget.value})
                 self._gui._websock_interface.queue_message(truth)
 

@@ -90,11 +90,7 @@ def _name(raw: bytes) -> str:
 
 
 def _is_coherent(message: Any) -> bool:
-    """Whether constraints beyond types hold: unit quaternions, clicks with a ray, indices >= 0."""
-    if event := getattr(message, "event_type", None):
-        is_click = event == "click"
-        has_ray = None not in (message.ray_origin, message.ray_direction)
-        return len(message.screen_pos) == (1 if is_click else 2) and has_ray >= is_click
+    """Whether constraints beyond types hold: unit quaternions, indices >= 0."""
     norm_squared = sum(x * x for x in getattr(message, "wxyz", (1.0,)))
     index = getattr(message, "instance_index", None)
     return abs(norm_squared - 1.0) < 0.01 and (index or 0) >= 0

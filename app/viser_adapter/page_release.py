@@ -67,10 +67,8 @@ def _forget_callbacks(widgets: list[Any], nodes: list[Any]) -> None:
     """Forget all callbacks except those of drags, which viser calls when a drag ends."""
     for widget in widgets:
         state = widget._impl
-        for name in ("update_cb", "trigger_cb", "hold_cbs_from_freq"):
+        for name in ("update_cb", "trigger_cb"):
             getattr(state, name, []).clear()
         state.sync_cb = None
     for node in nodes:
         node._impl.click_cb.clear()
-        if hasattr(node, "_impl_aux"):  # a gizmo
-            node._impl_aux.update_cb.clear()

@@ -22,18 +22,10 @@ from onpath.app.viser_adapter.message_schema import InvalidMessage, MessageSchem
 
 FROM_BROWSER: tuple[type[Any], ...] = (
     wire.ViewerCameraMessage,
-    wire.ScenePointerMessage,
     wire.SceneNodeClickMessage,
     wire.SceneNodeDragMessage,
-    wire.TransformControlsDragStartMessage,
-    wire.TransformControlsUpdateMessage,
-    wire.TransformControlsDragEndMessage,
     wire.GuiUpdateMessage,
-    wire.GuiButtonHoldMessage,
-    wire.GuiFormDirtyMessage,
-    wire.GuiFormSubmitMessage,
     wire.CommandTriggerMessage,
-    wire.GetRenderResponseMessage,
     wire.LocalStorageGetItemResponseMessage,
     wire.FileTransferStartUpload,
     wire.FileTransferPart,

@@ -26,26 +26,24 @@ TOUCHED = {
         " _snapshot_container_context _websock_interface print_threadpool_errors svg_from_icon"
     ),
     "_gui_handles.py": (
-        "GuiFormHandle _impl _queue_update hold_cbs_from_freq parent_container_id"
-        " print_task_error removed svg_from_icon sync_cb trigger_cb update_cb"
+        "_impl _queue_update parent_container_id print_task_error removed svg_from_icon sync_cb"
+        " trigger_cb update_cb"
     ),
     "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
-        "CommandTriggerMessage FileTransferPart FileTransferStartUpload GetRenderResponseMessage"
-        " GuiButtonHoldMessage GuiFormDirtyMessage GuiFormSubmitMessage GuiUpdateMessage HotkeyKey"
+        "CommandTriggerMessage FileTransferPart FileTransferStartUpload GuiUpdateMessage HotkeyKey"
         " ImageMessage ImageProps KeyModifier LocalStorageGetItemRequestMessage"
         " LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
-        " SceneNodeUpdateMessage ScenePointerMessage SetCameraFovMessage SetCameraLookAtMessage"
+        " SceneNodeUpdateMessage SetCameraFovMessage SetCameraLookAtMessage"
         " SetCameraPositionMessage SetCameraUpDirectionMessage SetPositionMessage"
-        " ShareUrlDisconnect ShareUrlRequest TransformControlsDragEndMessage"
-        " TransformControlsDragStartMessage TransformControlsUpdateMessage ViewerCameraMessage"
+        " ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
     ),
     "_scene_api.py": (
         "_children_from_node_name _encode_image_binary _handle_from_node_name _owner_id"
         " _queue_scene_message _websock_interface print_awaited_callback_error"
         " print_threadpool_errors"
     ),
-    "_scene_handles.py": "_impl _impl_aux _make click_cb drag_cb update_cb",
+    "_scene_handles.py": "_impl _make click_cb drag_cb",
     "_viser.py": (
         "_event_loop _initial_camera _scene_lifecycle_lock _state _thread_executor _viser_server"
         " _websock_connection _websock_server print_awaited_callback_error print_task_error"

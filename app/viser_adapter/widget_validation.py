@@ -23,11 +23,11 @@ def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:
 
     Args:
         handle: the widget, any of viser's GUI input handles.
-        value: as decoded from the wire (sequences are lists).
+        value: as decoded from the wire.
         max_text_length: [characters].
 
     Raises:
-        Refused: wrong type or shape, not finite, not an option, or a widget that is disabled or
+        Refused: wrong type, not finite, not an option, or a widget that is disabled or
             takes no values.
     """
     if getattr(handle, "disabled", False):
@@ -47,26 +47,8 @@ def accepted_value(handle: Any, value: object, max_text_length: int) -> Any:
             raise Refused("expected a text")
         case viser.GuiSliderHandle() | viser.GuiNumberHandle():
             return _number(value, handle.value, handle.min, handle.max)
-        case viser.GuiMultiSliderHandle():
-            low, high = ((bound,) * len(handle.value) for bound in (handle.min, handle.max))
-            return tuple(sorted(_numbers(value, handle.value, low, high)))
-        case viser.GuiVector2Handle() | viser.GuiVector3Handle():
-            unbounded = (None,) * len(handle.value)
-            return _numbers(value, handle.value, handle.min or unbounded, handle.max or unbounded)
-        case viser.GuiRgbHandle() | viser.GuiRgbaHandle():
-            low, high = ((bound,) * len(handle.value) for bound in (0, 255))
-            return _numbers(value, handle.value, low, high)
         case _:
             raise Refused("expected nothing, it takes no value")
-
-
-def _numbers(
-    value: object, like: tuple[Number, ...], low: tuple[Bound, ...], high: tuple[Bound, ...]
-) -> tuple[Number, ...]:
-    if not isinstance(value, list) or len(value) != len(like):
-        raise Refused(f"expected {len(like)} numbers")
-    numbers = zip(value, like, low, high, strict=True)
-    return tuple(_number(number, old, least, most) for number, old, least, most in numbers)
 
 
 def _number(value: object, like: Number, low: Bound, high: Bound) -> Number:

@@ -1,5 +1,5 @@
 // Lays out a window that is taller than wide, such as an upright tablet's, as on a telephone: with the
-// panel below the scene instead of beside it. viser asks for a telephone's width; PORTRAIT in
+// panel below the scene instead of beside it. viser asks for a telephone's width; NARROW in
 // app/scene/stage.py is the same on the server. Also tells the lab of low windows.
 (() => {
   "use strict";

@@ -743,7 +743,6 @@ plot-deflection = Durchbiegung der Spitze
 plot-energy = innere Energie
 plot-force = Kraft
 
-axis-distance = Abstand zur Bahn [mm]
 axis-phase = Phasenebene: ξ₂ über ξ₁, die letzten 3 s
 axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]

@@ -658,7 +658,6 @@ plot-deflection = deflection of the tip
 plot-energy = internal energy
 plot-force = force
 
-axis-distance = distance to the path [mm]
 axis-phase = Phase plane: ξ₂ over ξ₁, the last 3 s
 axis-speed = speed [mm/s]
 axis-torques = torque [N m]

@@ -12,7 +12,6 @@ from tests.bench.raw_socket import frames
 
 ROOM = "/"
 RAY = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
-POSE = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [0.0, 0.0, 0.0]}
 DRAG = {
     "phase": "start",
     "name": ROOM,
@@ -29,23 +28,10 @@ CLICK = {"name": ROOM, "instance_index": 0, "screen_pos": [0.5, 0.5], "modifier"
 UPLOAD = {"source_component_uuid": "x", "transfer_uuid": "x"}
 HONEST: dict[str, dict[str, Any]] = {
     "ViewerCameraMessage": CAMERA,
-    "ScenePointerMessage": {
-        "event_type": "click",
-        "screen_pos": [[0.5, 0.5]],
-        "modifier": None,
-        **RAY,
-    },
     "SceneNodeClickMessage": {**CLICK, **RAY, "owner": "0"},
     "SceneNodeDragMessage": DRAG,
-    "TransformControlsDragStartMessage": {"name": ROOM, "owner": "0"},
-    "TransformControlsUpdateMessage": {"name": ROOM, "owner": "0", **POSE},
-    "TransformControlsDragEndMessage": {"name": ROOM, "owner": "0"},
     "GuiUpdateMessage": {"uuid": "x", "updates": {"value": 0.0}},
-    "GuiButtonHoldMessage": {"uuid": "x", "frequency": 10.0},
-    "GuiFormDirtyMessage": {"uuid": "x"},
-    "GuiFormSubmitMessage": {"uuid": "x"},
     "CommandTriggerMessage": {"uuid": "x"},
-    "GetRenderResponseMessage": {"payload": b"", "render_uuid": "x"},
     "LocalStorageGetItemResponseMessage": {"value": None, "error": None, "request_uuid": "x"},
     "FileTransferStartUpload": {
         **UPLOAD,

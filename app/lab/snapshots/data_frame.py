@@ -32,7 +32,6 @@ EARLIER = 4000  # samples of the last minute, at most
 TIME, LENGTH, ANGLE, FORCE = 1e4, 1e5, 1e4, 1e2  # units per second, metre, radian, newton
 FIELDS = "theta", "theta_ref", "y", "force"  # of a robot, after its distance
 PULLED = len(SIDES)  # number of the first bit of the pulled sides
-ROUND = 0.02  # relative difference of radii up to which a path counts as a circle
 
 
 class Sample(Struct, frozen=True, eq=False):
@@ -174,7 +173,6 @@ def _whole(numbers: Array) -> list[list[int]]:
 
 def path_message(robot: Robot, path: PathView) -> bytes:
     """The message of a path: its points in the output space, at evenly spaced θ from -π to π."""
-    points = robot.unplace(path.points)
     origin, first, second = robot.frame.lift(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
     right = (first - origin) / np.linalg.norm(first - origin)
     up = second - origin
@@ -182,20 +180,12 @@ def path_message(robot: Robot, path: PathView) -> bytes:
     return msgspec.json.encode(
         {
             "is": "path",
-            "points": _whole(LENGTH * points),
+            "points": _whole(LENGTH * robot.unplace(path.points)),
             "closed": path.closed,
             "right": right.tolist(),
             "up": (up / np.linalg.norm(up)).tolist(),
-            "radius": _radius(points),
         }
     )
-
-
-def _radius(points: Array) -> float | None:
-    """The radius of a path that is a circle, [m]; None for any other."""
-    radii = np.linalg.norm(points[1:] - points[1:].mean(axis=0), axis=1)
-    mean = float(radii.mean())
-    return round(mean, 5) if np.ptp(radii) < ROUND * mean else None
 
 
 def _flags(session: Session) -> int:

@@ -240,7 +240,7 @@ class Motion:
 
 @dataclass(frozen=True, slots=True)
 class Snapshot:
-    """Everything that the scene of a lab shows at one instant; see `snapshot_codec`.
+    """Everything that the scene of a lab shows at one instant.
 
     Attributes:
         time: simulated, [s].

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 import viser
@@ -12,49 +11,21 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.page.panels.widgets import ParameterWidgets, Post, add_menu, on_user_update
+from onpath.app.page.background import Background, Submit
+from onpath.app.page.panels.widgets import (
+    LabValue,
+    ParameterWidgets,
+    Post,
+    add_menu,
+    on_user_update,
+    put,
+)
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
-from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import FlexibleLink
 
 LEAST, MOST = -1.0, 1.0  # range of alpha on its bar
-TURNED = 0.03  # [rad], joint change below which the critical alpha is not recomputed
-
-
-class CriticalAlpha:
-    """The right robot's critical alpha, computed in another thread when it may have changed.
-
-    Args:
-        link: the robot's flexible link.
-        submit: runs a function in another thread.
-
-    Attributes:
-        value: the latest result; infinity if there is none up to 1, NaN while unknown.
-    """
-
-    def __init__(self, link: FlexibleLink, submit: Callable[[Callable[[], None]], None]) -> None:
-        self._link, self._submit = link, submit
-        self._beam: tuple[Any, ...] | None = None
-        self._joints = np.full(link.joints, np.inf)
-        self._busy = False
-        self.value = math.nan
-
-    def follow(self, parameters: Parameters, q: np.ndarray) -> None:
-        """Recompute if the link's parameters or the joint angles, in q (n,), have changed."""
-        beam = tuple(getattr(parameters, name) for name in self._link.beam)
-        joints = q[: self._link.joints].copy()
-        moved = np.abs(joints - self._joints).max() > TURNED
-        if self._busy or (beam == self._beam and not moved):
-            return
-        self._beam, self._joints, self._busy = beam, joints, True
-        self._submit(lambda: self._find(parameters, joints))
-
-    def _find(self, parameters: Parameters, joints: np.ndarray) -> None:
-        try:
-            self.value = self._link.critical_alpha(parameters, joints)
-        finally:
-            self._busy = False
+TURNED = 0.05  # [rad], to which joint angles are rounded: the critical alpha varies slowly
 
 
 def alpha_bar(
@@ -109,12 +80,13 @@ class Exaggeration:
             initial_value=first.run.exaggeration,
             hint=words("flexible.larger_hint"),
         )
-        on_user_update(self._slider, lambda factor: post(c.SetExaggeration(factor)))
+        self._factor = LabValue(post)
+        on_user_update(self._slider, lambda x: self._factor.change(c.SetExaggeration(x)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's value."""
-        if self._slider.value != snapshot.run.exaggeration:
-            self._slider.value = snapshot.run.exaggeration
+        if self._factor.is_new(snapshot.run.exaggeration):
+            put(self._slider, value=snapshot.run.exaggeration)
 
 
 class FlexiblePanel:
@@ -136,10 +108,10 @@ class FlexiblePanel:
         link: FlexibleLink,
         pulls: list[str],
         choose_pull: Callable[[str], None],
-        submit: Callable[[Callable[[], None]], None],
+        submit: Submit,
     ) -> None:
         self._post, self._words = post, words
-        self._critical = CriticalAlpha(link, submit)
+        self._link, self._critical = link, Background[float](submit)
         self._shown: tuple[float, float, bool, tuple[int, float]] | None = None
         with gui.add_folder(words("flexible.title")):
             output = ParameterWidgets(
@@ -166,17 +138,25 @@ class FlexiblePanel:
         for widgets in self._widgets:
             widgets.follow(snapshot)
         self._larger.follow(snapshot)
-        self._critical.follow(parameters_of(snapshot), snapshot.joints)
-        alpha, critical = float(parameters["alpha"]), self._critical.value
+        alpha, critical = float(parameters["alpha"]), self._critical_alpha(snapshot)
         used = parameters["law"] == "redefined"
         beam = int(parameters["modes"]), float(parameters["zeta"])
         shown = alpha, critical, used, beam
         if shown != self._shown:
             self._shown = shown
             self._bar.content = alpha_bar(alpha, critical, used, self._words, beam=beam)
-        numbers = deflections(snapshot, self._words)
-        if self._numbers.content != numbers:
-            self._numbers.content = numbers
+        put(self._numbers, content=deflections(snapshot, self._words))
+
+    def _critical_alpha(self, snapshot: PageSnapshot) -> float:
+        """The right robot's; infinity if there is none up to 1, NaN while it is not known yet."""
+        link, parameters = self._link, parameters_of(snapshot)
+        joints = snapshot.joints[: link.joints]
+        key = (
+            tuple(getattr(parameters, name) for name in link.beam),
+            np.round(joints / TURNED).tobytes(),
+        )
+        self._critical.ask(key, lambda: link.critical_alpha(parameters, joints))
+        return math.nan if self._critical.value is None else self._critical.value
 
     def _set(self, command: c.Command) -> None:
         """Post a command; changing alpha also selects output redefinition, which uses it."""

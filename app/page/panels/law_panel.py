@@ -15,7 +15,7 @@ from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.law_help import law_help
 from onpath.app.page.panels.own_law_box import OwnLawBox
 from onpath.app.page.panels.slow_presses import on_menu_press
-from onpath.app.page.panels.widgets import Post, add_menu
+from onpath.app.page.panels.widgets import LabValue, Post, add_menu, put
 from onpath.lessons.sides import law_label, law_text
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import OWN, is_text, tidy
@@ -30,13 +30,14 @@ class LawPanel:
     """Two menus with the laws that suit the robot; their last entry opens a box to type one."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        self._gui, self._words, self._post = gui, words, post
+        self._gui, self._words = gui, words
         system = robot_of(first).system
         self._names = {law_label(n, words): n for n, law in LAWS.items() if law.suits(system)}
         self._names[words("laws.own")] = OWN
         self._laws, self._spatial = first.run.laws, system.p == 3
         self._typing: set[str] = set()  # sides whose box is open before a law has been typed
         self._asked: dict[str, list[str]] = {side: [] for side in SIDES}  # laws still to come
+        self._values = {side: LabValue(post) for side in SIDES}  # law and refusal
         self._menus = dict[str, Menu]()
         self._boxes = dict[str, OwnLawBox]()
         for side in SIDES:
@@ -44,8 +45,6 @@ class LawPanel:
             use = partial(self._use, side)
             law = self._laws[side]
             self._boxes[side] = OwnLawBox(gui, words, side=side, law=law, use=use)
-        self._just_changed: set[str] = set()
-        self._shown: tuple[dict[str, str], dict[str, str]] | None = None
         self._sentences = gui.add_html(self._descriptions())
         about = gui.add_button(words("laws.about"), color="gray", icon=viser.Icon.HELP)
         on_menu_press(about, self._open_help)
@@ -53,27 +52,20 @@ class LawPanel:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's laws.
 
-        The first snapshot after a change may have been taken before it, so it does not set the
-        changed menu back; the next one is right. A law that was asked for here may come while the
-        user goes on typing; only a law from elsewhere changes the box.
+        A law that was asked for here may come while the user goes on typing; only a law from
+        elsewhere changes the box.
         """
-        run, late, self._just_changed = snapshot.run, self._just_changed, set[str]()
-        now = None if late else (run.laws, run.law_refusals)
-        if now is not None and now == self._shown:
-            return
-        self._shown = now
+        run = snapshot.run
         for side, menu in self._menus.items():
-            law = run.laws[side]
+            law, refusal = run.laws[side], run.law_refusals.get(side, "")
             if law != self._laws[side] and not self._was_asked(side, law):
                 self._typing.discard(side)
                 if is_text(law):
                     self._boxes[side].take(law)
-            if side not in late:
-                label = self._label(side, law)
-                if menu.value != label:
-                    menu.value = label
+            if self._values[side].is_new((law, refusal)):
+                put(menu, value=self._label(side, law))
                 self._boxes[side].show(is_text(law) or side in self._typing)
-            self._boxes[side].follow(run.law_refusals.get(side, ""))
+                self._boxes[side].follow(refusal)
         if run.laws != self._laws:
             self._laws = run.laws
             self._sentences.content = self._descriptions()
@@ -95,7 +87,6 @@ class LawPanel:
         )
 
     def _choose(self, side: str, law: str) -> None:
-        self._just_changed.add(side)
         self._boxes[side].show(law == OWN)
         if law == OWN:
             self._typing.add(side)
@@ -109,7 +100,7 @@ class LawPanel:
     def _ask(self, side: str, law: str, command: Command) -> None:
         if law != self._laws[side]:
             self._asked[side] = [*self._asked[side][-MOST_ASKED:], law]
-        self._post(command)
+        self._values[side].change(command)
 
     def _was_asked(self, side: str, law: str) -> bool:
         """Whether a new law was asked for here; forgets it and the requests before it."""

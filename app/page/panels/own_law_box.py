@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import viser
 
-from onpath.app.page.panels.widgets import on_press, refused
+from onpath.app.page.panels.widgets import on_press, put, refused
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import PATH_FOLLOWING, is_text, tidy
 
@@ -41,8 +41,7 @@ class OwnLawBox:
     def show(self, visible: bool) -> None:
         """Show or hide everything."""
         for handle in (self._text, self._use, self._reason):
-            if handle.visible != visible:
-                handle.visible = visible
+            put(handle, visible=visible)
 
     def take(self, law: str) -> None:
         """Show a law that was typed elsewhere."""

@@ -13,12 +13,15 @@ from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of, robot_of
 from onpath.app.page.panels.widgets import (
+    LabValue,
     ParameterWidgets,
     Post,
     add_buttons,
     note,
     on_press,
     on_user_update,
+    put,
+    put_number,
     refused,
 )
 from onpath.lessons.labels import parameter_heading, parameter_help, path_label
@@ -45,31 +48,34 @@ class PathChoice:
         for name in presets():
             if key := remark_on(name, robot_of(first)):
                 self._shown[name] = words(key, path=self._shown[name])
-        names = {shown: name for name, shown in self._shown.items()}
+        self._names = {shown: name for name, shown in self._shown.items()}
         self._choice = gui.add_dropdown(
             words("design.path"),
             self._options(first),
             initial_value=self._shown.get(first.edit.name, self._custom),
             hint=words("design.path_hint"),
         )
-        on_user_update(
-            self._choice, lambda shown: post(c.ChoosePath(names[shown])) if shown in names else None
-        )
+        self._name = LabValue(post)
+        on_user_update(self._choice, self._choose)
         rises = ["rise"] if "rise" in first.parameters else []
         self._rise = ParameterWidgets(gui, words, post, names=rises, first=first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the current preset and rise."""
         self._rise.follow(snapshot)
-        shown = self._shown.get(snapshot.edit.name, self._custom)
-        if self._choice.value != shown:
-            self._choice.options = self._options(snapshot)
-            self._choice.value = shown
+        name = snapshot.edit.name
+        if self._name.is_new(name):
+            shown = self._shown.get(name, self._custom)
+            put(self._choice, options=self._options(snapshot), value=shown)
 
-    def _options(self, snapshot: PageSnapshot) -> list[str]:
+    def _choose(self, shown: str) -> None:
+        if shown in self._names:  # and not the user's own path, which is followed already
+            self._name.change(c.ChoosePath(self._names[shown]))
+
+    def _options(self, snapshot: PageSnapshot) -> tuple[str, ...]:
         """The presets, and an entry for the user's own path while there is one."""
-        presets = list(self._shown.values())
-        return presets if snapshot.edit.name in self._shown else [*presets, self._custom]
+        presets = tuple(self._shown.values())
+        return presets if snapshot.edit.name in self._shown else (*presets, self._custom)
 
 
 @lru_cache(maxsize=64)
@@ -216,7 +222,7 @@ class PathPanel:
         """Show the selected point's coordinates, if one is selected."""
         self._latest = snapshot
         for name, box in self._plane.items():  # a refused value goes back
-            self._set(box, float(snapshot.parameters[name]))
+            put(box, value=float(snapshot.parameters[name]))
         edit = snapshot.edit
         if edit.version == self._version:
             return
@@ -226,16 +232,10 @@ class PathPanel:
             ranks = rank_map(robot_of(snapshot), parameters_of(snapshot), edit.sampled)
             self._rank.content = self._words("design.rank", number=f"{float(np.min(ranks)):.2f}")
         selected = edit.selected
-        self._set(self._which, 0 if selected is None else selected + 1)
+        put(self._which, value=0 if selected is None else selected + 1)
         for coordinate in (self._first, self._second):
-            if coordinate.visible is not (selected is not None):
-                coordinate.visible = selected is not None
+            put(coordinate, visible=selected is not None)
         if selected is not None and selected < len(edit.points):
             z = edit.points[selected] * 1e3
-            self._set(self._first, round(float(z[0]), 1))
-            self._set(self._second, round(float(z[1]), 1))
-
-    @staticmethod
-    def _set(handle: viser.GuiInputHandle[float], value: float) -> None:
-        if handle.value != value:
-            handle.value = value
+            put_number(self._first, float(z[0]))
+            put_number(self._second, float(z[1]))

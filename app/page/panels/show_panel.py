@@ -11,7 +11,7 @@ from onpath.app.common.palette import SCALE
 from onpath.app.common.templates import render
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.overlays import Overlays
-from onpath.app.page.panels.widgets import note, on_user_update
+from onpath.app.page.panels.widgets import note, on_user_update, put
 from onpath.app.scene.rank_nodes import largest, map_opacity
 from onpath.app.scene.tube_nodes import TubeShape
 from onpath.lessons.words import Words
@@ -63,9 +63,7 @@ class ShowPanel:
         """Show which drawings are on, even if switched elsewhere on the page, and their numbers."""
         overlays = self._overlays
         for name, box in self._boxes.items():
-            wanted = getattr(overlays.switches, name)
-            if box.value != wanted:
-                box.value = wanted
+            put(box, value=getattr(overlays.switches, name))
         alpha = _alpha(snapshot) if overlays.rank_map is not None else None
         shape, grid, rank_map = overlays.shape, overlays.switches.grid, overlays.rank_map
         shown = shape, grid, rank_map, alpha

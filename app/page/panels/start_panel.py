@@ -10,8 +10,8 @@ from functools import partial
 import viser
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, StartState
-from onpath.app.page.panels.widgets import Post, add_buttons, on_user_update, set_number
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.panels.widgets import LabValue, Post, add_buttons, on_user_update, put_number
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.start import BOUNDS
 
@@ -41,8 +41,7 @@ class StartPanel:
         first: PageSnapshot,
         show: Callable[[bool], None],
     ) -> None:
-        self._shown: StartState | None = None
-        self._just_changed = False
+        self._start = LabValue(post)
         with gui.add_folder(words("start.title"), expand_by_default=False):
             seen = gui.add_checkbox(words("start.show"), False, hint=words("start.show_hint"))
             self._numbers = {name: self._add(gui, words, name) for name in UNITS}
@@ -50,7 +49,7 @@ class StartPanel:
             add_buttons(gui, "", commands, post)
         on_user_update(seen, show)
         for name, handle in self._numbers.items():
-            on_user_update(handle, partial(self._change, post, name))
+            on_user_update(handle, partial(self._change, name))
         self.follow(first)
 
     @staticmethod
@@ -65,22 +64,12 @@ class StartPanel:
             hint=words(f"start.{name}_hint"),
         )
 
-    def _change(self, post: Post, name: str, value: float) -> None:
-        self._just_changed = True
+    def _change(self, name: str, value: float) -> None:
         most = BOUNDS[name]
-        post(c.SetStart(name, min(max(value * UNITS[name], -most), most)))
+        self._start.change(c.SetStart(name, min(max(value * UNITS[name], -most), most)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's start.
-
-        The first snapshot after a change may have been taken before it, so it does not set the
-        number back; the next one is right, and does so if the lab has refused the start.
-        """
-        if self._just_changed:
-            self._just_changed, self._shown = False, None
-            return
-        if snapshot.beginning == self._shown:
-            return
-        self._shown = snapshot.beginning
-        for name, value in asdict(snapshot.beginning).items():
-            set_number(self._numbers[name], value / UNITS[name])
+        """Show the lab's start."""
+        if self._start.is_new(snapshot.beginning):
+            for name, value in asdict(snapshot.beginning).items():
+                put_number(self._numbers[name], value / UNITS[name])

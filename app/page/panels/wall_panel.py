@@ -9,8 +9,8 @@ import viser
 from onpath.app.common.palette import OF_SIDE
 from onpath.app.common.templates import render
 from onpath.app.lab import commands as c
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, WallState, robot_of
-from onpath.app.page.panels.widgets import Post, on_user_update, set_number
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.panels.widgets import LabValue, Post, on_user_update, put, put_number
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 
@@ -21,9 +21,7 @@ class WallPanel:
     """A folder for the wall; its numbers are visible while there is one."""
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        self._words = words
-        self._shown: tuple[WallState | None, ...] = ()
-        self._post, self._just_changed = post, False
+        self._words, self._wall = words, LabValue(post)
         wall = robot_of(first).grip.wall
         hint = words(
             "wall.hint",
@@ -51,48 +49,34 @@ class WallPanel:
             )
             self._forces = gui.add_html("")
         self._numbers = self._first, self._second, self._angle
-        on_user_update(self._switch, lambda on: self._change(c.SetWall(on)))
-        on_user_update(self._first, lambda mm: self._change(c.PlaceWall(first=mm / 1e3)))
-        on_user_update(self._second, lambda mm: self._change(c.PlaceWall(second=mm / 1e3)))
-        on_user_update(self._angle, lambda d: self._change(c.PlaceWall(angle=math.radians(d))))
+        change = self._wall.change
+        on_user_update(self._switch, lambda on: change(c.SetWall(on)))
+        on_user_update(self._first, lambda mm: change(c.PlaceWall(first=mm / 1e3)))
+        on_user_update(self._second, lambda mm: change(c.PlaceWall(second=mm / 1e3)))
+        on_user_update(self._angle, lambda d: change(c.PlaceWall(angle=math.radians(d))))
         self._show_rest(first.obstacle is not None)
         self.follow(first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's wall.
-
-        The first snapshot after a change may have been taken before it, so it does not set the
-        changed number back; the next one is right.
-        """
+        """Show the lab's wall."""
         wall = snapshot.obstacle
-        if self._just_changed:
-            self._just_changed, self._shown = False, ()
+        if not self._wall.is_new(wall):
             return
-        if self._shown == (wall,):
-            return
-        self._shown = (wall,)
-        if self._switch.value != (wall is not None):
-            self._switch.value = wall is not None
+        put(self._switch, value=wall is not None)
         self._show_rest(wall is not None)
         if wall is None:
             return
-        set_number(self._first, wall.z1 * 1e3)
-        set_number(self._second, wall.z2 * 1e3)
-        set_number(self._angle, math.degrees(wall.angle))
+        put_number(self._first, wall.z1 * 1e3)
+        put_number(self._second, wall.z2 * 1e3)
+        put_number(self._angle, math.degrees(wall.angle))
         titles = side_titles(snapshot.laws, self._words)
         forces = [
             (OF_SIDE[side].hex, titles[side], self._words.written(f"{force:.1f}"))
             for side, force in wall.forces.items()
         ]
         content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
-        if self._forces.content != content:
-            self._forces.content = content
-
-    def _change(self, command: c.Command) -> None:
-        self._just_changed = True
-        self._post(command)
+        put(self._forces, content=content)
 
     def _show_rest(self, visible: bool) -> None:
         for handle in (*self._numbers, self._forces):
-            if handle.visible != visible:
-                handle.visible = visible
+            put(handle, visible=visible)

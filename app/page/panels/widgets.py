@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import math
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -23,7 +22,6 @@ from onpath.models.systems.parameter_specs import Spec
 
 Post = Callable[[Command], None]
 Option = TypeVar("Option")
-PRESS_ENDS = 0.35  # [s] without a "held" message after which the button counts as released
 
 
 def on_user_update(handle: Any, act: Callable[[Any], None]) -> None:
@@ -43,29 +41,6 @@ def on_press(handle: Any, act: Callable[[], None]) -> None:
         act()
 
     handle.on_click(pressed)
-
-
-def on_hold(handle: Any, begin: Callable[[], None], end: Callable[[], None]) -> None:
-    """Call `begin()` when the button is pressed and `end()` when it is released.
-
-    The browser reports a held button ten times a second, but sends nothing on release.
-    """
-    ending: asyncio.TimerHandle | None = None
-
-    def ended() -> None:
-        nonlocal ending
-        ending = None
-        end()
-
-    async def held_down(_: viser.GuiEvent[Any]) -> None:
-        nonlocal ending
-        if ending is None:
-            begin()
-        else:
-            ending.cancel()
-        ending = asyncio.get_running_loop().call_later(PRESS_ENDS, ended)
-
-    handle.on_hold(held_down)
 
 
 def add_menu(
@@ -108,18 +83,47 @@ def refused(reason: str) -> str:
     return render("panel/refusal.html", reason=reason)
 
 
-def set_number(handle: viser.GuiInputHandle[float], value: float) -> None:
-    """Show a number in a box, to a tenth, unless it is shown already."""
-    shown = round(value, 1) + 0.0  # turns -0 into 0
-    if handle.value != shown:
-        handle.value = shown
+def put(handle: Any, **properties: object) -> None:
+    """Set those properties that differ: setting one takes 20 times as long as reading it."""
+    for name, value in properties.items():
+        if getattr(handle, name) != value:
+            setattr(handle, name, value)
+
+
+def put_number(handle: viser.GuiInputHandle[float], value: float) -> None:
+    """Show a number in a box, to a tenth."""
+    put(handle, value=round(value, 1) + 0.0)  # turns -0 into 0
+
+
+class LabValue:
+    """A value of the lab that a user changes with widgets, and that they show.
+
+    The first snapshot after a change may be older than it, so it does not set the widgets back; the
+    next one is right, and does so if the lab has refused the change.
+    """
+
+    def __init__(self, post: Post) -> None:
+        self._post, self._just_changed = post, False
+        self._shown: tuple[object, ...] = ()  # empty if the next value is to be shown anyway
+
+    def change(self, command: Command) -> None:
+        """Post a command that changes the value."""
+        self._just_changed = True
+        self._post(command)
+
+    def is_new(self, value: object) -> bool:
+        """Whether the widgets are to show a snapshot's value."""
+        if self._just_changed:
+            self._just_changed, self._shown = False, ()
+            return False
+        if self._shown == (value,):
+            return False
+        self._shown = (value,)
+        return True
 
 
 class ParameterWidgets:
     """Widgets for parameters that post changes and follow the lab's values.
-
-    The first snapshot after a change may have been taken before it, so it does not set the changed
-    widget back; the next one is right.
 
     Args:
         gui: parent of the widgets.
@@ -131,8 +135,7 @@ class ParameterWidgets:
         self, gui: viser.GuiApi, words: Words, post: Post, names: list[str], first: PageSnapshot
     ) -> None:
         self._handles: dict[str, Any] = {}
-        self._just_changed: set[str] = set()
-        self._followed: ParameterValues = {}
+        self._values = {name: LabValue(post) for name in names}
         self._post, self._words = post, words
         self._specs = specs(ROBOTS[first.key.robot].parameters)
         for name in names:
@@ -143,19 +146,11 @@ class ParameterWidgets:
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values where they differ."""
         for name, handle in self._handles.items():
-            value = snapshot.parameters[name]
-            if name in self._just_changed:
-                self._just_changed.discard(name)
-                self._followed.pop(name, None)
-            elif value != self._followed.get(name):
-                self._followed[name] = value
-                shown = self._shown(name, snapshot.parameters)
-                if handle.value != shown:
-                    handle.value = shown
+            if self._values[name].is_new(snapshot.parameters[name]):
+                put(handle, value=self._shown(name, snapshot.parameters))
 
     def _change(self, name: str, value: Any) -> None:
-        self._just_changed.add(name)
-        self._post(SetParameter(name, value))
+        self._values[name].change(SetParameter(name, value))
 
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
@@ -221,8 +216,7 @@ class OwnGainWidgets(ParameterWidgets):
     def _show(self, snapshot: PageSnapshot) -> None:
         used = {name for law in snapshot.run.laws.values() for name in law_named(law).gain_names}
         for name, handle in self._handles.items():
-            if handle.visible != (name in used):
-                handle.visible = name in used
+            put(handle, visible=name in used)
 
 
 class SwitchedParameter(ParameterWidgets):
@@ -249,10 +243,8 @@ class SwitchedParameter(ParameterWidgets):
         """Show the lab's value, and the slider only while checked."""
         super().follow(snapshot)
         on = snapshot.parameters[self._name] != 0
-        if self._switch.value != on:
-            self._switch.value = on
-        if self._slider.visible != on:
-            self._slider.visible = on
+        put(self._switch, value=on)
+        put(self._slider, visible=on)
 
     def _turn(self, on: bool) -> None:
         self._post(SetParameter(self._name, self._on if on else 0.0))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import viser
 
 from onpath.app.classroom.gains_html import PAIRS, gains_view
-from onpath.app.page.panels.widgets import add_menu
+from onpath.app.page.panels.widgets import add_menu, put
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
@@ -22,9 +22,7 @@ class GainsTab:
     def look(self, large: bool) -> None:
         """Show everyone's gains as they are now."""
         gains = [member.gains for member in self._class.members().values()]
-        view = gains_view(self._pair, gains, self._words, large)
-        if self._shown.content != view:
-            self._shown.content = view
+        put(self._shown, content=gains_view(self._pair, gains, self._words, large))
 
     def _choose(self, pair: tuple[str, str]) -> None:
         self._pair = pair

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import viser
 
 from onpath.app.common.templates import render
-from onpath.app.page.panels.widgets import note, on_press
+from onpath.app.page.panels.widgets import note, on_press, put
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
@@ -55,11 +55,8 @@ class MemberControls:
             self._name.value = member.name
         self._filled = code if member is not None else ""
         for handle in self._handles:
-            if handle.visible != (member is not None):
-                handle.visible = member is not None
-        message = note(self._chosen.message) if self._chosen.message else ""
-        if self._message.content != message:
-            self._message.content = message
+            put(handle, visible=member is not None)
+        put(self._message, content=note(self._chosen.message) if self._chosen.message else "")
 
     def _rename(self) -> None:
         try:

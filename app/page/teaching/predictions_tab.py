@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import viser
 
@@ -17,7 +16,7 @@ from onpath.app.classroom.classroom import Display
 from onpath.app.classroom.results import prediction_at
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
-from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.class_answers import ClassAnswers
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_label, step_titles
@@ -104,31 +103,27 @@ class PredictionsTab:
         display, words = self._class.display, self._words
         lesson, index = self._steps.place(display)
         steps = self._step_titles(lesson)
-        _show(self._lesson, self._titles[lesson])
+        put(self._lesson, value=self._titles[lesson])
         if tuple(self._step.options) != tuple(steps):
             self._sketches.clear()  # another step has other ones
             self._step.options = steps
         if self._step.value != steps[index]:
             self._sketches.clear()
             self._step.value = steps[index]
-        _show(self._shown, display.shown)
-        _show(self._revealed, display.revealed)
-        _reveal(self._play, self._steps.demonstration(display) is not None)
-        _reveal(self._put_back, self._demonstrates)
+        put(self._shown, value=display.shown)
+        put(self._revealed, value=display.revealed)
+        put(self._play, visible=self._steps.demonstration(display) is not None)
+        put(self._put_back, visible=self._demonstrates)
         for button, by in ((self._back, -1), (self._next, 1)):
             step = self._steps.beside(display, self._class.orders, by)
-            _reveal(button, step is not None)
+            put(button, visible=step is not None)
             if step is not None and by > 0:
                 there = self._course.lesson(step.lesson, words.language)
                 label = step_label(there, step.step, words, large)
                 if step.lesson != lesson:
                     label = f"{self._titles[step.lesson]}, {label}"
-                label = words("class.next_step", step=label)
-                if button.label != label:
-                    button.label = label
-        view = self._answers.view(large)
-        if self._prediction.content != view:
-            self._prediction.content = view
+                put(button, label=words("class.next_step", step=label))
+        put(self._prediction, content=self._answers.view(large))
 
     def _step_titles(self, lesson: str) -> list[str]:
         return step_titles(self._course.lesson(lesson, self._words.language), self._words)
@@ -194,13 +189,3 @@ class PredictionsTab:
     def _show(self, **changes: bool) -> None:
         self._class.show(replace(self._class.display, **changes))
         self._look_again()
-
-
-def _reveal(button: viser.GuiButtonHandle, on: bool) -> None:
-    if button.visible != on:
-        button.visible = on
-
-
-def _show(handle: Any, value: object) -> None:
-    if handle.value != value:
-        handle.value = value

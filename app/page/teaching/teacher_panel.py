@@ -14,7 +14,7 @@ from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.dialog import mark_closing
-from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update
+from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.app.page.teaching.gains_tab import GainsTab
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles
@@ -91,11 +91,12 @@ class TeacherPanel:
                 large=self._large,
             )
             for shown in self._codes:
-                _show(shown, code)
-            _show(self._table, page.table(members.values(), self._course, now, self._words))
+                put(shown, content=code)
+            table = page.table(members.values(), self._course, now, self._words)
+            put(self._table, content=table)
             self._show_names()
             still = self._teaching.why_still(self._words)
-            _show(self._still, note(still) if still else "")
+            put(self._still, content=note(still) if still else "")
             self._member.look()
             self._show_standing()
             for tab in self._for_lessons:
@@ -156,10 +157,7 @@ class TeacherPanel:
         names = self._followable()
         options = (self._words("class.own_lab"), *names)
         shown = next((n for n, c in names.items() if c == self._chosen.followed), options[0])
-        if tuple(self._names.options) != options:
-            self._names.options = options
-        if self._names.value != shown:
-            self._names.value = shown
+        put(self._names, options=options, value=shown)
 
     def _show_standing(self) -> None:
         """Show the set-up that new members receive and the button that clears it."""
@@ -173,7 +171,7 @@ class TeacherPanel:
             message = self._words("class.standing_step", lesson=title, step=push.step + 1)
         else:
             message = self._words("class.standing_setup")
-        _show(self._standing, note(message) if message else "")
+        put(self._standing, content=note(message) if message else "")
 
     def _choose_followed(self, name: str) -> None:
         self._chosen.followed, self._chosen.message = self._followable().get(name, ""), ""
@@ -213,11 +211,7 @@ class TeacherPanel:
         self._client.send_file_download(name, data, save_immediately=True)
 
     def _end(self) -> None:
-        try:
-            message = self._words("class.ended", count=self._class.end())
-        except OSError as error:
-            message = self._words.sentence(error)
-        self._outcome.content = note(message)
+        self._outcome.content = note(self._words("class.ended", count=self._class.end()))
         self._look_again()
 
     def _forget(self) -> None:
@@ -242,8 +236,3 @@ class TeacherPanel:
 
         on_press(yes, agreed)
         on_press(no, modal.close)
-
-
-def _show(handle: viser.GuiHtmlHandle, content: str) -> None:
-    if handle.content != content:
-        handle.content = content

@@ -1,1 +1,1 @@
-"""Freehand drawing in the scene: paths, and predictions as sketches."""
+"""Freehand drawing of paths in the scene."""

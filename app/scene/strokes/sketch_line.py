@@ -41,7 +41,7 @@ class SketchLine:
         place: Callable[[np.ndarray], np.ndarray],
     ) -> None:
         self._scene, self._name, self._look, self._place = scene, name, look, place
-        self._closest = self._apart = closest
+        self._apart = closest
         self._points: list[np.ndarray] = []
         self._handle: viser.LineSegmentsHandle | None = None
         self._changed = self._removed = False
@@ -52,12 +52,6 @@ class SketchLine:
         """Points of the line, shape (n, k)."""
         with self._lock:
             return np.array(self._points)
-
-    def begin(self, points: np.ndarray | None = None) -> None:
-        """Start a new line with the given points."""
-        with self._lock:
-            self._points = [] if points is None else list(points)
-            self._apart, self._changed = self._closest, True
 
     def add(self, point: np.ndarray) -> None:
         """Append a point unless it is too close to the end of the line."""
@@ -72,12 +66,9 @@ class SketchLine:
     def draw(self) -> None:
         """Redraw the line if points have been added."""
         with self._lock:
-            if self._removed or not self._changed:
+            if self._removed or not self._changed or len(self._points) < 2:
                 return
             self._changed = False
-            if len(self._points) < 2:
-                self._erase()
-                return
             line = self._place(np.array(self._points))
             segments = np.stack([line[:-1], line[1:]], axis=1).astype(np.float32)
             if self._handle is None:
@@ -92,9 +83,6 @@ class SketchLine:
         """Remove the line permanently."""
         with self._lock:
             self._removed = True
-            self._erase()
-
-    def _erase(self) -> None:
-        if self._handle is not None:
-            self._handle.remove()
-            self._handle = None
+            if self._handle is not None:
+                self._handle.remove()
+                self._handle = None

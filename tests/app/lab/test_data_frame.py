@@ -274,14 +274,3 @@ def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
         assert np.abs(ends - bent).max() <= UNIT
     else:
         assert reader.straight == []
-
-
-def test_a_circle_has_a_radius_and_no_other_path_has() -> None:
-    lab = new_lab()
-    radii = dict[str, float | None]()
-    for name in ("circle", "ellipse", "clover", "segment"):
-        do(lab, c.ChoosePath(name))
-        lab.advance(0.5)
-        message = msgspec.json.decode(path_message(lab.session.robot, take_motion(lab).path))
-        radii[name] = message["radius"]
-    assert radii == {"circle": 0.05, "ellipse": None, "clover": None, "segment": None}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,50 +17,11 @@ from onpath.models.control.laws.expressions import FUNCTIONS
 from onpath.models.control.laws.own import PATH_FOLLOWING, SPACE, VIEW
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT
+from tests.support.gui import Gui
 from tests.support.lab import FRAME, do, new_lab, run
 
 SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 OWN = ENGLISH("laws.own")
-
-
-class Widget(SimpleNamespace):
-    """A widget without a browser."""
-
-    def on_update(self, act: Any) -> None:
-        self.act = act
-
-    on_click = on_update
-
-    def set(self, value: Any) -> None:
-        """Set the value as a user does, or press the button."""
-        self.value = value
-        with pytest.raises(StopIteration):  # nothing that follows from it waits
-            self.act(SimpleNamespace(client="somebody")).send(None)
-
-
-class Gui:
-    """Notes the widgets, by label; `html` has those without one."""
-
-    def __init__(self) -> None:
-        self.named: dict[str, list[Widget]] = {}
-        self.html: list[Widget] = []
-
-    def add_dropdown(self, label: str, options: list[str], initial_value: str, hint: str) -> Widget:
-        return self._add(label, options=options, value=initial_value)
-
-    def add_text(self, label: str, value: str, **values: Any) -> Widget:
-        return self._add(label, value=value, visible=values["visible"])
-
-    def add_button(self, label: str, visible: bool = True, **_: Any) -> Widget:
-        return self._add(label, visible=visible)
-
-    def add_html(self, content: str, visible: bool = True) -> Widget:
-        self.html.append(Widget(content=content, visible=visible))
-        return self.html[-1]
-
-    def _add(self, label: str, **values: Any) -> Widget:
-        self.named.setdefault(label, []).append(Widget(**values))
-        return self.named[label][-1]
 
 
 class Shown:

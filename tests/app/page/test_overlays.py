@@ -19,7 +19,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.snapshot import END, MARKER
 from onpath.app.lab.snapshots.take_snapshot import take_motion, take_page_snapshot
-from onpath.app.page.overlays import Background, Overlays, Switches
+from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.panels.show_panel import SWITCHES, rank_legend, tube_numbers
 from onpath.app.scene.arrows import SHORTEST
 from onpath.app.scene.error_nodes import ErrorNodes
@@ -316,19 +316,6 @@ def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
     shape = tube_shape(robot, take_page_snapshot(Lab(store(), entry), 1.0).path)
     assert "50.0 mm" in tube_numbers(shape, False, ENGLISH)
     assert "every" in tube_numbers(shape, True, ENGLISH)
-
-
-def test_a_computation_that_fails_can_be_asked_for_again() -> None:
-    waiting: list[Any] = []
-    found: Background[int] = Background(waiting.append)
-    found.ask("a", lambda: 1 // 0)
-    found.ask("b", lambda: 2)
-    assert len(waiting) == 1 and found.value is None
-    with pytest.raises(ZeroDivisionError):
-        waiting.pop()()
-    found.ask("b", lambda: 2)
-    waiting.pop()()
-    assert (found.key, found.value) == ("b", 2)
 
 
 @pytest.fixture

@@ -22,12 +22,19 @@ from onpath.models.systems.robots import RobotEntry
 from tests.support.lab import do, run, store
 
 
+def over_time(name: str) -> plots.TimePlot:
+    """A plot over time by name."""
+    plot = plots.MORE[name]
+    assert isinstance(plot, plots.TimePlot)
+    return plot
+
+
 def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
     """Else a step would begin with the curves of the one before, which may tell the answer."""
     lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
-    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.DISTANCE)
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, over_time("across"))
     monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
     do(lab, c.Hold(True))
     run(lab, 0.5)
@@ -54,7 +61,7 @@ def test_the_speed_is_plotted_in_millimetres_a_second(monkeypatch: pytest.Monkey
     lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
-    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, plots.MORE["speed"])
+    plot = plots.LivePlot(gui, ENGLISH, first.key.fields, over_time("speed"))
     monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
     run(lab, 2.0)
     plot.follow(take_page_snapshot(lab, 1.0))
@@ -69,9 +76,9 @@ def test_of_two_lines_that_coincide_both_are_seen_and_no_number_is_cut() -> None
         made.append({"series": series, **options})
 
     fields = take_page_snapshot(Lab(store()), 1.0).key.fields
-    for plot in (plots.DISTANCE, plots.MORE["across"]):
+    for name in ("speed", "across"):
         gui: Any = SimpleNamespace(add_uplot=add_uplot)
-        plots.LivePlot(gui, ENGLISH, fields, plot)
+        plots.LivePlot(gui, ENGLISH, fields, over_time(name))
         under, above = made[-1]["series"][1:]
         assert under["width"] >= above["width"] + 2 and under["stroke"] != above["stroke"]
         above_the_axis, right_of_it, *_ = made[-1]["padding"]
@@ -83,8 +90,8 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     made = list[Sequence[uplot.Series]]()
     gui: Any = SimpleNamespace(add_uplot=lambda _, series, **__: made.append(series))
     fields = take_page_snapshot(Lab(store()), 1.0).key.fields
-    plots.LivePlot(gui, ENGLISH, fields, plots.MORE["torques"])
-    plots.LivePlot(gui, ENGLISH, fields, plots.DISTANCE)
+    plots.LivePlot(gui, ENGLISH, fields, over_time("torques"))
+    plots.LivePlot(gui, ENGLISH, fields, over_time("speed"))
     labels = [series.get("label", "") for series in made[0][1:]]
     assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
     assert made[1][1].get("label") == "Trajectory tracking"
@@ -117,6 +124,6 @@ def test_a_symbol_means_one_thing_in_all_plots(entry: RobotEntry, language: str)
 
 def test_every_plot_over_time_of_robots_at_rest_has_numbers_on_its_axis() -> None:
     """Else what is left of zero, 1e-17, would be drawn at full height beside numbers like -0."""
-    for plot in (plots.DISTANCE, *plots.MORE.values()):
-        if plot is not plots.PHASE:
-            assert plot.least is not None and plot.least[0] <= 0 < plot.least[1]
+    for plot in plots.MORE.values():
+        if isinstance(plot, plots.TimePlot):
+            assert plot.least[0] <= 0 < plot.least[1]

@@ -7,7 +7,6 @@ import pytest
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
-from onpath.app.lab.snapshots.snapshot_codec import from_bytes, to_bytes
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.gains_panel import channels_by_owner, lines_of_poles
 from onpath.lessons.words import Words
@@ -77,11 +76,3 @@ def test_a_change_of_gains_a_law_or_the_path_is_seen_at_once() -> None:
     run(lab, FRAME)
     after = take_page_snapshot(lab, 1.0, before)
     assert set(before.places.of) == {LEFT, RIGHT} and set(after.places.of) == {LEFT}
-
-
-def test_places_are_data_that_can_be_sent() -> None:
-    snapshot, _ = taken_after(0.0)
-    again = from_bytes(to_bytes(snapshot))
-    assert isinstance(again, PageSnapshot)
-    words = Words("en")
-    assert lines(again, words) == lines(snapshot, words)

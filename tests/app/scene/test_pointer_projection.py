@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from onpath.app.scene.pointer_projection import (
-    VERTICAL_PLANE,
     Box,
     DragPlane,
-    intersect_ray_plane,
     plane_coordinates,
     pointer_on_plane,
 )
@@ -21,6 +19,12 @@ from onpath.models.systems.catalogue import ROBOTS
 
 vectors = arrays(np.float64, 3, elements=st.floats(-10.0, 10.0))
 NOT_FINITE = st.sampled_from([np.nan, np.inf, -np.inf])
+EVERYWHERE = Box(np.full(3, -1e9), np.full(3, 1e9))
+
+
+def seen(camera, pointer, point, normal):
+    """Where the ray from a camera through a pointer meets a plane."""
+    return pointer_on_plane(camera, pointer, np.zeros(3), DragPlane(point, normal), EVERYWHERE)
 
 
 def steep(direction: np.ndarray, normal: np.ndarray) -> float:
@@ -34,8 +38,10 @@ def steep(direction: np.ndarray, normal: np.ndarray) -> float:
     np.array([1.5, 3.75, 0.0]), -np.ones(3), np.array([3.75, 1.5, 0.0]), 2.058 * np.ones(3)
 )
 def test_hit_lies_on_plane_and_on_ray(origin, direction, point, normal):
+    pointer = origin + direction
+    direction = pointer - origin  # rounded, as it is seen
     assume(abs(steep(direction, normal)) > 0.05)
-    hit = intersect_ray_plane(origin, direction, point, normal)
+    hit = seen(origin, pointer, point, normal)
     ahead = float((point - origin) @ normal) / float(direction @ normal)
     scale = np.abs(point - origin) @ np.abs(normal) / abs(direction @ normal)
     undecided = abs(ahead) <= 1e-14 * scale  # a few roundings: behind or at the origin
@@ -54,7 +60,7 @@ def test_ray_along_the_plane_never_hits(origin, direction, point, normal):
     assume(np.linalg.norm(normal) > 1e-3)
     along = direction - (direction @ normal) / (normal @ normal) * normal
     assume(np.linalg.norm(along) > 1e-6)  # else only rounding is left of it
-    assert intersect_ray_plane(origin, along, point, normal) is None
+    assert seen(origin, origin + along, point, normal) is None
 
 
 @given(vectors, vectors, vectors, vectors, st.integers(0, 11), NOT_FINITE)
@@ -62,7 +68,8 @@ def test_what_is_not_finite_never_hits(origin, direction, point, normal, place, 
     numbers = np.concatenate([origin, direction, point, normal])
     numbers[place] = value
     with np.errstate(invalid="ignore"):
-        assert intersect_ray_plane(*numbers.reshape(4, 3)) is None
+        origin, direction, point, normal = numbers.reshape(4, 3)
+        assert seen(origin, origin + direction, point, normal) is None
 
 
 @given(vectors, vectors, vectors)
@@ -81,7 +88,8 @@ def test_pointer_anywhere_on_the_ray_means_the_same_point(x, z, share, base):
     target = np.array([x, 0.0, z])
     pointer = camera + share * (base + target - camera)
     box = Box(np.full(3, -0.6), np.full(3, 0.6))
-    found = pointer_on_plane(camera, pointer, base, VERTICAL_PLANE, box)
+    vertical = DragPlane(np.zeros(3), np.array([0.0, 1.0, 0.0]))
+    found = pointer_on_plane(camera, pointer, base, vertical, box)
     assert found is not None
     np.testing.assert_allclose(found, target, atol=1e-9)
 

@@ -118,11 +118,6 @@ def test_an_endless_freehand_stroke_is_drawn_ten_times_a_second_of_few_points(pa
     assert not page.shown("/freehand/line") and not page.told_by_mouse
 
 
-def sideways(k: int) -> np.ndarray:
-    """Along a circle round the board's middle."""
-    return np.array([np.cos(k * 0.03), np.sin(k * 0.03)])
-
-
 class Paper:
     """A scene on which lines are drawn."""
 

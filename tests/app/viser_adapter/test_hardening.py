@@ -50,14 +50,9 @@ TRUE_VALUES = {
     "steps": 3,
     "number": 1.0,
     "bounded": 1,
-    "range": (1.0, 2.0),
-    "vector2": (0.5, 0.5),
-    "vector3": (0.0, 0.0, 0.0),
     "checkbox": False,
     "dropdown": "one",
     "text": "hello",
-    "rgb": (1, 2, 3),
-    "rgba": (1, 2, 3, 4),
     "disabled": 1.0,
     "progress": 10.0,
 }
@@ -80,15 +75,10 @@ class Lab:
             "steps": gui.add_slider("steps", 1, 5, 1, true["steps"]),
             "number": gui.add_number("number", true["number"]),
             "bounded": gui.add_number("bounded", true["bounded"], min=0, max=9),
-            "range": gui.add_multi_slider("range", 0.0, 5.0, 0.1, true["range"]),
-            "vector2": gui.add_vector2("vector2", true["vector2"], min=(0.0, 0.0), max=(1.0, 2.0)),
-            "vector3": gui.add_vector3("vector3", true["vector3"]),
             "checkbox": gui.add_checkbox("checkbox", true["checkbox"]),
             "dropdown": gui.add_dropdown("dropdown", ("one", "two")),
             "group": gui.add_button_group("group", ("left", "right")),
             "text": gui.add_text("text", true["text"]),
-            "rgb": gui.add_rgb("rgb", true["rgb"]),
-            "rgba": gui.add_rgba("rgba", true["rgba"]),
             "disabled": gui.add_number("disabled", true["disabled"], disabled=True),
             "progress": gui.add_progress_bar(true["progress"]),
             "upload": gui.add_upload_button("upload"),
@@ -98,11 +88,8 @@ class Lab:
         for name, widget in widgets.items():
             widget._impl.update_cb.append(self._note(client, name, lambda e: e.target.value))
         box = client.scene.add_box("/box")
-        gizmo = client.scene.add_transform_controls("/gizmo")
         box.on_drag("left")(self._note(client, "drag", lambda e: e.end_position))
         box.on_click(self._note(client, "click", lambda e: e.ray_origin))
-        gizmo.on_update(self._note(client, "gizmo", lambda e: tuple(e.target.position)))
-        client.scene.on_click()(self._note(client, "pointer", lambda e: e.ray_direction))
         client.camera.on_update(self._note(client, "camera", lambda c: tuple(c.position)))
         self.widgets[client.client_id] = widgets
 
@@ -219,15 +206,10 @@ HONEST = [
     ("steps", 4, 4),
     ("number", -1e6, -1e6),
     ("bounded", 9, 9),
-    ("range", [1.5, 4.0], (1.5, 4.0)),
-    ("vector2", [1, 2], (1.0, 2.0)),
-    ("vector3", [1.0, 2.0, -3.0], (1.0, 2.0, -3.0)),
     ("checkbox", True, True),
     ("dropdown", "two", "two"),
     ("group", "right", "right"),
     ("text", "<b>π</b>", "<b>π</b>"),
-    ("rgb", [0, 128, 255], (0, 128, 255)),
-    ("rgba", [0, 128, 255, 9], (0, 128, 255, 9)),
     ("button", True, True),
 ]
 CLAMPED = [
@@ -236,25 +218,15 @@ CLAMPED = [
     ("steps", 2**60, 5),
     ("steps", 4.7, 4),
     ("bounded", -(2**60), 0),
-    ("range", [-1e9, 1e9], (0.0, 5.0)),
-    ("range", [4.0, 3.0], (3.0, 4.0)),
-    ("vector2", [1e9, -1e9], (1.0, 0.0)),
     ("text", "x" * 100_000, "x" * 2000),
-    ("rgb", [-5, 300, 10], (0, 255, 10)),
-    ("rgba", [0, 0, 0, 10**9], (0, 0, 0, 255)),
 ]
 NUMBERS = ["slider", "steps", "number", "bounded"]
 NOT_NUMBERS = [math.nan, math.inf, -math.inf, "3", "nan", True, None, [3.0], {"a": 1}, b"3"]
 REFUSED = [
     *((name, value) for name in NUMBERS for value in NOT_NUMBERS),
-    *(("range", value) for value in ([1.0, math.nan], [1.0], [1.0] * 3, [], 1.0, "12", ["1", "2"])),
-    *(("vector2", value) for value in ([0.1, math.inf], [0.1], [0.1] * 3, "12", None, [[0.1], 0])),
-    *(("vector3", value) for value in ([0.1, 0.1, math.nan], [0.1] * 2, {"0": 1}, [True] * 3)),
     *(("checkbox", value) for value in (1, 1.0, "true", None, [], [True])),
     *(("dropdown", value) for value in ("three", "", 1, None, ["two"], {"two": 1})),
     *(("text", value) for value in (1, None, ["x"], b"x", True)),
-    *(("rgb", value) for value in ([1, 2], [1, 2, 3, 4], [1, 2, math.nan], "#ffffff", [1, 2, "3"])),
-    *(("rgba", value) for value in ([1, 2, 3], [1, 2, 3, math.inf], "#ffffffff")),
     ("disabled", 2.0),
     ("progress", 50.0),
 ]
@@ -276,8 +248,7 @@ def test_values_outside_the_limits_are_clamped(lab: Lab, attacker: Browser) -> N
         attacker.settle()
         assert lab.heard(attacker)[-1] == (name, expected)
         assert type(lab.heard(attacker)[-1][1]) is type(TRUE_VALUES[name])
-        told = attacker.value_told(name)
-        assert (tuple(told) if isinstance(told, list) else told) == expected
+        assert attacker.value_told(name) == expected
 
 
 @pytest.mark.usefixtures("no_errors")
@@ -297,8 +268,7 @@ def test_impossible_values_reach_no_callback(
 @pytest.mark.parametrize("name", sorted(set(TRUE_VALUES) - {"disabled", "progress"}))
 def test_refused_browser_is_told_the_true_value(attacker: Browser, name: str) -> None:
     attacker.update(name, value={"no": "thing"})
-    told = attacker.value_told(name)
-    assert (tuple(told) if isinstance(told, list) else told) == TRUE_VALUES[name]
+    assert attacker.value_told(name) == TRUE_VALUES[name]
 
 
 @pytest.mark.parametrize(
@@ -328,27 +298,13 @@ def test_only_the_value_may_be_set(
     assert lab.heard(attacker) == []
 
 
-def test_a_disabled_button_can_be_neither_pressed_nor_held(lab: Lab, attacker: Browser) -> None:
-    button, holds = lab.widgets[attacker.id]["button"], []
-    button.on_hold(holds.append, callback_hz=10.0)
+def test_a_disabled_button_cannot_be_pressed(lab: Lab, attacker: Browser) -> None:
+    button = lab.widgets[attacker.id]["button"]
     for disabled, expected in ((True, 0), (False, 1)):
         button.disabled = disabled
         attacker.update("button", value=True)
-        attacker.send("GuiButtonHoldMessage", uuid=button._impl.uuid, frequency=10.0)
         attacker.settle()
-        wait_for(lambda expected=expected: len(holds) >= expected)
-        assert (len(lab.heard(attacker)), len(holds)) == (expected, expected)
-
-
-@pytest.mark.usefixtures("no_errors")
-def test_holding_a_widget_that_is_not_a_button_has_no_effect(
-    lab: Lab, attacker: Browser, bystander: Browser
-) -> None:
-    errors = error_log._seen.copy()
-    for widget in lab.widgets[attacker.id].values():
-        attacker.send("GuiButtonHoldMessage", uuid=widget._impl.uuid, frequency=10.0)
-    attacker.settle()
-    assert lab.heard(attacker) == [] and error_log._seen == errors
+        assert len(lab.heard(attacker)) == expected
 
 
 @pytest.mark.usefixtures("no_errors")
@@ -360,18 +316,10 @@ def test_no_client_reaches_the_widgets_or_nodes_of_another(
         attacker.send("GuiUpdateMessage", uuid=widget._impl.uuid, updates={"value": value})
     for owner in (str(bystander.id), ""):
         attacker.send("SceneNodeDragMessage", **drag(bystander) | {"owner": owner})
-        attacker.send("TransformControlsUpdateMessage", **gizmo(bystander) | {"owner": owner})
     attacker.settle()
     bystander.settle()
     assert lab.heard(bystander) == []
     assert lab.heard(attacker) == []
-
-
-def test_a_forged_form_is_not_kept_for_all_to_come(lab: Lab, attacker: Browser) -> None:
-    attacker.send("GuiFormDirtyMessage", uuid="invented")
-    attacker.settle()
-    buffered = lab.server._websock_server._broadcast_buffer.message_from_id.values()
-    assert not any(isinstance(each, _messages.GuiFormDirtyMessage) for each in buffered)
 
 
 # Scene.
@@ -404,16 +352,6 @@ def click(browser: Browser) -> dict[str, Any]:
     }
 
 
-def gizmo(browser: Browser) -> dict[str, Any]:
-    pose = {"wxyz": [1.0, 0.0, 0.0, 0.0], "position": [1.0, 2.0, 3.0]}
-    return {"name": "/gizmo", "owner": str(browser.id), **pose}
-
-
-def pointer(_: Browser) -> dict[str, Any]:
-    ray = {"ray_origin": [0.0, -2.0, 0.0], "ray_direction": [0.0, 1.0, 0.0]}
-    return {"event_type": "click", "screen_pos": [[0.5, 0.5]], "modifier": None, **ray}
-
-
 def camera(_: Browser) -> dict[str, Any]:
     return CAMERA | {"position": [1.0, 1.0, 1.0]}
 
@@ -421,8 +359,6 @@ def camera(_: Browser) -> dict[str, Any]:
 SCENE: dict[str, tuple[str, Callable[[Browser], dict[str, Any]], Any]] = {
     "drag": ("SceneNodeDragMessage", drag, (0.1, 0.0, 0.2)),
     "click": ("SceneNodeClickMessage", click, (0.0, -2.0, 0.0)),
-    "gizmo": ("TransformControlsUpdateMessage", gizmo, (1.0, 2.0, 3.0)),
-    "pointer": ("ScenePointerMessage", pointer, (0.0, 1.0, 0.0)),
     "camera": ("ViewerCameraMessage", camera, (1.0, 1.0, 1.0)),
 }
 NO_POSITION = [
@@ -445,19 +381,15 @@ NO_POSITION = [
 POSITIONS = {
     "drag": ("start_position", "end_position"),
     "click": ("ray_origin", "ray_direction"),
-    "gizmo": ("position",),
-    "pointer": ("ray_origin", "ray_direction"),
     "camera": ("position", "look_at", "up_direction"),
 }
 NO_SCENE_MESSAGE = [
     *((n, {key: bad}) for n, keys in POSITIONS.items() for key in keys for bad in NO_POSITION),
-    *((n, {"wxyz": bad}) for n in ("gizmo", "camera") for bad in ([0.0] * 4, [math.nan] * 4, [1])),
+    *(("camera", {"wxyz": bad}) for bad in ([0.0] * 4, [math.nan] * 4, [1])),
     *((n, {"instance_index": bad}) for n in ("drag", "click") for bad in (-1, 0.5, "0", True)),
     *(("camera", {"fov": bad}) for bad in (math.nan, "1", None, [1.0])),
     *(("camera", {"image_height": bad}) for bad in (math.inf, 0.5, 10**12, "600")),
-    *(("pointer", {"screen_pos": bad}) for bad in ([], [[0.5]], [[0.5, math.nan]], [0.5, 0.5])),
-    ("pointer", {"event_type": "rect-select"}),
-    ("pointer", {"event_type": "explode"}),
+    *(("click", {"screen_pos": bad}) for bad in ([], [0.5], [0.5, math.nan], [[0.5, 0.5]])),
     ("drag", {"end_screen_pos": [math.nan, 0.0]}),
     ("drag", {"phase": "forever"}),
     ("drag", {"button": ["left"]}),
@@ -559,6 +491,7 @@ def test_invalid_messages_are_skipped(lab: Lab, attacker: Browser, bystander: Br
         packed({"type": ["GuiUpdateMessage"]}),
         packed({"type": "NoSuchMessage"}),
         packed({"type": "RunJavascriptMessage", "source": "alert(1)"}),
+        packed({"type": "GuiFormDirtyMessage", "uuid": "invented"}),  # of widgets that no page has
         packed({"type": "GuiUpdateMessage"}),
         packed({"type": "GuiUpdateMessage", "uuid": "x", "updates": [1]}),
         packed({"type": "GuiUpdateMessage", "uuid": ["x"], "updates": {}}),
