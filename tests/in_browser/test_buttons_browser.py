@@ -133,11 +133,14 @@ def test_rewind_and_go_on_from_there(tab: Tab) -> None:
         handle.press("ArrowLeft")
     then = lab.session.time
 
-    def shown() -> float:
+    def shown() -> float:  # in tenths of a second
         return float(handle.get_attribute("aria-valuenow") or 0)
 
-    wait_for(lambda: then - shown() > 1.45 and abs(shown() - (lab.session.viewing or 0)) < 0.051)
-    viewing = lab.session.viewing or 0.0
+    def viewed() -> float:
+        return then if lab.session.viewing is None else lab.session.viewing
+
+    wait_for(lambda: then - viewed() > 1.45 and abs(shown() - viewed()) < 0.051)
+    viewing = viewed()
     times, _ = lab.session.history.samples(-1.0, then, 10_000)
     assert then - viewing < 1.5 + 6 * np.diff(times).max()  # each step ends at a sample
     tab.press("Go on from here")
