@@ -63,8 +63,10 @@ export class StepView {
         else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
             ask(page, element, block, `${index}.${place}`, student)
         else if (prediction?.step === index && prediction.block === place) {
-            this.form?.board?.remove()
+            const before = this.form
+            before?.board?.remove()
             this.form = predict(page, prediction, student)
+            if (before) this.place()
         }
     }
 
