@@ -19,7 +19,7 @@ const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL]
 export class Figure {
     readonly engine = new LocalEngine(this.simulation, this.branches)
     private readonly data = this.simulation.data
-    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true), this.ended))
+    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true)))
     private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))

@@ -52,7 +52,7 @@ class Face {
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal)
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
-        this.overlay = new SymbolOverlay(engine, signal)
+        this.overlay = new SymbolOverlay(engine)
         this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))

@@ -41,7 +41,7 @@ export class Lens {
     private boxes: Box[] = [] // that letters do not cover
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly side: number, ended?: AbortSignal) {
-        this.sheet = new Sheet(() => (this.stale = true), ended)
+        this.sheet = new Sheet(() => (this.stale = true))
         this.sheet.canvas.setAttribute("role", "img")
         const tone = engine.texts[side]!.side
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
