@@ -237,12 +237,10 @@ export class RemoteEngine implements Engine {
 
     act(act: Act): void {
         if (!this.lab?.own) return
-        const side = "side" in act && act.side !== undefined ? { side: ["left", "right"][act.side] } : {}
         if (act.do === "look") this.look(act.at)
         else {
             this.looked = null
-            if (act.do === "hold") this.send({ do: "Hold", on: act.on, ...side })
-            else if (act.do === "pull") this.pull(act.by, act.side ?? 1)
+            if (act.do === "hold") this.send({ do: "Hold", on: act.on })
             else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
             else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
             else this.send({ do: { step: "StepOnce", reset: "Reset", goOn: "GoOn" }[act.do] })
@@ -283,11 +281,6 @@ export class RemoteEngine implements Engine {
             setTimeout(() => this.tell("state"), SETTLES + 1)
         }, HANDED)
         this.tell("state")
-    }
-
-    private pull(by: Vector | null, side: number): void {
-        if (!by) this.send({ do: "Release" })
-        else this.send({ do: "Grab", side: ["left", "right"][side], target: this.present.sides[side]!.tip.map((each, k) => each + by[k]!) })
     }
 
     private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
