@@ -16,10 +16,15 @@ export function filled(text: string, values: Record<string, string>): string {
     return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
 }
 
+/** A formatted number with the decimal separator of the language in place of the point. */
+export function localized(number: string, { words }: Texts): string {
+    return number.replace(".", words["point"] ?? ".")
+}
+
 /** A number as the language writes it. */
 export function written(texts: Texts, value: number, digits?: number): string {
     const text = digits === undefined ? String(value) : value.toFixed(digits).replace(/^-(?=[0.]*$)/, "")
-    return text.replace("-", "−").replace(".", texts.words["point"] ?? ".")
+    return localized(text.replace("-", "−"), texts)
 }
 
 /** The same with a number of significant digits. */
