@@ -39,7 +39,7 @@ interface PathMessage {
 }
 
 /** What is spoken, and what newcomers are invited to do. */
-export interface Said {
+export interface Narration {
     /** For a screen reader; empty if it is not wanted. */
     voice: string
     /** A description of the screen, and how often it has been asked for. */
@@ -83,7 +83,7 @@ export interface LabState {
     /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
     message: string
     level: string
-    said: Said
+    said: Narration
     height: number
     apart: number
     /** How the picture shows the robots. */
@@ -95,7 +95,7 @@ export interface LabState {
 interface Refusal { is: "refused"; why: string }
 
 /** A path through points at evenly spaced θ from -π to π. */
-class Path implements PathShape {
+class SampledPath implements PathShape {
     readonly lines: readonly (readonly Vector[])[]
     readonly closed: boolean
     readonly right: Vector
@@ -167,7 +167,7 @@ class RowSide implements SideSample {
 export class RemoteEngine implements Engine {
     /** What the lab is called and set to; null until it is known. */
     lab: LabState | null = null
-    route = new Path({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
+    route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
     /** The open step of a lesson, and what is measured in it; null until they are known. */
@@ -292,7 +292,7 @@ export class RemoteEngine implements Engine {
         }
         if (message.is === "frame") this.frame(message)
         else if (message.is === "path") {
-            this.route = new Path(message)
+            this.route = new SampledPath(message)
             this.tell("path")
         } else if (message.is === "lit") {
             const { symbol, ways } = message

@@ -1,6 +1,6 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, Window } from "./lesson_data"
+import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, TimeWindow } from "./lesson_data"
 import { filled, localized } from "./words"
 import { fixed, general, sum } from "./numbers"
 
@@ -131,7 +131,7 @@ function steps({ times, end }: RunRecord): number[] {
 }
 
 /** The instants that a window selects. */
-export function chosen(record: RunRecord, robot: Robot, window: Window): boolean[] {
+export function chosen(record: RunRecord, robot: Robot, window: TimeWindow): boolean[] {
     const held = () => during(record, robot, "hold", "let_go")
     const pulled = () => during(record, robot, "pull", "release")
     let mask = record.times.map(() => true)
@@ -221,7 +221,7 @@ function digits(value: number, below: number | null, above: number | null, words
 }
 
 /** Whether the instants last long enough, and the words for it, rounded down. */
-function duration(check: Window, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
+function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
     const have = sum(steps(record).filter((_, i) => mask[i]))
     const need = said["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT

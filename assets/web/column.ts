@@ -175,7 +175,7 @@ export class Column implements Robots {
     private fill({ sections, charts, index, ended }: LessonMessage): void {
         const { view } = this
         for (const [name, html] of Object.entries(sections)) {
-            const source = parsed(html)
+            const source = elementsOf(html)
             for (const sign of source.querySelectorAll("[data-symbol]")) // without a meaning on this robot
                 if (!this.page.symbols[sign.getAttribute("data-symbol")!]) sign.removeAttribute("data-symbol")
             const parts = [...source.children] as HTMLElement[]
@@ -286,7 +286,7 @@ export class Column implements Robots {
 }
 
 /** The elements of our own server's HTML. */
-function parsed(html: string): DocumentFragment {
+function elementsOf(html: string): DocumentFragment {
     const template = document.createElement("template")
     template.innerHTML = html
     return template.content
@@ -297,7 +297,7 @@ function put(element: HTMLElement, html: string): void {
     if (element.dataset["html"] === html) return
     element.dataset["html"] = html
     const at = controlsOf(element).indexOf(document.activeElement as HTMLElement)
-    element.replaceChildren(parsed(html))
+    element.replaceChildren(elementsOf(html))
     const buttons = controlsOf(element)
     if (at >= 0) buttons[Math.min(at, buttons.length - 1)]?.focus({ preventScroll: true })
 }

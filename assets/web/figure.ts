@@ -8,7 +8,7 @@ import { LocalEngine } from "./local"
 import type { Simulation } from "./simulation"
 import { Strip } from "./strip"
 import { View } from "./view"
-import { said } from "./words"
+import { said, withoutNumbers } from "./words"
 
 const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
 const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
@@ -130,7 +130,7 @@ export class Figure {
     /** Announce what robots do when it changes, and from time to time their millimetres. */
     private say(captions: string[], note: string): void {
         const line = `${spoken(this.simulation, captions)} ${note}`.trim()
-        const kind = line.replace(/[0-9]+/g, "")
+        const kind = withoutNumbers(line)
         const now = performance.now()
         if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
         this.kind = kind

@@ -2,7 +2,7 @@
 
 import { Figure } from "./figure"
 import { Kernels } from "./kernels"
-import type { Act, Script, SiteFigure, StepData } from "./lesson_data"
+import type { Action, Script, SiteFigure, StepData } from "./lesson_data"
 import { Recorded } from "./recorded"
 
 declare global {
@@ -55,11 +55,11 @@ export class Stage {
     }
 
     /** Perform a link's actions; sliders follow. */
-    act(acts: Act[]): void {
-        for (const act of acts) {
-            if (act.run !== undefined) this.run(act.run)
-            else this.simulation.act(act)
-            if (act.reset || act.path !== undefined) this.figure.changed()
+    act(actions: Action[]): void {
+        for (const action of actions) {
+            if (action.run !== undefined) this.run(action.run)
+            else this.simulation.act(action)
+            if (action.reset || action.path !== undefined) this.figure.changed()
         }
         this.sliders()
     }
@@ -80,9 +80,9 @@ export class Stage {
                 return true
             }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
-                const [, act] = waiting.shift()!
-                if (act.rate) figure.engine.act({ do: "rate", rate: act.rate })
-                simulation.act(act)
+                const [, action] = waiting.shift()!
+                if (action.rate) figure.engine.act({ do: "rate", rate: action.rate })
+                simulation.act(action)
                 if (simulation.run === run) continue
                 run = simulation.run
                 before += time

@@ -31,3 +31,8 @@ export function written(texts: Texts, value: number, digits?: number): string {
 export function significant(texts: Texts, value: number, digits: number): string {
     return written(texts, Number(value.toPrecision(digits)))
 }
+
+/** A text without digits: the same text when only its numbers have changed. */
+export function withoutNumbers(text: string): string {
+    return text.replace(/\d+/g, "")
+}
