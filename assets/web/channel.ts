@@ -12,7 +12,7 @@ const HEAD = 2 // numbers of a row before those of the robots
 const PATIENCE = [500, 1000, 2000, 4000, 8000] // [ms], until it connects again
 const STALE = 1008 // the ticket is not valid any more
 const OTHER_VERSION = 1002
-const HANDED = 60 // [ms], at least, between two instants that one looks at
+const HANDED = 60 // [ms], at least, between two looks at the past
 const SETTLES = 400 // [ms], until what the server shows counts again
 
 /** What the server says. */
@@ -57,12 +57,12 @@ export interface Narration {
     invitations: number
 }
 
-/** Texts of the lab, and what is set. Lists have the left robot first. */
 /** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
  * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
  * coordinate, and a constant. */
 export type Projection = readonly Vector[]
 
+/** Texts of the lab, and what is set. Lists have the left robot first. */
 export interface LabState {
     is: "state"
     v: number
@@ -190,7 +190,7 @@ export class RemoteEngine implements Engine {
     /** Whether there is something to show. */
     get ready(): boolean { return this.lab !== null && this.samples.length > 0 }
 
-    /** Connect with a ticket, unless that is done or was in vain; called from time to time. */
+    /** Connect with a ticket, unless it is in use or was refused; called repeatedly. */
     open(ticket: string): void {
         const now = performance.now()
         if (!ticket || ticket === this.refused || (this.socket && ticket === this.ticket) || now < this.again) return

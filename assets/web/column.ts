@@ -146,7 +146,7 @@ export class Column implements Robots {
         if (truth && this.playing) this.view?.draw(truth)
     }
 
-    /** Where the board is drawn depends on the window. */
+    /** Put the board where the window has room for it. */
     arrange(): void {
         this.view?.place()
         this.view?.formulas()

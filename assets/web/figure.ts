@@ -54,7 +54,7 @@ export class Figure {
     private readonly drag = () => [this.pending?.(), (this.pending = null)]
     get running(): boolean { return this.engine.running }
 
-    /** Something else is to be drawn and said. */
+    /** Update everything that depends on the settings. */
     changed(): void {
         const { simulation, data } = this
         this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))

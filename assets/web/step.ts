@@ -106,7 +106,8 @@ export class StepView {
         }
     }
 
-    /** Show what was committed, and of a run what may be seen: nothing before the prediction, the words after it. */
+    /** Show what was committed, and as much of a run as may be seen: nothing before the prediction is made, the text
+     * after it. */
     run(): void {
         const { page, index, notes, robots, prediction } = this
         const { section } = this.places
