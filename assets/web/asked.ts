@@ -2,7 +2,7 @@
 
 import { made } from "./controls"
 import type { BlockData, PageData } from "./lesson_data"
-import { said } from "./words"
+import { localized, said } from "./words"
 import { accepted } from "./own"
 import type { Student } from "./student"
 
@@ -51,7 +51,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
     const own = kept()
     if (own !== undefined) {
         if (block.kind === "quiz") element.querySelector<HTMLInputElement>(`input[value="${own}"]`)!.checked = true
-        else input.value = block.kind === "number" ? String(own).replace(".", page.words["point"]!) : String(own)
+        else input.value = block.kind === "number" ? localized(String(own), page) : String(own)
         show()
     }
     input.addEventListener("keydown", event => {

@@ -12,7 +12,7 @@ const HEAD = 2 // numbers of a row before those of the robots
 const PATIENCE = [500, 1000, 2000, 4000, 8000] // [ms], until it connects again
 const STALE = 1008 // the ticket is not valid any more
 const OTHER_VERSION = 1002
-const HANDED = 60 // [ms], at least, between two instants that one looks at
+const HANDED = 60 // [ms], at least, between two looks at the past
 const SETTLES = 400 // [ms], until what the server shows counts again
 
 /** What the server says. */
@@ -39,7 +39,7 @@ interface PathMessage {
 }
 
 /** What is spoken, and what newcomers are invited to do. */
-export interface Said {
+export interface Narration {
     /** For a screen reader; empty if it is not wanted. */
     voice: string
     /** A description of the screen, and how often it has been asked for. */
@@ -56,12 +56,12 @@ export interface Said {
     act: Record<string, unknown> | null
 }
 
-/** Texts of the lab, and what is set. Lists have the left robot first. */
 /** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
  * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
  * coordinate, and a constant. */
 export type Projection = readonly Vector[]
 
+/** Texts of the lab, and what is set. Lists have the left robot first. */
 export interface LabState {
     is: "state"
     v: number
@@ -84,7 +84,7 @@ export interface LabState {
     level: string
     /** How many have been shown so far: the same one may be shown again. */
     messages: number
-    said: Said
+    said: Narration
     height: number
     apart: number
     /** How the picture shows the robots. */
@@ -96,7 +96,7 @@ export interface LabState {
 interface Refusal { is: "refused"; why: string }
 
 /** A path through points at evenly spaced θ from -π to π. */
-class Path implements PathShape {
+class SampledPath implements PathShape {
     readonly lines: readonly (readonly Vector[])[]
     readonly closed: boolean
     readonly right: Vector
@@ -168,7 +168,7 @@ class RowSide implements SideSample {
 export class RemoteEngine implements Engine {
     /** What the lab is called and set to; null until it is known. */
     lab: LabState | null = null
-    route = new Path({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
+    route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
     /** The open step of a lesson, and what is measured in it; null until they are known. */
@@ -191,7 +191,7 @@ export class RemoteEngine implements Engine {
     /** Whether there is something to show. */
     get ready(): boolean { return this.lab !== null && this.samples.length > 0 }
 
-    /** Connect with a ticket, unless that is done or was in vain; called from time to time. */
+    /** Connect with a ticket, unless it is in use or was refused; called repeatedly. */
     open(ticket: string): void {
         const now = performance.now()
         if (!ticket || ticket === this.refused || (this.socket && ticket === this.ticket) || now < this.again) return
@@ -238,12 +238,10 @@ export class RemoteEngine implements Engine {
 
     act(act: Act): void {
         if (!this.lab?.own) return
-        const side = "side" in act && act.side !== undefined ? { side: ["left", "right"][act.side] } : {}
         if (act.do === "look") this.look(act.at)
         else {
             this.looked = null
-            if (act.do === "hold") this.send({ do: "Hold", on: act.on, ...side })
-            else if (act.do === "pull") this.pull(act.by, act.side ?? 1)
+            if (act.do === "hold") this.send({ do: "Hold", on: act.on })
             else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
             else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
             else this.send({ do: { step: "StepOnce", reset: "Reset", goOn: "GoOn" }[act.do] })
@@ -286,11 +284,6 @@ export class RemoteEngine implements Engine {
         this.tell("state")
     }
 
-    private pull(by: Vector | null, side: number): void {
-        if (!by) this.send({ do: "Release" })
-        else this.send({ do: "Grab", side: ["left", "right"][side], target: this.present.sides[side]!.tip.map((each, k) => each + by[k]!) })
-    }
-
     private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
         if (!this.connected) {
             this.connected = true
@@ -300,7 +293,7 @@ export class RemoteEngine implements Engine {
         }
         if (message.is === "frame") this.frame(message)
         else if (message.is === "path") {
-            this.route = new Path(message)
+            this.route = new SampledPath(message)
             this.tell("path")
         } else if (message.is === "lit") {
             const { symbol, ways } = message

@@ -57,8 +57,8 @@ export class Chart {
     private boxes: Box[] = []
     private places: (number | undefined)[] = [] // times at which lines are named
 
-    constructor(readonly texts: Texts, public axes: Axes, changed: () => void, ended?: AbortSignal) {
-        this.sheet = new Sheet(changed, ended)
+    constructor(readonly texts: Texts, public axes: Axes, changed: () => void) {
+        this.sheet = new Sheet(changed)
         const { canvas } = this.sheet
         canvas.setAttribute("role", "img")
         this.plot = made("div", "plot", canvas)

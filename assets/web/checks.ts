@@ -1,7 +1,7 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, Window } from "./lesson_data"
-import { filled } from "./words"
+import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, TimeWindow } from "./lesson_data"
+import { filled, localized } from "./words"
 import { fixed, general, sum } from "./numbers"
 
 export interface Happening {
@@ -100,7 +100,7 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
             ? same(value, equals, check.whole)
             : typeof value === "number" && within(value, check.below, check.above)
     const shown =
-        typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : general(value, 4).replace(".", words["point"]!)
+        typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : localized(general(value, 4), { words })
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
 }
 
@@ -131,7 +131,7 @@ function steps({ times, end }: RunRecord): number[] {
 }
 
 /** The instants that a window selects. */
-export function chosen(record: RunRecord, robot: Robot, window: Window): boolean[] {
+export function chosen(record: RunRecord, robot: Robot, window: TimeWindow): boolean[] {
     const held = () => during(record, robot, "hold", "let_go")
     const pulled = () => during(record, robot, "pull", "release")
     let mask = record.times.map(() => true)
@@ -222,11 +222,11 @@ function digits(value: number, below: number | null, above: number | null, words
     const tried = [Math.abs(value) < 1 ? fixed(value, decimals) : general(value, 3)]
     for (let count = 3; count < 17; count++) tried.push(general(value, count))
     const shown = tried.find(text => within(Number(text), below, above) === holds) ?? String(value)
-    return shown.replace(".", words["point"]!)
+    return localized(shown, { words })
 }
 
 /** Whether the instants last long enough, and the words for it, rounded down. */
-function duration(check: Window, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
+function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
     const have = sum(steps(record).filter((_, i) => mask[i]))
     const need = said["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT

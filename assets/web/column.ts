@@ -5,7 +5,7 @@ import type { Verdict } from "./checks"
 import { isTyped, made } from "./controls"
 import { Legend } from "./legend"
 import type { BlockData, PageData, Script, SketchData, StepData, TaskData } from "./lesson_data"
-import type { Answer, Curves, Notes } from "./notes"
+import { noNotes, type Answer, type Curves, type Notes } from "./notes"
 import { compared } from "./predictions"
 import { StepView, type Robots } from "./step"
 import { radiusOf } from "./strip"
@@ -14,9 +14,6 @@ import { Task } from "./tasks"
 import { said, type Texts } from "./words"
 
 const END = "end" // the section that stands for the end of a lesson
-const NOTHING: Notes = {
-    step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {},
-}
 
 /** The open step of a lesson, or its end; without a lesson, `lesson` is empty. */
 export interface LessonMessage extends LabMessage {
@@ -46,7 +43,7 @@ export interface MeasuredMessage extends LabMessage {
 
 /** Notes in the lab, where Python judges. */
 class RemoteStudent implements Student {
-    notes = NOTHING
+    notes = noNotes()
     readonly name = "" // the server puts options into their order
     changed: () => void = () => {}
     verdicts: Record<string, Verdict[]> = {}
@@ -133,7 +130,7 @@ export class Column implements Robots {
         if (isNew) this.leave(place)
         for (const step of message.steps) for (const block of step.blocks) this.bend(block)
         Object.assign(page, { lesson: message.lesson, symbols: message.symbols, steps: message.steps, test: message.test })
-        student.notes = message.notes ?? NOTHING
+        student.notes = message.notes ?? noNotes()
         this.playing = message.playing
         put(this.head, message.head)
         put(this.pager, message.pager)
@@ -149,7 +146,7 @@ export class Column implements Robots {
         if (truth && this.playing) this.view?.draw(truth)
     }
 
-    /** Where the board is drawn depends on the window. */
+    /** Put the board where the window has room for it. */
     arrange(): void {
         this.view?.place()
         this.view?.formulas()
@@ -178,7 +175,7 @@ export class Column implements Robots {
     private fill({ sections, charts, index, ended }: LessonMessage): void {
         const { view } = this
         for (const [name, html] of Object.entries(sections)) {
-            const source = parsed(html)
+            const source = elementsOf(html)
             for (const sign of source.querySelectorAll("[data-symbol]")) // without a meaning on this robot
                 if (!this.page.symbols[sign.getAttribute("data-symbol")!]) sign.removeAttribute("data-symbol")
             const parts = [...source.children] as HTMLElement[]
@@ -289,7 +286,7 @@ export class Column implements Robots {
 }
 
 /** The elements of our own server's HTML. */
-function parsed(html: string): DocumentFragment {
+function elementsOf(html: string): DocumentFragment {
     const template = document.createElement("template")
     template.innerHTML = html
     return template.content
@@ -300,7 +297,7 @@ function put(element: HTMLElement, html: string): void {
     if (element.dataset["html"] === html) return
     element.dataset["html"] = html
     const at = controlsOf(element).indexOf(document.activeElement as HTMLElement)
-    element.replaceChildren(parsed(html))
+    element.replaceChildren(elementsOf(html))
     const buttons = controlsOf(element)
     if (at >= 0) buttons[Math.min(at, buttons.length - 1)]?.focus({ preventScroll: true })
 }

@@ -19,7 +19,7 @@ export function made<T extends keyof HTMLElementTagNameMap>(
     return element
 }
 
-/** What has not changed is not announced again. */
+/** Set an element's text if it differs, so that a screen reader does not repeat it. */
 export function tell(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text
 }

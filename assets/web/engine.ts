@@ -60,11 +60,9 @@ export interface State {
     frozen: string
 }
 
-/** Something that a reader does. `side` is a robot's number; without it, both are meant. */
+/** Something that a reader does with both robots. */
 export type Act =
-    | { do: "hold"; on: boolean; side?: number }
-    | { do: "pull"; by: Vector | null; side?: number } // from where the end-point was; null: let go
-    | { do: "run"; on: boolean }
+    | { do: "hold" | "run"; on: boolean }
     | { do: "step" | "reset" }
     | { do: "rate"; rate: number }
     | { do: "look"; at: number | null }

@@ -8,18 +8,19 @@ import { LocalEngine } from "./local"
 import type { Simulation } from "./simulation"
 import { Strip } from "./strip"
 import { View } from "./view"
-import { said } from "./words"
+import { said, withoutNumbers } from "./words"
 
 const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
 const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
 const TRACE = 4 // [s], of the tips' traces
 const PULL = 0.03 // [m], by which a key pulls
-const PULLS: Record<string, Point> = { a: [-PULL, 0], d: [PULL, 0], w: [0, PULL], s: [0, -PULL] }
+const FURTHER = 0.005 // [m], by which a key pulls further in a lesson, as in the lab
+const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] }
 
 export class Figure {
-    readonly engine = new LocalEngine(this.simulation, this.branches)
+    readonly engine = new LocalEngine(this.simulation, !this.inLesson)
     private readonly data = this.simulation.data
-    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true), this.ended))
+    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true)))
     private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))
@@ -33,12 +34,13 @@ export class Figure {
     private kind = ""
     private said = 0
 
-    /** `ended` stops the figure when a page puts another one in its place; `branches`: see `State`. */
+    /** `ended` stops the figure when a page puts another one in its place; in a lesson, one cannot go on from the past,
+     * and keys pull as in the lab. */
     constructor(
         readonly simulation: Simulation,
         into: HTMLElement,
         private readonly ended: AbortSignal = new AbortController().signal,
-        private readonly branches = true,
+        private readonly inLesson = false,
     ) {
         this.live.setAttribute("role", "status")
         into.replaceChildren(...this.parts())
@@ -52,7 +54,7 @@ export class Figure {
     private readonly drag = () => [this.pending?.(), (this.pending = null)]
     get running(): boolean { return this.engine.running }
 
-    /** Something else is to be drawn and said. */
+    /** Update everything that depends on the settings. */
     changed(): void {
         const { simulation, data } = this
         this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
@@ -128,7 +130,7 @@ export class Figure {
     /** Announce what robots do when it changes, and from time to time their millimetres. */
     private say(captions: string[], note: string): void {
         const line = `${spoken(this.simulation, captions)} ${note}`.trim()
-        const kind = line.replace(/[0-9]+/g, "")
+        const kind = withoutNumbers(line)
         const now = performance.now()
         if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
         this.kind = kind
@@ -175,16 +177,21 @@ export class Figure {
             })
     }
 
+    /** Keys pull: while one is pressed, or in a lesson a little further each time, until X lets go. */
     private keys(): void {
-        const { ended: signal } = this
+        const { simulation, inLesson, ended: signal } = this
         let pulling = "" // the key that pulls
         addEventListener("keydown", event => {
-            const key = keyOf(event)
-            if (!PULLS[key] || event.repeat || isTyped(event)) return
+            const key = keyOf(event), way = PULLS[key]
+            if (isTyped(event) || (event.repeat && !inLesson)) return
+            if (inLesson && key === "x") simulation.pull(null)
+            if (!way) return
             pulling = key
-            this.simulation.pull(PULLS[key])
-        }, { signal })
-        addEventListener("keyup", event => keyOf(event) === pulling && this.simulation.pull(null), { signal })
-        addEventListener("blur", () => this.simulation.pull(null), { signal })
+            const [x, y] = (inLesson && simulation.sides.find(side => side.pulledBy)?.pulledBy) || [0, 0]
+            const step = inLesson ? FURTHER : PULL
+            simulation.pull([x + step * way[0], y + step * way[1]])
+        }, { capture: true, signal }) // also while a slider has the focus
+        addEventListener("keyup", event => !inLesson && keyOf(event) === pulling && simulation.pull(null), { capture: true, signal })
+        addEventListener("blur", () => simulation.pull(null), { signal })
     }
 }

@@ -10,7 +10,7 @@ const NAMES = [
 export type Tone = (typeof NAMES)[number]
 type Tones = Record<Tone, string>
 
-const listeners = new Set<() => void>()
+const redraws = new WeakMap<HTMLCanvasElement, () => void>() // what draws a canvas anew
 let kept: Tones | null = null
 
 export function tones(): Tones {
@@ -23,7 +23,7 @@ export function tones(): Tones {
 /** Read the colours again, and draw everything again; for a page that changes its scheme by itself. */
 export function retone(): void {
     kept = null
-    for (const listener of listeners) listener()
+    for (const canvas of document.querySelectorAll("canvas")) redraws.get(canvas)?.()
 }
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", retone)
 
@@ -38,17 +38,13 @@ export class Sheet {
     private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
 
     /** `changed`: everything is to be drawn anew. */
-    constructor(private readonly changed: () => void, ended?: AbortSignal) {
+    constructor(private readonly changed: () => void) {
         const observer = new ResizeObserver(entries => {
             this.box = entries[entries.length - 1]!.contentRect
             this.measure()
         })
         observer.observe(this.canvas)
-        listeners.add(changed)
-        ended?.addEventListener("abort", () => {
-            observer.disconnect()
-            listeners.delete(changed)
-        })
+        redraws.set(this.canvas, changed)
     }
 
     /** How much larger everything is drawn; `width` and `height` are what there is room for. */

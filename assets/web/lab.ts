@@ -19,7 +19,7 @@ const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is 
 const NUMBERS = 100 // [ms] between changes of the large numbers
 const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
-const PHONE = matchMedia("(width <= 36em)") // in these words; portrait.js changes the others
+const PHONE = matchMedia("(width <= 36em)") // spelt unlike viser's query, which portrait.js rewrites
 
 /** Our part of the page, in one language. */
 class Face {
@@ -52,7 +52,7 @@ class Face {
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal)
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
-        this.overlay = new SymbolOverlay(engine, signal)
+        this.overlay = new SymbolOverlay(engine)
         this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))

@@ -23,7 +23,7 @@ const WEAK = 0.05 // [N], below which a force is not drawn
 const CALM = 2e-4 // [m], of an error out of the path's plane that does not turn the picture
 
 /** Two directions at right angles, in which the lens looks. */
-type View = readonly [Vector, Vector]
+type Plane = readonly [Vector, Vector]
 
 export class Lens {
     readonly element: HTMLElement
@@ -41,7 +41,7 @@ export class Lens {
     private boxes: Box[] = [] // that letters do not cover
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, private readonly side: number, ended?: AbortSignal) {
-        this.sheet = new Sheet(() => (this.stale = true), ended)
+        this.sheet = new Sheet(() => (this.stale = true))
         this.sheet.canvas.setAttribute("role", "img")
         const tone = engine.texts[side]!.side
         this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
@@ -63,8 +63,8 @@ export class Lens {
         const sample = shown(engine).sides[side]!
         const ink = sheet.cleared()
         const radius = Math.min(sheet.width, sheet.height) / 2
-        const view = viewOf(sample, engine.path)
-        const flat = (point: Vector): Pixel => [dot(point, view[0]), -dot(point, view[1])]
+        const plane = planeOf(sample, engine.path)
+        const flat = (point: Vector): Pixel => [dot(point, plane[0]), -dot(point, plane[1])]
         const seen = [sample.tip, sample.closest, ...(sample.reference ? [sample.reference] : []), ...(sample.straight ? [sample.straight] : [])]
         const [middle, reach] = extent(seen.map(flat))
         this.zoom(reach, radius || 80, now)
@@ -82,7 +82,7 @@ export class Lens {
         ink.clip()
         this.grid(ink, middle, radius)
         this.things(ink, sample, pixel, radius)
-        if (this.lit) this.light(ink, sample, view, ([x, y]) => [
+        if (this.lit) this.light(ink, sample, plane, ([x, y]) => [
             radius + (x - middle[0]) * this.drawn, HIGHER * radius - (y + middle[1]) * this.drawn,
         ])
         if (radius >= TINY) this.bar(ink, radius)
@@ -171,7 +171,7 @@ export class Lens {
     }
 
     /** Show what a symbol means, in the plane in which the lens looks. */
-    private light(ink: CanvasRenderingContext2D, sample: SideSample, [right, up]: View, pixel: (point: Point) => Point): void {
+    private light(ink: CanvasRenderingContext2D, sample: SideSample, [right, up]: Plane, pixel: (point: Point) => Point): void {
         const { path } = this.engine
         const flat = (point: Vector): Point => [dot(point, right), dot(point, up)]
         const pushed = sample.tip.map((each, k) => each + FORCE * sample.force[k]! / this.drawn)
@@ -270,7 +270,7 @@ export class Lens {
 
 /** The plane in which the lens looks: the path's, in two dimensions; in three, that of the path's direction at
  * the closest point and of the end-point, turned as little as possible from the one in which the path is seen. */
-function viewOf({ tip, closest }: SideSample, { lines, right, up }: PathShape): View {
+function planeOf({ tip, closest }: SideSample, { lines, right, up }: PathShape): Plane {
     if (tip.length < 3) return [right, up]
     const tangent = unit(along(closest, lines))
     const out = unit(cross(right, up))

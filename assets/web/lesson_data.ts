@@ -8,7 +8,7 @@ export const ROBOTS: Robot[] = ["tracker", "follower"]
 export type Setting = number | string
 
 /** One action of a script or a link; it has one of these fields besides `side`. */
-export interface Act {
+export interface Action {
     hold?: boolean
     pull?: [number, number]
     release?: boolean
@@ -23,7 +23,7 @@ export interface Act {
 
 export interface Script {
     until: number
-    do: [number, Act][]
+    do: [number, Action][]
 }
 
 export interface SiteFigure extends FigureData {
@@ -32,7 +32,7 @@ export interface SiteFigure extends FigureData {
     log: FigureData["log"] & Record<"theta_rate" | "speed" | "xi" | "xi_rate" | "u", Place>
 }
 
-export interface Window {
+export interface TimeWindow {
     during: "always" | "held" | "pulled" | "free" | "released"
     last: number
     least: number
@@ -40,7 +40,7 @@ export interface Window {
 
 export type Said = Record<string, string>
 
-export interface Bound extends Window {
+export interface Bound extends TimeWindow {
     kind: "bound"
     quantity: string
     robot: Robot
@@ -50,7 +50,7 @@ export interface Bound extends Window {
     said: Said
 }
 
-export interface Compare extends Window {
+export interface Compare extends TimeWindow {
     kind: "compare"
     quantity: string
     larger: Robot
@@ -114,7 +114,7 @@ export interface SketchData {
 }
 
 export type BlockData =
-    | { kind: "text"; links: (Act[] | null)[]; when?: [string, number[]] }
+    | { kind: "text"; links: (Action[] | null)[]; when?: [string, number[]] }
     | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
     | { kind: "number"; number?: number; tolerance?: number }
     | { kind: "open" }

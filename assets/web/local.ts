@@ -67,8 +67,7 @@ export class LocalEngine implements Engine {
         else if (act.do === "goOn") this.goOn()
         else {
             this.show(null)
-            if (act.do === "hold") this.hold(act.on, act.side)
-            else if (act.do === "pull") simulation.pull(act.by as [number, number] | null, act.side)
+            if (act.do === "hold") this.hold(act.on)
             else if (act.do === "run") this.running = act.on
             else if (act.do === "rate") this.rate = act.rate
             else if (act.do === "reset") simulation.reset()
@@ -110,9 +109,9 @@ export class LocalEngine implements Engine {
         else if (before !== null) this.running = this.resumes
     }
 
-    /** Hold robots or let them go, and let time run: somebody wants to see what happens. */
-    private hold(on: boolean, side?: number): void {
-        this.simulation.hold(on, side)
+    /** Hold both robots or let them go, and let time run: somebody wants to see what happens. */
+    private hold(on: boolean): void {
+        this.simulation.hold(on)
         this.running = true
     }
 

@@ -36,12 +36,13 @@ export interface Notes {
 const FORMAT = "onpath-progress-1"
 const MOST_POINTS = 200
 
+export function noNotes(): Notes {
+    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {} }
+}
+
 export function notesOf(progress: Progress, lesson: string): Notes {
-    const none: Notes = {
-        step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {},
-    }
     const kept = parsed(progress.get(key(lesson)) ?? "{}")
-    return isNotes(kept) ? { ...none, ...kept } : none
+    return isNotes(kept) ? { ...noNotes(), ...kept } : noNotes()
 }
 
 export function keep(progress: Progress, lesson: string, notes: Notes): void {

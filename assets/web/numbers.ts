@@ -60,8 +60,3 @@ export function fixed(value: number, digits: number): string {
     const shown = `${text.slice(0, -digits)}.${text.slice(-digits)}`
     return value < 0 && /[1-9]/.test(shown) ? `-${shown}` : shown
 }
-
-/** A number as the language writes it. */
-export function local(value: number, digits: number, point: string): string {
-    return general(value, digits).replace("-", "−").replace(".", point)
-}

@@ -2,7 +2,8 @@
 
 import type { BlockData, PageData } from "./lesson_data"
 import type { Notes } from "./notes"
-import { local } from "./numbers"
+import { general } from "./numbers"
+import { localized } from "./words"
 
 const STATISTICS: Record<string, (values: number[]) => number> = {
     max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
@@ -20,7 +21,9 @@ export function showOwn(page: PageData, notes: Notes): void {
     }))
     for (const element of document.querySelectorAll<HTMLElement>("[data-own]")) {
         const values = notes.answers[element.dataset["step"]!]?.values
-        if (values) element.textContent = local(STATISTICS[element.dataset["own"]!]!(values), 3, page.words["point"]!)
+        if (!values) continue
+        const value = general(STATISTICS[element.dataset["own"]!]!(values), 3)
+        element.textContent = localized(value.replace("-", "−"), page)
     }
 }
 

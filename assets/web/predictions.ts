@@ -189,10 +189,10 @@ function chartWith(page: Texts, data: SketchData, script: Script | null, changed
 function acting(script: Script | null): Span[] {
     const found: Span[] = []
     let span: Span | null = null
-    for (const [time, act] of [...script?.do ?? []].sort((a, b) => a[0] - b[0])) {
-        if (act.reset || act.path !== undefined) break
-        const kind = act.hold ? "held" : act.pull ? "pulled" : null
-        if (span && (act.hold === false || act.release)) {
+    for (const [time, action] of [...script?.do ?? []].sort((a, b) => a[0] - b[0])) {
+        if (action.reset || action.path !== undefined) break
+        const kind = action.hold ? "held" : action.pull ? "pulled" : null
+        if (span && (action.hold === false || action.release)) {
             span.until = time
             span = null
         } else if (kind && !span) found.push((span = { from: time, until: script!.until, kind }))

@@ -14,7 +14,7 @@ export interface Progress {
 
 const PREFIX = "onpath."
 
-/** In the browser's local storage, for all pages of the site; in memory where there is none. */
+/** In the browser's local storage, for all pages of the site; in memory where there is none, or no room. */
 export class LocalProgress implements Progress {
     private readonly memory = new Map<string, string>()
     lost = false // whether nothing could be kept
@@ -23,15 +23,16 @@ export class LocalProgress implements Progress {
 
     get(key: string): string | null {
         try {
-            return localStorage.getItem(PREFIX + key) ?? this.memory.get(key) ?? null
+            return this.memory.get(key) ?? localStorage.getItem(PREFIX + key)
         } catch {
-            return this.memory.get(key) ?? null
+            return null
         }
     }
 
     set(key: string, value: string): void {
         try {
             localStorage.setItem(PREFIX + key, value)
+            this.memory.delete(key)
         } catch {
             this.lost = true
             this.memory.set(key, value)

@@ -3,7 +3,7 @@
 import type { Kernels } from "./kernels"
 import { Simulation } from "./simulation"
 import type { Happening, RunRecord } from "./checks"
-import { ROBOTS, type Act, type Robot, type SiteFigure, type StepData } from "./lesson_data"
+import { ROBOTS, type Action, type Robot, type SiteFigure, type StepData } from "./lesson_data"
 
 const FRAME = 1 / 60 // [s]
 const MOST = 3600 // samples: the lab keeps one minute, too
@@ -88,14 +88,14 @@ export class Recorded extends Simulation {
     }
 
     /** Perform an action of a script or a link. */
-    act(act: Act): void {
-        const only = act.side ?? undefined
-        if (act.hold !== undefined) this.hold(act.hold, only)
-        else if (act.pull) this.pull(act.pull, only)
-        else if (act.release) this.pull(null)
-        else if (act.path !== undefined) this.choose(act.path)
-        else if (act.reset) this.reset()
-        else if (act.set) this.write(act.set, act.write ?? [])
+    act(action: Action): void {
+        const only = action.side ?? undefined
+        if (action.hold !== undefined) this.hold(action.hold, only)
+        else if (action.pull) this.pull(action.pull, only)
+        else if (action.release) this.pull(null)
+        else if (action.path !== undefined) this.choose(action.path)
+        else if (action.reset) this.reset()
+        else if (action.set) this.write(action.set, action.write ?? [])
     }
 
     record(): RunRecord {

@@ -17,7 +17,8 @@ export interface Kept {
 
 export class Side {
     held = false
-    pulled = false
+    /** How far its tip is pulled in the picture, from where it was when the pull began; null if it is not. */
+    pulledBy: Point | null = null
     /** The reason why it has stopped, counted from 1 in `stops` of its law. */
     stopped = 0
     ticks = 0
@@ -49,6 +50,7 @@ export class Side {
         this.begin(path)
     }
 
+    get pulled(): boolean { return this.pulledBy !== null }
     readonly does = (): LawData => this.figure.laws[this.law]!
     /** Begin anew on a path, at rest, with the path's settings. */
     begin(path: Path): void {
@@ -57,7 +59,8 @@ export class Side {
         kernels.numbers.set(path.data.states[this.law]!, state)
         kernels.numbers.set(path.data.settings, this.settings)
         if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
-        this.held = this.pulled = this.looked = false
+        this.held = this.looked = false
+        this.pulledBy = null
         this.stopped = this.ticks = this.most = 0
         this.seeStart()
     }
@@ -123,7 +126,7 @@ export class Side {
     pull(by: Point | null): void {
         const { settings: places } = this.figure
         if (by && !this.pulled) this.kernels.copy(this.field("y"), this.grabbed, this.sizes.p)
-        this.pulled = by !== null
+        this.pulledBy = by
         this.set(places.hand_active[0], by ? 1 : 0)
         if (!by) return
         this.kernels.numbers.set([0, 0, ...by], this.result)

@@ -1,9 +1,8 @@
 // The live figure of a step, whose kernels are in a script that pages share.
 
-import { isTyped, keyOf } from "./controls"
 import { Figure } from "./figure"
 import { Kernels } from "./kernels"
-import type { Act, Script, SiteFigure, StepData } from "./lesson_data"
+import type { Action, Script, SiteFigure, StepData } from "./lesson_data"
 import { Recorded } from "./recorded"
 
 declare global {
@@ -11,8 +10,6 @@ declare global {
         onpathKernels: Record<string, string>
     }
 }
-
-const NUDGE = 0.005 // [m], of a key, as in the lab
 
 /** The kernels in a script of the site. */
 export async function kernelsOf(name: string): Promise<Kernels> {
@@ -29,22 +26,18 @@ export async function kernelsOf(name: string): Promise<Kernels> {
 }
 
 export class Stage {
-    private pulled: [number, number] | null = null
-
     private constructor(
         readonly figure: Figure,
         readonly simulation: Recorded,
         private readonly into: HTMLElement,
         private readonly ended: AbortController,
-    ) {
-        if (simulation.data.controls.includes("pull")) this.keys()
-    }
+    ) {}
 
     /** Put a figure into the page. */
     static async open(data: SiteFigure, values: StepData["values"], into: HTMLElement): Promise<Stage> {
         const simulation = new Recorded(data, await kernelsOf(data.module), values)
         const ended = new AbortController()
-        return new Stage(new Figure(simulation, into, ended.signal, false), simulation, into, ended)
+        return new Stage(new Figure(simulation, into, ended.signal, true), simulation, into, ended)
     }
 
     close(): void {
@@ -62,11 +55,11 @@ export class Stage {
     }
 
     /** Perform a link's actions; sliders follow. */
-    act(acts: Act[]): void {
-        for (const act of acts) {
-            if (act.run !== undefined) this.run(act.run)
-            else this.simulation.act(act)
-            if (act.reset || act.path !== undefined) this.figure.changed()
+    act(actions: Action[]): void {
+        for (const action of actions) {
+            if (action.run !== undefined) this.run(action.run)
+            else this.simulation.act(action)
+            if (action.reset || action.path !== undefined) this.figure.changed()
         }
         this.sliders()
     }
@@ -87,9 +80,9 @@ export class Stage {
                 return true
             }
             while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
-                const [, act] = waiting.shift()!
-                if (act.rate) figure.engine.act({ do: "rate", rate: act.rate })
-                simulation.act(act)
+                const [, action] = waiting.shift()!
+                if (action.rate) figure.engine.act({ do: "rate", rate: action.rate })
+                simulation.act(action)
                 if (simulation.run === run) continue
                 run = simulation.run
                 before += time
@@ -117,27 +110,5 @@ export class Stage {
             input.value = String(value)
             input.dispatchEvent(new Event("told"))
         })
-    }
-
-    /** The lab's keys: W, A, S, D pull a little further each time, X lets go. */
-    private keys(): void {
-        const ways: Record<string, [number, number]> = {
-            a: [-NUDGE, 0], d: [NUDGE, 0], w: [0, NUDGE], s: [0, -NUDGE],
-        }
-        const options = { capture: true, signal: this.ended.signal }
-        const own = (event: KeyboardEvent) => {
-            const key = keyOf(event)
-            return isTyped(event) || !(key in ways || key === "x") ? "" : key
-        }
-        addEventListener("keydown", event => {
-            const key = own(event)
-            if (!key) return
-            event.stopImmediatePropagation()
-            const way = ways[key]
-            this.pulled = way ? [(this.pulled?.[0] ?? 0) + way[0], (this.pulled?.[1] ?? 0) + way[1]] : null
-            this.simulation.pull(this.pulled)
-        }, options)
-        addEventListener("keyup", event => own(event) && event.stopImmediatePropagation(), options)
-        addEventListener("blur", () => (this.pulled = null), options)
     }
 }

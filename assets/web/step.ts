@@ -63,8 +63,10 @@ export class StepView {
         else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
             ask(page, element, block, `${index}.${place}`, student)
         else if (prediction?.step === index && prediction.block === place) {
-            this.form?.board?.remove()
+            const before = this.form
+            before?.board?.remove()
             this.form = predict(page, prediction, student)
+            if (before) this.place()
         }
     }
 
@@ -104,7 +106,8 @@ export class StepView {
         }
     }
 
-    /** Show what was committed, and of a run what may be seen: nothing before the prediction, the words after it. */
+    /** Show what was committed, and as much of a run as may be seen: nothing before the prediction is made, the text
+     * after it. */
     run(): void {
         const { page, index, notes, robots, prediction } = this
         const { section } = this.places

@@ -29,7 +29,7 @@ export class Strip {
 
     constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal) {
         const axes = { label: said(texts, "chart.title"), unit: "mm", bottom: 0, top: TOPS[0]! }
-        this.chart = new Chart(texts, axes, () => (this.stale = true), ended)
+        this.chart = new Chart(texts, axes, () => (this.stale = true))
         this.chart.sheet.canvas.setAttribute("aria-label", said(texts, "chart.title"))
         this.chart.plot.append(this.handle)
         this.scale()

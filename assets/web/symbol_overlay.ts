@@ -12,8 +12,8 @@ export class SymbolOverlay {
     private drawn = ""
     private readonly sheet: Sheet
 
-    constructor(private readonly engine: RemoteEngine, ended: AbortSignal) {
-        this.sheet = new Sheet(() => {}, ended)
+    constructor(private readonly engine: RemoteEngine) {
+        this.sheet = new Sheet(() => {})
         this.sheet.canvas.className = "lit-up"
         this.sheet.canvas.setAttribute("aria-hidden", "true")
     }

@@ -3,7 +3,7 @@
 import { made } from "./controls"
 import type { Verdict } from "./checks"
 import type { PageData, TaskData } from "./lesson_data"
-import { said } from "./words"
+import { localized, said } from "./words"
 import { general } from "./numbers"
 import type { Student } from "./student"
 
@@ -34,7 +34,7 @@ export class Task {
     private show(verdicts: Verdict[]): void {
         const { page, element, data } = this
         const best = this.student.notes.tasks[data.id]
-        const passed = best === undefined ? "" : data.best ? `: ${general(best, 3).replace(".", page.words["point"]!)}` : " "
+        const passed = best === undefined ? "" : data.best ? `: ${localized(general(best, 3), page)}` : " "
         const text = JSON.stringify([verdicts, passed])
         if (text === this.shown) return
         this.shown = text

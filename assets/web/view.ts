@@ -19,8 +19,8 @@ export class View {
     private left = 0
     private top = 0
 
-    constructor(private readonly side: Side, private readonly data: FigureData, changed: () => void, ended: AbortSignal) {
-        this.sheet = new Sheet(changed, ended)
+    constructor(private readonly side: Side, private readonly data: FigureData, changed: () => void) {
+        this.sheet = new Sheet(changed)
         this.canvas = this.sheet.canvas
         const [left, right, bottom, top] = data.box
         this.canvas.style.aspectRatio = String((right - left) / (top - bottom))

@@ -4,7 +4,7 @@
 import type { LabState, RemoteEngine } from "./channel"
 import { made, tell } from "./controls"
 import { shown } from "./engine"
-import { said, type Texts } from "./words"
+import { said, withoutNumbers, type Texts } from "./words"
 
 const AGAIN = 8000 // [ms], between announcements that differ only in numbers
 const REST = 1500 // [ms], between any two
@@ -72,7 +72,7 @@ export class Voice {
         this.invited.tabIndex = -1
         this.message.hidden = this.invitation.hidden = true
         this.element.append(this.message, this.region)
-        new Tones(engine, ended)
+        new DistanceTones(engine, ended)
         engine.on(change => change === "state" && this.show(), ended)
         ended.addEventListener("abort", () => this.element.remove())
         this.watchTouches()
@@ -135,7 +135,7 @@ export class Voice {
         this.waiting = 0
         const spoken = this.region.textContent ?? ""
         if (this.ended.aborted || this.wanted === spoken) return
-        const left = this.spokenAt + (sense(this.wanted) === sense(spoken) ? AGAIN : REST) - performance.now()
+        const left = this.spokenAt + (withoutNumbers(this.wanted) === withoutNumbers(spoken) ? AGAIN : REST) - performance.now()
         if (left > 0) this.waiting = window.setTimeout(() => this.speak(), left)
         else this.announce(this.wanted)
     }
@@ -201,7 +201,7 @@ export class Voice {
 }
 
 /** The distances as two tones: the left robot's in the left ear, the right one's in the right. */
-class Tones {
+class DistanceTones {
     private context: AudioContext | null = null
     private voices: { tone: OscillatorNode; gain: GainNode }[] = []
     private due = 0
@@ -245,8 +245,4 @@ class Tones {
     private wake(): void {
         if (this.context?.state === "suspended") void this.context.resume()
     }
-}
-
-function sense(text: string): string {
-    return text.replace(/\d+/g, "")
 }

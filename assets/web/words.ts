@@ -16,13 +16,23 @@ export function filled(text: string, values: Record<string, string>): string {
     return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
 }
 
+/** A formatted number with the decimal separator of the language in place of the point. */
+export function localized(number: string, { words }: Texts): string {
+    return number.replace(".", words["point"] ?? ".")
+}
+
 /** A number as the language writes it. */
 export function written(texts: Texts, value: number, digits?: number): string {
     const text = digits === undefined ? String(value) : value.toFixed(digits).replace(/^-(?=[0.]*$)/, "")
-    return text.replace("-", "−").replace(".", texts.words["point"] ?? ".")
+    return localized(text.replace("-", "−"), texts)
 }
 
 /** The same with a number of significant digits. */
 export function significant(texts: Texts, value: number, digits: number): string {
     return written(texts, Number(value.toPrecision(digits)))
+}
+
+/** A text without digits: the same text when only its numbers have changed. */
+export function withoutNumbers(text: string): string {
+    return text.replace(/\d+/g, "")
 }

@@ -124,3 +124,64 @@ def test_how_sure_why_a_number_and_a_text_are_typed_and_kept(
     expect(field).to_have_value("It waits. <b>So</b> what?")
     assert tab.errors == []
     context.close()
+
+
+def test_the_board_stays_through_a_commit_and_can_be_drawn_on_when_asked_again(
+    browser: Browser, server: LabServer
+) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    page, board = tab.page, tab.page.locator(".board")
+    tab.ask(c.TakeStep(TIMETABLE, 1))
+    tab.wait_until_built()
+    _draw(tab)
+    page.get_by_label("How sure").select_option(label="certain")
+    tab.button("Commit to this prediction").click()
+    page.get_by_text("You were: certain").wait_for()
+    expect(board).to_be_visible()
+    tab.ask(c.TakeStep(TIMETABLE, 1, again=True))
+    page.get_by_text("Discuss the question").wait_for()
+    _draw(tab)
+    tab.button("Commit to this prediction").click()
+    answer = wait_for(tab.lab.lessons.answer)
+    assert len(answer.times) > 4
+    assert tab.errors == []
+    context.close()
+
+
+def test_boards_that_are_replaced_are_forgotten(browser: Browser, server: LabServer) -> None:
+    context = browser.new_context(viewport={"width": 1280, "height": 800})
+    tab = Tab(server, context, draws=False)
+    tab.ask(c.TakeStep(TIMETABLE, 1))
+    tab.wait_until_built()
+    before = _canvases(tab)
+    for _ in range(4):
+        tab.ask(c.Predict(times=(0.0, 8.0), values=(0.0, 40.0), sure="certain"))
+        tab.page.get_by_text("You were: certain").wait_for()
+        tab.ask(c.TakeStep(TIMETABLE, 1, again=True))
+        tab.page.get_by_text("Discuss the question").wait_for()
+    wait_for(lambda: _canvases(tab) <= before + 1)
+    context.close()
+
+
+def _canvases(tab: Tab) -> int:
+    """Number of canvases that the page keeps in memory; collects its garbage."""
+    devtools = tab.page.context.new_cdp_session(tab.page)
+    of = devtools.send("Runtime.evaluate", {"expression": "HTMLCanvasElement.prototype"})
+    id_ = of["result"]["objectId"]
+    found = devtools.send("Runtime.queryObjects", {"prototypeObjectId": id_})["objects"]
+    count = int(found["description"].removeprefix("Array(").removesuffix(")"))
+    devtools.detach()  # which lets go of what was found
+    return count
+
+
+def _draw(tab: Tab) -> None:
+    """Draw a curve on the board."""
+    box = tab.page.locator(".board").bounding_box()
+    assert box is not None
+    way = [
+        (box["x"] + x * box["width"], box["y"] + y * box["height"])
+        for x, y in ((0.1, 0.8), (0.4, 0.3), (0.7, 0.8))
+    ]
+    with tab.dragging(*way, in_scene=False):
+        pass

@@ -57,6 +57,25 @@ def test_a_browser_that_keeps_nothing_says_so_in_a_lesson(browser: Browser, page
     context.close()
 
 
+def test_what_was_written_last_is_read_also_when_there_was_no_room_for_it(page: Page) -> None:
+    assert page.evaluate("""() => {
+        const { progress } = site.student, { setItem } = Storage.prototype
+        const read = ["first"]
+        progress.set("some", read[0])
+        Storage.prototype.setItem = () => { throw new Error("full") }
+        progress.set("some", "second")
+        read.push(progress.get("some"))
+        Storage.prototype.setItem = setItem
+        progress.set("some", "third")
+        read.push(progress.get("some"))
+        localStorage.setItem("onpath.some", "by another page")
+        read.push(progress.get("some"))
+        localStorage.removeItem("onpath.some")
+        document.querySelector("#notice").replaceChildren()
+        return read
+    }""") == ["first", "second", "third", "by another page"]
+
+
 # Notes as a short text.
 
 

@@ -175,6 +175,29 @@ def test_with_one_thumb_on_a_telephone(browser: Browser, addresses: dict[str, st
     at_peace(reader, addresses["files"])
 
 
+def test_keys_pull_further_each_time_and_from_zero_after_the_hand_has_let_go(
+    browser: Browser, addresses: dict[str, str]
+) -> None:
+    reader = read_on(browser, addresses, "files", PAGE)
+    page = reader.page
+    reader.ready()
+
+    def pulled(*keys: str) -> list[list[float] | None]:
+        for key in keys:
+            page.keyboard.press(key)
+        by = page.evaluate("site.stage.simulation.sides.map(side => side.pulledBy)")
+        return [each and [round(1e3 * metres, 6) for metres in each] for each in by]
+
+    assert pulled("d", "d", "w") == [[10, 5], [10, 5]]
+    assert pulled("r") == [None, None]
+    assert pulled("d") == [[5, 0], [5, 0]]
+    assert pulled("x") == [None, None]
+    assert pulled("a") == [[-5, 0], [-5, 0]]
+    page.evaluate("site.stage.act([{release: true}])")
+    assert pulled("a", "s") == [[-5, -5], [-5, -5]]
+    at_peace(reader, addresses["files"])
+
+
 def test_a_second_finger_does_not_draw(browser: Browser, addresses: dict[str, str]) -> None:
     reader = read_on(browser, addresses, "files", PAGE, **PHONE)
     page = reader.page
