@@ -304,7 +304,7 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
         wait_for(lambda told=told, head=head: told in head.inner_text())
         wait_for(lambda: min(page.evaluate(STAGE)) >= SHARE)
         wait_for(lambda head=head: head.evaluate(IN_SIGHT))
-        assert smallest(page) >= 24
+        wait_for(lambda: smallest(page) >= 24)
         if asked is None:
             code = page.get_by_role("img", name="QR code of this address").filter(visible=True)
             assert placed(code)["width"] >= 200 and code.evaluate(IN_SIGHT)
