@@ -125,6 +125,7 @@ class Page:
         """What the data channel tells of the snapshot that is shown; see `state_message`."""
         return state_message(
             snapshot,
+            words=self._words_for(snapshot),
             captions=self._scene.captions.shown,
             said=self._narration.said,
             seen=seen_by(self._client.camera, self._scene.stage, self._robot),
@@ -168,12 +169,16 @@ class Page:
         """Whether the panel makes room for the stage, as for a projector."""
         return snapshot.key.presenting
 
+    def _words_for(self, snapshot: PageSnapshot) -> Words:
+        """The page's texts."""
+        return Words(snapshot.key.language)
+
     def _post_for(self, snapshot: PageSnapshot) -> Post:
         """The function that receives the commands of this page."""
         return self._context.post
 
     def _build(self, first: PageSnapshot) -> None:
-        post, words, robot = self._post_for(first), Words(first.key.language), robot_of(first)
+        post, words, robot = self._post_for(first), self._words_for(first), robot_of(first)
         self._built, self._step = self._key(first), None
         self._lay_out(first)
         tones = DARK if self._context.dark else LIGHT

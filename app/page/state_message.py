@@ -17,22 +17,23 @@ from onpath.models.control.laws.registry import law_named
 
 
 def state_message(
-    snapshot: PageSnapshot, captions: Mapping[str, str], said: Said, seen: Seen
+    snapshot: PageSnapshot, words: Words, captions: Mapping[str, str], said: Said, seen: Seen
 ) -> dict[str, Any]:
-    """The message of a lab's state, in the page's language; see app/viser_adapter/README.md.
+    """The message of a lab's state; see app/viser_adapter/README.md.
 
     Args:
+        words: of the page.
         captions: of the robots, by side; see `app.scene.captions.Captions`.
         said: what the page says.
         seen: how the picture shows the robots.
     """
-    words, laws, run = Words(snapshot.key.language), snapshot.laws, snapshot.run
+    laws, run = snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
     names = displayed_names(laws, words, snapshot.key.in_lesson)
     return {
         "is": "state",
         "v": VERSION,
-        "language": snapshot.key.language,
+        "language": words.language,
         "robot": snapshot.key.robot,
         "titles": [titles[side] for side in laws],
         "names": [names[side] for side in laws],

@@ -24,8 +24,7 @@ class TeacherView(Page):
 
     For a projector, the lab's controls are folded, and those of the class are beside the stage.
 
-    Args:
-        first: initial snapshot of the teacher's own lab, which also sets the language of the page.
+    The page is in the teacher's language, whoever's lab is shown.
     """
 
     def __init__(
@@ -35,13 +34,18 @@ class TeacherView(Page):
         context: PageContext,
         teaching: TeacherContext,
     ) -> None:
-        self._own_words, self._teaching = Words(first.key.language), teaching
+        self._teaching = teaching
         super().__init__(client, first, context)
 
     @override
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
-        return key.student, key.robot, key.fields, key.plane, self._presents
+        own = self._teaching.progress()
+        return key.student, key.robot, key.fields, key.plane, own.language, own.presenting
+
+    @override
+    def _words_for(self, snapshot: PageSnapshot) -> Words:
+        return Words(self._teaching.progress().language)
 
     @override
     def _post_for(self, snapshot: PageSnapshot) -> Post:
@@ -66,17 +70,17 @@ class TeacherView(Page):
 
     @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:
-        gui, own_words, teaching = self._client.gui, self._own_words, self._teaching
+        gui, teaching = self._client.gui, self._teaching
         if first.key.student:
-            self._parts.append(FollowedStudent(gui, own_words, teaching))
-            self._parts.append(self._controls(own_words, post).show())
+            self._parts.append(FollowedStudent(gui, words, teaching))
+            self._parts.append(self._controls(words, post).show())
         else:
-            self._parts.append(TeacherControls(gui, own_words, teaching))
-            self._build_menus(first, own_words, post)
-            self._parts += self._controls(own_words, post).beside_strip(first)
+            self._parts.append(TeacherControls(gui, words, teaching))
+            self._build_menus(first, words, post)
+            self._parts += self._controls(words, post).beside_strip(first)
         panel = TeacherPanel(
             client=self._client,
-            words=own_words,
+            words=words,
             post=self._context.post,
             course=self._context.course,
             teaching=teaching,

@@ -9,6 +9,9 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+from onpath.app.classroom.classroom import Classroom
+from onpath.app.common.access_codes import shown
+from onpath.app.lab.commands import SetLanguage
 from onpath.app.server.lab_server import LabServer
 from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
@@ -56,6 +59,29 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
         student.read(lambda: student.has_widget("Bahn") and student.code)
         lab = server.sessions.find(student.code)
         assert lab is not None and lab.scheduled.lab.words.language == "de"
+
+
+def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> None:
+    room, german = Classroom(), Words("de")
+    server = LabServer("127.0.0.1", 0, store(), classrooms=[room])
+    address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
+    with Student(address) as student, Student(address) as teacher:
+        student.open()
+        student.set("Nickname", "Ada")
+        student.set("Join the class", True)
+        student.read(lambda: student.sees("You are in the class as"))
+        teacher.open()
+        teacher.set("Teacher's key", shown(room.key))
+        teacher.set("Open the teacher's page", True)
+        teacher.read(lambda: teacher.has_widget("Freeze all labs") and teacher.code)
+        own = server.sessions.find(teacher.code)
+        assert own is not None
+        own.scheduled.lab.post(SetLanguage("de"))
+        teacher.read(lambda: teacher.has_widget(german("class.freeze")))
+        teacher.set(german("class.follow"), "1. Ada")
+        teacher.read(lambda: teacher.sees(german("class.following", name="Ada")))
+        assert teacher.has_widget(german("class.freeze"))
+    server.stop()
 
 
 @pytest.mark.parametrize(("time", "text"), [("0.5", "0,5"), ("−12.25", "−12,25"), ("3", "3")])
