@@ -1,4 +1,4 @@
-// Adds what viser's page lacks: the page's language, names for screen readers, folder headings that
+// Adds what viser's page lacks: names for screen readers, folder headings that
 // are buttons, and refusals that are seen wherever the panel has been scrolled. Names come from the
 // labels on the page, or from the lab's texts in [data-page].
 //
@@ -59,7 +59,6 @@
   function nameTheRest() {
     const words = document.querySelector("[data-page]")?.dataset;
     if (words === undefined) return;
-    set(document.documentElement, "lang", words.language);
     set(document.getElementById("root"), "role", "main");
     set(document.querySelector(COMMANDS), "aria-label", words.keys);
     for (const arrow of document.querySelectorAll("[data-dock-region-collapse]")) {

@@ -215,6 +215,7 @@ export function showLab(): void {
         source = document.querySelector<HTMLElement>("[data-page]")?.dataset ?? source
         if (!source) return // the page is being built; later, its panel may be folded
         root.classList.remove("op-loading")
+        root.lang = source["language"]!
         engine.open(source["ticket"] ?? "")
         if (source["parts"] !== words) {
             face?.end()
