@@ -329,6 +329,35 @@ def test_a_projection_is_stage_numbers_and_question_beside_what_leads_the_class(
     present(tabs, False)
 
 
+HIDDEN = """box => [...box.querySelectorAll("p:first-child, div:has(> b)")].filter(each => {
+    const {left, top, bottom} = each.getBoundingClientRect()
+    return ![top + 3, bottom - 3].every(y => box.contains(document.elementFromPoint(left + 5, y)))
+}).map(each => each.textContent)"""  # a question and its options, from end to end
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+def test_every_question_of_the_course_fits_on_a_projection(tabs: Class, language: str) -> None:
+    page, room, course = tabs.teacher.page, tabs.room, tabs.teacher.lab.lessons.course
+    page.set_viewport_size({"width": 1366, "height": 768})
+    present(tabs, True)
+    tabs.teacher.ask(c.SetLanguage(language))
+    page.locator(f"html[lang={language}]").wait_for()
+    picture = page.locator(".op-class").filter(visible=True).first
+    for name in [*course.lessons, *course.tests]:
+        lesson = course.lesson(name, language)
+        for step in range(len(lesson.steps)):
+            asked = prediction_at(lesson, step)
+            if asked is not None and asked[0] == step:
+                room.show(Display(name, step))
+                told = text_of(asked[1].question)
+                wait_for(lambda told=told: picture.count() and told in picture.inner_text())
+                assert picture.evaluate(HIDDEN) == []
+                assert smallest(page) >= 24
+    tabs.teacher.ask(c.SetLanguage("en"))
+    page.locator("html[lang=en]").wait_for()
+    present(tabs, False)
+
+
 def test_a_page_says_that_it_presents_however_that_was_chosen(tabs: Class) -> None:
     for on in (True, False):
         tabs.teacher.ask(c.SetPresenting(on))  # as the window "Language, display" does
