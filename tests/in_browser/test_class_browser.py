@@ -397,7 +397,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
     wait_for(lambda: first.lab.lessons.index == 2)
-    teacher.page.get_by_text("Sent to 2 students").wait_for()
+    teacher.page.get_by_text("Sent to 2 students").last.wait_for()
     teacher.page.get_by_role("tab", name="Class").click()
     teacher.page.get_by_text("Students who join receive the set-up").wait_for()
     teacher.press("Stop sending this to students who join")
