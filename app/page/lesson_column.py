@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import msgspec
 
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.background import Submit
 from onpath.app.page.lesson_message import lesson_message, measured
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.course import Course
@@ -32,7 +31,7 @@ class LessonColumn:
         course: Course,
         words: Words,
         student: str,
-        submit: Callable[[Callable[[], None]], None],
+        submit: Submit,
         first: PageSnapshot,
     ) -> None:
         self._course, self._words, self._student = course, words, student

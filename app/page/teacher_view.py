@@ -23,7 +23,6 @@ class TeacherView(Page):
     """The teacher's view. A followed lab is read-only.
 
     For a projector, the lab's controls are folded, and those of the class are beside the stage.
-
     The page is in the teacher's language, whoever's lab is shown.
     """
 

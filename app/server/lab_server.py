@@ -288,10 +288,10 @@ class LabServer:
         """Let a browser keep a code before those of its other labs."""
         key = storage_key(STORAGE_KEY, self._places.get(client.client_id, ""))
 
-        def put(kept: str) -> None:
+        def keep(kept: str) -> None:
             client.local_storage.set_item(key, self.sessions.remembered(code, kept))
 
-        ask_item(client, key, put)
+        ask_item(client, key, keep)
 
     def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
         """Build the page of a lab, or of a teacher, and return its feed."""

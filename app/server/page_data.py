@@ -23,7 +23,7 @@ RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another si
 SKIP = '{"is":"skip"}'  # the user wants no introduction
 RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
 LIGHTS = {f'{{"is":"light","symbol":"{name}"}}': name for name in ("", *AT_JOINTS)}
-"""Messages that ask what a symbol of a joint means; with an empty name, nothing any more."""
+"""Messages that ask what a symbol of a joint means; an empty name ends it."""
 _NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 
@@ -69,7 +69,7 @@ class PageData:
 
         Args:
             drawn: how the robots are drawn now.
-            on_resize: called if the page has told that its canvas has another size.
+            on_resize: called if the page has reported that its canvas has changed size.
         """
         stream, self._is_own = self._stream, lab is self._own
         if not stream.is_open:

@@ -115,7 +115,7 @@ export class Voice {
 
     private notify(text: string, level: string): void {
         const { message } = this
-        if (message.hidden || this.text.textContent !== text) this.text.textContent = text // or it is read aloud again and again
+        if (message.hidden || this.text.textContent !== text) this.text.textContent = text // else a screen reader repeats it
         message.dataset["level"] = level
         message.dataset["place"] = level === "replay" && this.isUpright() ? "top" : "bottom"
         message.hidden = text === ""

@@ -6,7 +6,7 @@ import viser
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.classroom.pace_html import pace_view
-from onpath.app.page.panels.widgets import note, on_press, on_user_update
+from onpath.app.page.panels.widgets import note, on_press, on_user_update, put
 from onpath.app.page.teaching.lesson_menu_labels import lesson_titles, step_titles
 from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.lessons.course import Course
@@ -50,8 +50,7 @@ class PaceTab:
         lesson = self._course.lesson(self._lesson, words.language)
         students = [member.progress for member in self._class.members().values()]
         view = pace_view(lesson, students, pace, words, large)
-        if self._shown.content != view:
-            self._shown.content = view
+        put(self._shown, content=view)
         message = note(words("pace.none"))
         if pace is not None:
             titles = {name: title for title, name in self._names.items()}
@@ -63,10 +62,8 @@ class PaceTab:
                     last=pace.last + 1,
                 )
             )
-        if self._message.content != message:
-            self._message.content = message
-        if self._end.visible != (pace is not None):
-            self._end.visible = pace is not None
+        put(self._message, content=message)
+        put(self._end, visible=pace is not None)
 
     def _steps(self) -> list[str]:
         return step_titles(self._course.lesson(self._lesson, self._words.language), self._words)

@@ -9,7 +9,7 @@ from onpath.app.lab.commands import TakeSetup
 from onpath.app.lab.setups.share_code import decode
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.slow_presses import on_slow_press
-from onpath.app.page.panels.widgets import note, on_press
+from onpath.app.page.panels.widgets import note, on_press, put
 from onpath.app.page.teacher_context import TeacherContext
 from onpath.lessons.words import Words
 
@@ -74,9 +74,7 @@ class FollowedStudent:
     def _show_who(self) -> None:
         member = self._class.member(self._teaching.chosen.followed)
         name = member.name if member else ""
-        who = note(self._words("class.following", name=name))
-        if self._who.content != who:
-            self._who.content = who
+        put(self._who, content=note(self._words("class.following", name=name)))
 
 
 def _add_freezing(
@@ -89,6 +87,4 @@ def _add_freezing(
 
 
 def _show_freezing(button: viser.GuiButtonHandle, words: Words, frozen: bool) -> None:
-    label = words("class.unfreeze" if frozen else "class.freeze")
-    if button.label != label:
-        button.label = label
+    put(button, label=words("class.unfreeze" if frozen else "class.freeze"))

@@ -13,6 +13,7 @@ from onpath.app.classroom.class_record import class_record
 from onpath.app.classroom.concept_test_results import sheets_without_names
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.page.background import Submit
 from onpath.app.page.panels.dialog import mark_closing
 from onpath.app.page.panels.widgets import Post, note, on_press, on_user_update, put
 from onpath.app.page.teacher_context import TeacherContext
@@ -29,11 +30,9 @@ from onpath.lessons.words import Words
 WIDTH, WIDE = 480, 520  # [px]; wide for a projector
 REFRESH_INTERVAL = 1.0  # [s], refresh period
 
-Submit = Callable[[Callable[[], None]], None]
-
 
 class TeacherPanel:
-    """Five tabs. Only "Class" shows names; it is the first one, and open, unless one presents.
+    """Five tabs. Only "Class" shows names; it comes first and is open, except on a projection.
 
     Args:
         post: receives the commands for the teacher's own lab.
