@@ -65,7 +65,7 @@ class Result:
 
 
 @lru_cache(maxsize=4)
-def _loop(robot: Robot, kind: Kind) -> ManyLoop:
+def loop_of(robot: Robot, kind: Kind) -> ManyLoop:
     return fastest_batch(build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip))
 
 
@@ -75,11 +75,11 @@ def parameters_of(name: str, **changes: float | str) -> Parameters:
 
 
 def runs_untouched(
-    name: str, parameters: Parameters, law: str, path: str = "circle", seconds: float = 10.0
+    name: str, parameters: Parameters, law: str, path: str | Curve = "circle", seconds: float = 10.0
 ) -> bool:
     """Whether a robot runs along its path without a fault if nobody touches it."""
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
-    loop, start = _loop(robot, kind_of(law, parameters, curve)), _begin(robot, curve, 0.0)
+    robot, curve = ROBOTS[name].make(parameters), _curve(path)
+    loop, start = loop_of(robot, kind_of(law, parameters, curve)), begin_at(robot, curve, 0.0)
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)
     ticks = round(seconds / time_step(parameters))
@@ -89,15 +89,15 @@ def runs_untouched(
 
 
 def troubled(
-    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str = "circle"
+    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str | Curve = "circle"
 ) -> list[Result]:
     """Robots that begin at random places, each with a trouble of its own."""
     rng = np.random.default_rng(seed)
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
-    loop, dt = _loop(robot, kind_of(law, parameters, curve)), time_step(parameters)
+    robot, curve = ROBOTS[name].make(parameters), _curve(path)
+    loop, dt = loop_of(robot, kind_of(law, parameters, curve)), time_step(parameters)
     layouts, table, ticks = loop.layouts, curve.table(), round(STEP / dt)
     troubles = [_trouble(rng, robot, curve) for _ in range(count)]
-    begins = [_begin(robot, curve, float(theta)) for theta in rng.uniform(-3, 3, count)]
+    begins = [begin_at(robot, curve, float(theta)) for theta in rng.uniform(-3, 3, count)]
     states = np.stack([first_state(robot, layouts, curve, begin) for begin in begins])
     settings = [settings_vector(robot, layouts, parameters, curve, FREE) for _ in troubles]
     for number, own in enumerate(settings):
@@ -131,7 +131,11 @@ def troubled(
     return [Result(trouble, fault, far, after) for trouble, fault, far, after in found]
 
 
-def _begin(robot: Robot, curve: Curve, theta: float) -> Array:
+def _curve(path: str | Curve) -> Curve:
+    return path if isinstance(path, Curve) else presets()[path].curve
+
+
+def begin_at(robot: Robot, curve: Curve, theta: float) -> Array:
     return robot.rest(robot.frame.lift(curve.at(np.array(theta))))
 
 
