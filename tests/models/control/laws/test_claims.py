@@ -12,10 +12,12 @@ import pytest
 
 import onpath
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.control.laws.contouring import contouring
 from onpath.models.control.laws.disturbance_observer import disturbance_observer
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.laws.virtual_constraint import virtual_constraint
 from onpath.models.paths.path_design import presets
+from onpath.models.studies.arena import run_under
 from onpath.models.studies.comparison import Contest, Outcome, compare
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
@@ -65,6 +67,24 @@ def test_contouring_is_on_time_while_its_error_is_small_and_then_goes_far_off() 
     for obstruction in ("none", "start_off_at_rest"):
         assert all(abs(delay) < ON_TIME for delay in delays("contouring", obstruction))
     assert off("contouring", "brake") > 2 * off("trajectory_tracking", "brake")
+
+
+def test_a_brake_that_every_other_law_stands_stops_contouring_for_the_reason_that_is_told() -> None:
+    """In a quarter of a second, as its text says; at once it is off its curve."""
+    held = experiments("five_bar")["obstruction"]
+    robot = held.robot().system
+    ends = {n: run_under(held, n) for n, law in LAWS.items() if law.suits(robot)}
+    stops = {name: end.stopped_at for name, end in ends.items() if end.stopped_at is not None}
+    assert [*stops] == ["contouring"] and 0.24 < stops["contouring"] - 3.0 < 0.28
+    stopped = ends["contouring"]
+    assert stopped.distance[3100] > 0.005 > ends["path_following"].distance.max()
+    told = "Likely cause: its reference point was 1.6 rad away, and the law uses the axes of that"
+    assert told in stopped.reason
+    docstring = " ".join((contouring.__doc__ or "").split())
+    assert stated("stops after # s, when its reference point is # rad ahead", docstring) == [
+        pytest.approx(stops["contouring"] - 3.0, abs=0.01),
+        pytest.approx(np.ptp(stopped.fields["theta_ref"][3000:, 0]), abs=0.1),
+    ]
 
 
 def test_event_based_is_soonest_at_its_speed_and_is_pressed_off_the_curve() -> None:
