@@ -984,6 +984,7 @@ forecast-unstable = the zero dynamics are unstable: while the output stays on th
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
 cause-limit = the motors were at their limit of { $limit } { $unit } (raise it, or lower the speed)
+cause-small_errors = its reference point was { $away } rad away, and the law uses the axes of that point, which are meant for small errors
 cause-force = a force of { $force } N acted on it
 cause-far = it was at a place where the closest point is unreliable
 cause-turned = it turned by { $turned } rad in a control interval (a faster controller helps)
