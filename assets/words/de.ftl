@@ -1728,6 +1728,8 @@ robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Tr�
 robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauchte mehr als { $seconds } s
+robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es ist abgestürzt oder brauchte zu viel Speicher
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
@@ -1735,7 +1737,10 @@ robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg 
 robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
 robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
-robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
+robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
+robot_file-unknown = in <{ $parent }> gibt es kein solches Element
+robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-meshes = die Netze haben mehr als { $most }
 robot_file-left_out = weggelassen: { $parts }
 
 ## Die Arena (app/exports/arena_page.py)

@@ -1369,6 +1369,8 @@ robot_file-massless = what the joint { $joint } moves has no mass or inertia: ad
 robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² is enough, --armature { $armature }
 robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
+robot_file-mujoco_slow = MuJoCo was ended while it read { $file }: it took more than { $seconds } s
+robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, or needed too much memory
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
@@ -1376,7 +1378,10 @@ robot_file-still = the joint { $joint } has no travel between its limits, and st
 robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
 robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER)
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
-robot_file-refused = <{ $element }> would read other files or run code: leave it out
+robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
+robot_file-unknown = there is no such element in <{ $parent }>
+robot_file-mesh = the mesh { $mesh } is not a .stl, .obj or .msh file of up to 20 MB in the folder or package of the robot (--package NAME=FOLDER)
+robot_file-meshes = the meshes have more than { $most }
 robot_file-left_out = left out: { $parts }
 
 ## The arena (app/exports/arena_page.py)
