@@ -1188,7 +1188,7 @@ parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
 
 parameter-payload-label = Last
-parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
+parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
 
 parameter-alpha-label = α
 parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon

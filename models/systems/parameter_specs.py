@@ -104,7 +104,8 @@ def model_error(label: str, text: str, on: float = 30.0) -> Any:
 
 def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
     """A dataclass field for a mass at the end-point that no controller knows, [kg]."""
-    text = "mass at the end-point; the controller does not know"
+    text = "mass at the end-point; the controller does not know it, and its integral lifts no more"
+    text += " than what would otherwise hang 10 mm low"
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
 
 

@@ -78,22 +78,33 @@ def runs_untouched(
     name: str, parameters: Parameters, law: str, path: str = "circle", seconds: float = 10.0
 ) -> bool:
     """Whether a robot runs along its path without a fault if nobody touches it."""
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
+    return untouched(name, parameters, law, presets()[path].curve, seconds) is not None
+
+
+def untouched(
+    name: str, parameters: Parameters, law: str, curve: Curve, seconds: float = 10.0
+) -> float | None:
+    """Largest distance of a robot that nobody touches, [m], from 1 s on; None if it stops."""
+    robot = ROBOTS[name].make(parameters)
     loop, start = _loop(robot, kind_of(law, parameters, curve)), _begin(robot, curve, 0.0)
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)
     ticks = round(seconds / time_step(parameters))
     state = first_state(robot, layouts, curve, start)
     _, (rows,) = loop.run_many([state], [settings], [curve.table()], ticks)
-    return fault_in(robot, layouts.log, law, rows, parameters) is None
+    if fault_in(robot, layouts.log, law, rows, parameters) is not None:
+        return None
+    moved = layouts.log.unpack(rows)["y"][round(1 / time_step(parameters)) :]
+    return float(path_distance(robot.frame, curve, moved).max())
 
 
 def troubled(
-    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str = "circle"
+    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str | Curve = "circle"
 ) -> list[Result]:
     """Robots that begin at random places, each with a trouble of its own."""
     rng = np.random.default_rng(seed)
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
+    robot = ROBOTS[name].make(parameters)
+    curve = path if isinstance(path, Curve) else presets()[path].curve
     loop, dt = _loop(robot, kind_of(law, parameters, curve)), time_step(parameters)
     layouts, table, ticks = loop.layouts, curve.table(), round(STEP / dt)
     troubles = [_trouble(rng, robot, curve) for _ in range(count)]
