@@ -1117,7 +1117,10 @@ parameter-encoder_counts-unit = je Umdrehung
 parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
 
 parameter-encoder_filter-label = Filterzeit
-parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern; ohne deren Stufen und ohne Rauschen bewirkt sie nichts
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern, wenn es keinen Beobachter gibt; ohne Stufen und ohne Rauschen bewirkt sie nichts
+
+parameter-observer_time-label = Beobachter
+parameter-observer_time-help = die Geschwindigkeiten schätzt ein Beobachter mit dem Modell des Reglers; in dieser Zeit vergisst er Fehler. 0: der Filter liefert sie; ohne Stufen und ohne Rauschen bewirkt sie nichts
 
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
@@ -1137,7 +1140,7 @@ parameter-delay-unit = Regeltakte
 parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort
 
 parameter-sensor_noise-label = Messrauschen
-parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel; ihr Filter liefert die Geschwindigkeiten
+parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel
 
 parameter-seed-label = Startwert des Rauschens
 parameter-seed-help = wählt die Zufallszahlen des Rauschens: gleicher Startwert, gleicher Lauf

@@ -119,7 +119,10 @@ def pivot_damping(default: float) -> Any:
 
 def velocity_filter(default: float) -> Any:
     """A dataclass field for the filter that gives velocities from measured angles, [s]."""
-    text = "time constant of the velocity filter behind them; no effect without steps or noise"
+    text = (
+        "time constant of the velocity filter behind them, where there is no observer; no effect"
+        " without steps or noise"
+    )
     bounds = (0.0005, 0.05, 0.0005)
     return number(default, "s", bounds, text, group="realism", label="Velocity filter")
 
