@@ -30,7 +30,7 @@ FILE, FROM_FILE = ROOT / "tests" / "data" / "leaf.svg", "from a file"
 LAW = "path_following"
 RATES = (1000, 250, 100)
 SENSORS = {"encoder_counts": 2000.0, "sensor_noise": 1e-4}
-COUNT, SEED = 12, 2026  # of each robot on each path at each rate
+COUNT, SEED = 8, 2026  # of each robot on each path at each rate
 
 
 @dataclass

@@ -47,6 +47,10 @@ class Trouble:
     end: float
     acts: Actor
 
+    def judged(self, t: float) -> bool:
+        """Whether the distance at a time counts: while it acts, and from `BACK` after it on."""
+        return self.begin <= t < self.end or t >= self.end + BACK
+
 
 @dataclass(frozen=True)
 class Result:
@@ -129,14 +133,16 @@ def troubled(
             fault = fault_in(robot, layouts.log, law, own, parameters)
             if fault is not None:
                 faults[i] = t + fault[0] * dt, str(fault[1])
-        well = [k for k, i in enumerate(alive) if faults[i] is None]
+        well = [k for k, i in enumerate(alive) if faults[i] is None and troubles[i].judged(t)]
+        if not well:
+            continue
         y = rows[well][:, :, layouts.log.slices["y"]].reshape(-1, robot.system.p)
         distances = path_distance(robot.frame, curve, y).reshape(-1, ticks).max(axis=1)
         for k, distance in zip(well, distances.tolist(), strict=True):
             i = alive[k]
             if troubles[i].begin <= t < troubles[i].end:
                 off[i] = max(off[i], distance)
-            elif t >= troubles[i].end + BACK:
+            else:
                 late[i] = max(late[i], distance)
     found = zip(troubles, faults, off.tolist(), late.tolist(), strict=True)
     return [Result(trouble, fault, far, after) for trouble, fault, far, after in found]
