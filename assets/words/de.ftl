@@ -1117,7 +1117,10 @@ parameter-encoder_counts-unit = je Umdrehung
 parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
 
 parameter-encoder_filter-label = Filterzeit
-parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern; ohne deren Stufen und ohne Rauschen bewirkt sie nichts
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern, wenn es keinen Beobachter gibt; ohne Stufen und ohne Rauschen bewirkt sie nichts
+
+parameter-observer_time-label = Beobachter
+parameter-observer_time-help = die Geschwindigkeiten schätzt ein Beobachter mit dem Modell des Reglers; in dieser Zeit vergisst er Fehler. 0: der Filter liefert sie; ohne Stufen und ohne Rauschen bewirkt sie nichts
 
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
@@ -1137,7 +1140,7 @@ parameter-delay-unit = Regeltakte
 parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort
 
 parameter-sensor_noise-label = Messrauschen
-parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel; ihr Filter liefert die Geschwindigkeiten
+parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel
 
 parameter-seed-label = Startwert des Rauschens
 parameter-seed-help = wählt die Zufallszahlen des Rauschens: gleicher Startwert, gleicher Lauf
@@ -1191,7 +1194,7 @@ parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
 
 parameter-payload-label = Last
-parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
+parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
 
 parameter-alpha-label = α
 parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon
