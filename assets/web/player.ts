@@ -15,7 +15,6 @@ import { LocalStudent } from "./student"
 import { Task } from "./tasks"
 
 const JUDGED = 500 // [ms] between two looks at the tasks
-const WIDE = matchMedia("(min-width: 60rem)") // as in site.css
 
 export class Player implements Robots {
     index = 0
@@ -42,9 +41,10 @@ export class Player implements Robots {
         this.back.addEventListener("click", () => this.go(-1))
         addEventListener("hashchange", () => this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
-        WIDE.addEventListener("change", () => this.view?.place())
-        this.turnable()
-        addEventListener("resize", () => this.view?.formulas())
+        addEventListener("resize", () => {
+            this.view?.place()
+            this.view?.formulas()
+        })
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
         addEventListener("afterprint", () => this.section.prepend(this.head))
         document.querySelector("main")!.addEventListener("keydown", event => {
@@ -61,18 +61,6 @@ export class Player implements Robots {
     private get section(): HTMLElement { return this.sections[this.index]! }
     /** The open step; undefined at the end. */
     private get view(): StepView | undefined { return this.views[this.index] }
-    /** On a narrow page, lead from the text to the robots and back. */
-    private turnable(): void {
-        const button = document.querySelector<HTMLButtonElement>("#turn")!
-        let seen = false
-        const observer = new IntersectionObserver(entries => {
-            for (const { target, isIntersecting } of entries) if (this.section.contains(target)) seen = isIntersecting
-            button.textContent = said(this.page, seen ? "site.to_text" : "site.to_robots")
-        }, { threshold: 0.5 })
-        for (const robots of document.querySelectorAll(".step .stage")) observer.observe(robots)
-        button.addEventListener("click", () => this.section.querySelector(seen ? ".words" : ".stage")!.scrollIntoView())
-    }
-
     private readonly asked = (): number => Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
     private key(event: KeyboardEvent): void {
         const by = { PageDown: 1, PageUp: -1 }[event.key]
@@ -113,8 +101,7 @@ export class Player implements Robots {
         if (move) {
             const words = section.querySelector<HTMLElement>(".words")!
             words.focus({ preventScroll: true })
-            words.scrollTo(0, 0)
-            scrollTo(0, 0)
+            for (const scrolls of [words, section]) scrolls.scrollTo(0, 0)
         }
         this.show()
         if (this.index === page.steps.length) return this.end()
@@ -153,7 +140,7 @@ export class Player implements Robots {
         })
         this.legend.add(section)
         const beneath = section.querySelector<HTMLElement>(".beneath")!
-        return new StepView(page, index, student, this, { section, beneath, isWide: () => WIDE.matches })
+        return new StepView(page, index, student, this, { section, beneath, isWide: () => getComputedStyle(section).display === "grid" })
     }
 
     act(block: number, link: number): void {

@@ -27,7 +27,7 @@ requests to other servers."""
 MESSAGES = (
     *("lesson.finish", "lesson.next", "lesson.skip", "report.not_happened"),
     *("site.forgotten", "site.forget_sure", "site.read_done", "site.no_progress", "site.not_kept"),
-    *("site.no_platform", "site.no_room", "site.to_robots", "site.to_text", "site.skip_short"),
+    *("site.no_platform", "site.no_room", "site.skip_short"),
     *("site.review", *CHART),
 )
 
