@@ -11,7 +11,7 @@ import msgspec
 from markupsafe import Markup
 
 from onpath.lessons.action_schema import Action, Data, RobotName, Script, StepSetup
-from onpath.lessons.measures.behaviour import Behaviour
+from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.measures.stated import Stated
 from onpath.lessons.task_schema import Task
 
