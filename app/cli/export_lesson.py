@@ -18,7 +18,8 @@ class ExportLesson:
     scorm: Path
     """The .zip file to write."""
     version: Literal["1.2", "2004"] = "1.2"
-    """Version of SCORM. 1.2 stores only 4,096 characters: there, curves are left out if need be."""
+    """Version of SCORM. 1.2 stores only 4,096 characters: there, points of drawn curves and
+    the ends of the longest texts are left out if need be."""
     partial_score: bool = False
     """Whether an unfinished lesson has a score, too: the share that is right so far."""
     language: str = "en"

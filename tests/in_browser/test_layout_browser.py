@@ -67,14 +67,16 @@ FAULTS = """larger => {
     }
     const look = ways => {
         const hold = own.querySelector(".brakes > button.main")
-        for (const element of [...own.querySelectorAll(".seen > canvas"), ...(hold ? [hold] : [])]) {
+        const robots = own.querySelectorAll(".seen > canvas")
+        for (const element of [...robots, ...(hold ? [hold] : [])]) {
             const box = element.getBoundingClientRect()
             const {left, top, right, bottom, width, height} = box
             const [across, down] = [Math.min(200, 0.45 * innerWidth / larger), 150]
             const isSmall = width < across || height < down - 0.5
             if (element !== hold && isSmall) says("too small", element, box)
             const isBeside = left < -0.5 || right > innerWidth + 0.5
-            if (isBeside || top < -0.5 || bottom > innerHeight + 0.5) says(`outside ${ways}`, element)
+            const isOver = top < -0.5 || bottom > innerHeight + 0.5
+            if (isBeside || isOver) says(`outside ${ways}`, element)
             const ends = element === hold ? [0.5] : [0.05, 0.5, 0.95] // a button has round corners
             for (const x of ends) for (const y of ends) {
                 const found = document.elementFromPoint(left + x * width, top + y * height)
