@@ -26,13 +26,13 @@ TOUCHED = {
         " _snapshot_container_context _websock_interface print_threadpool_errors svg_from_icon"
     ),
     "_gui_handles.py": (
-        "_impl _queue_update parent_container_id print_task_error removed svg_from_icon sync_cb"
-        " trigger_cb update_cb"
+        "UploadedFile _impl _queue_update parent_container_id print_task_error removed"
+        " svg_from_icon sync_cb trigger_cb update_cb"
     ),
     "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
-        "CommandTriggerMessage FileTransferPart FileTransferStartUpload GuiUpdateMessage HotkeyKey"
-        " ImageMessage ImageProps KeyModifier LocalStorageGetItemRequestMessage"
+        "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
+        " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier LocalStorageGetItemRequestMessage"
         " LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
         " SceneNodeUpdateMessage SetCameraFovMessage SetCameraLookAtMessage"
         " SetCameraPositionMessage SetCameraUpDirectionMessage SetPositionMessage"
