@@ -32,8 +32,8 @@ TOUCHED = {
     "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
         "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
-        " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier LocalStorageGetItemRequestMessage"
-        " LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
+        " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier"
+        " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
         " SceneNodeUpdateMessage SetCameraFovMessage SetCameraLookAtMessage"
         " SetCameraPositionMessage SetCameraUpDirectionMessage SetPositionMessage"
         " ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
