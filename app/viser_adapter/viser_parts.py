@@ -33,10 +33,10 @@ TOUCHED = {
     "_messages.py": (
         "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
         " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier"
-        " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
-        " SceneNodeUpdateMessage SetCameraFovMessage SetCameraLookAtMessage"
-        " SetCameraPositionMessage SetCameraUpDirectionMessage SetPositionMessage"
-        " ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
+        " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message"
+        " SceneNodeClickMessage SceneNodeDragMessage SceneNodeUpdateMessage SetCameraFovMessage"
+        " SetCameraLookAtMessage SetCameraPositionMessage SetCameraUpDirectionMessage"
+        " SetPositionMessage ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
     ),
     "_scene_api.py": (
         "_children_from_node_name _encode_image_binary _handle_from_node_name _owner_id"
