@@ -1496,7 +1496,7 @@ error-file_radius = ein Radius gehört zu corners=round
 error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
 error-file_takes_long = das Lesen der Datei hat zu lange gedauert
 error-file_failed = die Datei konnte nicht gelesen werden
-error-file_busy = Eine Datei nach der anderen: Die letzte wird noch gelesen.
+error-file_busy = eine Datei nach der anderen: Die letzte ist noch in Arbeit
 error-file_incoherent = die Datei kam nicht so an, wie sie angekündigt war: Wähle sie noch einmal
 error-file_late = die Datei war zu lange unterwegs: Wähle sie noch einmal
 error-file_often = zu viele Dateien hintereinander: Warte einen Moment

@@ -1134,7 +1134,7 @@ error-file_radius = a radius is for corners=round
 error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
 error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
-error-file_busy = One file at a time: the last one is still being read.
+error-file_busy = one file at a time: the last one is still under way
 error-file_incoherent = the file did not arrive as it was announced: choose it again
 error-file_late = the file took too long to arrive: choose it again
 error-file_often = too many files in a row: wait a moment

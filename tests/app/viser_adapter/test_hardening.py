@@ -700,7 +700,7 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("brief")
-@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
 @given(FILE_MESSAGES)
 def test_whatever_is_sent_only_whole_files_arrive_and_the_next_one_can_be_sent(
     files: Lab, messages: list[tuple[Any, ...]]
