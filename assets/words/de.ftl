@@ -1488,7 +1488,7 @@ error-file_empty = die Datei ist leer
 error-file_no_text = die Datei ist kein Text
 error-file_described = die Datei beschreibt eine Bahn mit Worten; dazu gibt es keine Optionen
 error-file_points = Zeile { $line }: mehr als { $most } Punkte
-error-file_corners = die Linie hat { $count } Ecken; höchstens { $most } werden abgerundet
+error-file_corners = die Linie hat zu viele Ecken: Höchstens { $most } werden abgerundet
 error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
 error-file_part = part { $part }: die Datei hat { $count } Linien
 error-file_option = { $name }: { $value } ist nicht möglich
@@ -1496,6 +1496,10 @@ error-file_radius = ein Radius gehört zu corners=round
 error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
 error-file_takes_long = das Lesen der Datei hat zu lange gedauert
 error-file_failed = die Datei konnte nicht gelesen werden
+error-file_busy = eine Datei nach der anderen: Die letzte ist noch in Arbeit
+error-file_incoherent = die Datei kam nicht so an, wie sie angekündigt war: Wähle sie noch einmal
+error-file_late = die Datei war zu lange unterwegs: Wähle sie noch einmal
+error-file_often = zu viele Dateien hintereinander: Warte einen Moment
 error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
 error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
 error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, Z, I, J und R, und was die Bahn lässt, wie sie ist, etwa F, S und M3, hat keine Wirkung

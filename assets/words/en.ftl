@@ -1126,7 +1126,7 @@ error-file_empty = the file is empty
 error-file_no_text = the file is not a text file
 error-file_described = the file describes a path in words, which takes no options
 error-file_points = line { $line }: more than { $most } points
-error-file_corners = the line has { $count } corners; at most { $most } are rounded
+error-file_corners = the line has too many corners: at most { $most } are rounded
 error-file_no_line = the file has no line that could be a path
 error-file_part = part { $part }: the file has { $count } lines
 error-file_option = { $name }: { $value } is not possible
@@ -1134,6 +1134,10 @@ error-file_radius = a radius is for corners=round
 error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
 error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
+error-file_busy = one file at a time: the last one is still under way
+error-file_incoherent = the file did not arrive as it was announced: choose it again
+error-file_late = the file took too long to arrive: choose it again
+error-file_often = too many files in a row: wait a moment
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
 error-gcode_word = line { $line }, column { $column }: { $text } is not read. G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are; words that leave the path as it is, such as F, S and M3, have no effect
