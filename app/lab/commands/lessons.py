@@ -9,9 +9,11 @@ from typing_extensions import override
 
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
+from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.progress import Answer, Sure
 from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import unknown_name
 
 MOST_ACTIONS = 100  # of a link; those of lessons have a few
 
@@ -192,6 +194,8 @@ class SetLanguage(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
+        if self.language not in languages():
+            raise unknown_name(self.language, languages(), "language")
         lab.lessons.set_language(self.language)
         lab.clear_message()
 
