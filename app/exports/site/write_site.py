@@ -30,6 +30,7 @@ from onpath.assets import asset_path
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.progress import Truth
 from onpath.lessons.words import DEFAULT, Words
+from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.paths.path_design import presets
 
 SHARED = "site"
@@ -205,8 +206,7 @@ class _Writer:
 
 def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
     """The results of all steps with a script, by lesson and index of the step."""
-    store = LoopCache()
-    store.close()  # compiling is not worth it for one run
+    store = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
     found = dict[tuple[str, int], Truth]()
     for name in names:
         lesson = course.lesson(name, DEFAULT)
