@@ -7,11 +7,12 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import msgspec
 from msgspec.structs import replace
 
-from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.cheating import fair_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
@@ -28,6 +29,8 @@ from onpath.models.systems.catalogue import ROBOTS
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
+PLAYS = "plays"
+"""The table of REFERENCE with the scripts that marks in the text name."""
 NOTES = ("usual", "answer", "ask", "passed")
 """Texts that a block has either in all languages or in none."""
 LANGUAGE = re.compile(r"[a-z]{2}")  # name of a language's file
@@ -215,6 +218,9 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
     }
     for name, table in tables.items():
         line = begins[name]
+        if name == PLAYS:
+            problems += (problem(fault, line) for fault in _play_faults(table, lesson.front.robot))
+            continue
         if name not in ids:
             problems.append(problem(f"there is no task {name!r}{near(name, ids)}", line))
         try:
@@ -228,6 +234,23 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
         for fault in _reference_faults(reference, lesson.front.robot):
             problems.append(problem(f"{name}: {fault}", line_of(fault, rest, begins[name])))
     return read, problems
+
+
+def read_plays(file: Path) -> dict[str, Script]:
+    """The scripts that marks in a lesson's text name, by name.
+
+    Raises:
+        ValueError: the file has a fault, which `read_references` reports.
+    """
+    return msgspec.convert(load_toml(read_text(file)).get(PLAYS, {}), dict[str, Script])
+
+
+def _play_faults(table: Any, robot: str) -> Iterator[str]:
+    try:
+        for name, script in msgspec.convert(table, dict[str, Script]).items():
+            yield from (f"{PLAYS}.{name}: {fault}" for fault in script_faults(script, robot))
+    except msgspec.ValidationError as error:
+        yield f"{PLAYS}: {error}"
 
 
 def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
@@ -280,6 +303,7 @@ def _structure(step: Step) -> dict[str, object]:
         "number of folds": sum(text.html.count("<details>") for text in texts),
         "lab links": [link.actions for text in texts for link in text.links],
         "stated numbers": [replace(each, line=0, text="") for each in step.stated],
+        "marked behaviour": [replace(each, line=0, text="") for each in step.behaviours],
         **_asked(step),
     }
 

@@ -29,10 +29,11 @@ from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import DEFAULT_LAWS
-from onpath.models.errors import Message
+from onpath.models.errors import CodedError, Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameters, near_distance
+from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -50,8 +51,9 @@ class ClosedLoopRun:
 
     Args:
         store: provides its loops.
-        refuse: is given the error of a law that cannot be used with the robot and the inputs; the
-            side then gets a new lab's law.
+        refuse: is given the error of a law that cannot be used with the robot and the inputs, and
+            the side then gets a new lab's law; and once in a run, which motor gives more than the
+            robot's file states.
 
     Attributes:
         side: name of the side.
@@ -92,6 +94,7 @@ class ClosedLoopRun:
         self.slot = single(state, np.zeros(layouts.log.size), 0.0, 0.0)
         self._fill_row(curve)
         self.diverged = None
+        self._beyond = False
         self._change(largest=self.distance)
 
     def restore(self, drive: Drive, curve: Curve) -> None:
@@ -263,6 +266,16 @@ class ClosedLoopRun:
             y, theta = (self.log.unpack(row)[name] for name in ("y", "theta"))
             distance = float(near_distance(self.robot.frame, curve, y[None], theta)[0])
             self._change(row=row, distance=distance, largest=max(self.max_distance, distance))
+
+    def check_torques(self, largest: Array) -> None:
+        """Tell once in a run if a motor gives more than the robot's file states.
+
+        Args:
+            largest: size of the torque of each motor, shape (m,).
+        """
+        if not self._beyond and (found := exceeded(self.robot, largest)) is not None:
+            self._beyond = True
+            self._refuse(CodedError(found.code, **found.arguments))
 
     def configure(
         self,

@@ -81,7 +81,7 @@ class Lab:
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
-        unsaved: whether the latest changes cannot be saved at present.
+        unsaved: why the latest changes are not saved, a key of the catalogues; empty if they are.
         breakdown: what can be done when a robot has stopped.
         phase_asked: whether the page draws a phase plane of its own accord.
         identification: of the controllers' model.
@@ -101,7 +101,7 @@ class Lab:
         self.law_refusals: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
-        self.unsaved = False
+        self.unsaved = ""
         self.breakdown = Breakdown()
         self.phase_asked = False
         self.identification = Identification(store.at_once)
@@ -248,7 +248,7 @@ class Lab:
         if not self.unsaved:
             return self.message, self.message_level
         is_error = bool(self.message) and self.message_level == "error"
-        text = f"{self.words('keep.failed')} {self.message}".strip()
+        text = f"{self.words(self.unsaved)} {self.message}".strip()
         return text, "error" if is_error else "warning"
 
     def show_message(self, message: str, level: str = "info") -> None:

@@ -2,6 +2,7 @@
 
 import type { FigureData, Place } from "./figure_data"
 import type { Curves } from "./notes"
+import type { Package } from "./scorm"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
@@ -143,7 +144,7 @@ export interface PageData {
     symbols: Record<string, string>
     /** Whether this is the concept test, which tells nothing. */
     test?: boolean
-    scorm?: "1.2" | "2004" | null
+    scorm?: Package | null
     figures: SiteFigure[]
     steps: StepData[]
     lessons: Record<string, { steps: number; required: number; tasks: string[] }>

@@ -104,6 +104,8 @@ lesson-locked = Lege dich erst auf eine Vorhersage fest, oder überspringe sie.
 lesson-nothing_to_predict = hier gibt es nichts vorherzusagen
 lesson-no_such_option = diese Antwort gibt es nicht
 lesson-no_number = das ist keine Zahl
+lesson-no_such_task = diese Aufgabe gibt es in diesem Schritt nicht
+lesson-no_more_hints = zu dieser Aufgabe gibt es keinen weiteren Hinweis
 lesson-again = Neu aufbauen
 lesson-play = Geschehen lassen
 lesson-read = Ohne das weiterlesen
@@ -206,6 +208,7 @@ keep-paste_hint = Füge einen Code ein, den dir jemand geschickt hat
 keep-use = Das Labor danach aufbauen
 keep-report = Meine Lektionen als Bericht (HTML)
 keep-failed = Dein Labor kann gerade nicht gespeichert werden. Du kannst weitermachen: Lass diese Seite offen, bis sie sagt, dass es wieder gespeichert ist.
+keep-too_large = Dein Labor ist zu groß geworden, um gespeichert zu werden. Was zuletzt gespeichert wurde, bleibt erhalten; was du ab jetzt tust, geht verloren, wenn du diese Seite schließt.
 keep-again = Dein Labor ist wieder gespeichert.
 keep-anew = Die Datei, in der Labore gespeichert werden, wurde gelöscht oder ersetzt. Dein Labor wird in einer neuen gespeichert.
 keep-with_code = Den Code meines Labors in den Bericht schreiben
@@ -399,8 +402,8 @@ law-path_following-objection = Ihre Autoren begrenzen weder das Integral noch de
 law-contouring-label = Konturregelung
 law-contouring-text = Folgt der Uhr, aber steif quer zur Kurve und weich längs der Kurve.
 law-contouring-good = Sie ist pünktlich und gibt längs der Kurve nach, während sie quer zu ihr steif ist, solange ihr Fehler klein ist.
-law-contouring-limits = Wird sie lange festgehalten, gerät sie weit ab: Ihre Achsen sind die eines Punktes, der davongelaufen ist.
-law-contouring-objection = Ihre Autoren meinen sie für Fehler, die gegen den Krümmungsradius klein sind, und würden das Verhältnis zur Maschine passend wählen.
+law-contouring-limits = Ihre Achsen sind die ihres Bezugspunkts, gedacht für Fehler, die gegen den Krümmungsradius klein sind: Festgehalten ist sie sofort neben ihrer Kurve, und eine Bremse, die andere Gesetze aushalten, kann sie in einer Viertelsekunde zum Anhalten bringen.
+law-contouring-objection = Ihre Autoren würden ihren Fehler klein halten, mit einer langsameren Uhr oder einer steiferen Maschine, und das Verhältnis zur Maschine passend wählen.
 law-event_based-label = Ereignisbasiert
 law-event_based-text = Folgt mit der gewünschten Rate dem nächsten Punkt, als wäre er der Punkt einer Uhr.
 law-event_based-good = Sie erreicht das gewünschte Tempo schneller als alle anderen ohne Fahrplan.
@@ -1116,7 +1119,10 @@ parameter-encoder_counts-unit = je Umdrehung
 parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
 
 parameter-encoder_filter-label = Filterzeit
-parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern; ohne deren Stufen und ohne Rauschen bewirkt sie nichts
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern, wenn es keinen Beobachter gibt; ohne Stufen und ohne Rauschen bewirkt sie nichts
+
+parameter-observer_time-label = Beobachter
+parameter-observer_time-help = die Geschwindigkeiten schätzt ein Beobachter mit dem Modell des Reglers; in dieser Zeit vergisst er Fehler. 0: der Filter liefert sie; ohne Stufen und ohne Rauschen bewirkt sie nichts
 
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
@@ -1136,7 +1142,7 @@ parameter-delay-unit = Regeltakte
 parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort
 
 parameter-sensor_noise-label = Messrauschen
-parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel; ihr Filter liefert die Geschwindigkeiten
+parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel
 
 parameter-seed-label = Startwert des Rauschens
 parameter-seed-help = wählt die Zufallszahlen des Rauschens: gleicher Startwert, gleicher Lauf
@@ -1190,7 +1196,7 @@ parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
 
 parameter-payload-label = Last
-parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
+parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
 
 parameter-alpha-label = α
 parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon
@@ -1325,6 +1331,8 @@ stop-bent = der Balken biegt sich zu weit, obwohl seine Nulldynamik stabil ist: 
 stop-unstable = der Ausgang ist auf der Bahn, das Innere nicht: instabile Nulldynamik
 stop-bent_or_unstable = der Balken biegt sich zu weit: Seine Nulldynamik ist instabil, der Zug zu stark, die Regelung zu langsam oder das Modell des Reglers zu falsch
 stop-because = { $reason }. Vermutliche Ursache: { $causes }
+efforts-stated = Größte Drehmomente der Motoren laut seiner Datei: { $limits }.
+efforts-exceeded = der Motor von { $joint } gab { $gave }, mehr als die { $limit }, die in der Datei des Roboters stehen; mit einer Motorgrenze von 100 % gibt er nicht mehr
 caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Roboter auch unberührt nicht stabil: Er wird nach wenigen Sekunden stehen bleiben. Wähle mindestens { $slowest } Hz
 forecast-singular = die Entkopplungsmatrix ist am Start singulär: Dort können die Motoren den Ausgang aus der Ruhe nicht in jede Richtung beschleunigen, sodass es für das, was das Regelgesetz verlangt, keine Drehmomente gibt
 forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne Motor setzen sich in Bewegung, was immer die Motoren tun
@@ -1332,6 +1340,7 @@ forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der B
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
 cause-limit = die Motoren waren an ihrer Grenze von { $limit } { $unit } (anheben oder langsamer fahren)
+cause-small_errors = sein Bezugspunkt war { $away } rad von ihm entfernt, und das Gesetz rechnet in dessen Achsen, die für kleine Fehler gedacht sind
 cause-force = eine Kraft von { $force } N wirkte auf ihn
 cause-far = er war dort, wo auf den nächsten Punkt kein Verlass ist
 cause-turned = er drehte sich in einem Regelintervall um { $turned } rad (ein schnellerer Regler hilft)
@@ -1534,6 +1543,8 @@ error-database_tables_newer = ihre Tabellen ({ $revision }) stammen von einem ne
 error-database_newer = sie hat die Version { $version } und stammt von einem neueren OnPath, das hier nötig ist
 error-lab_newer = dieses Labor hat ein neueres OnPath gespeichert
 error-lab_unreadable = was von diesem Labor gespeichert ist, lässt sich nicht lesen
+error-not_storable = das kann nicht gespeichert werden: { $reason }
+error-too_much_to_store = das ist zu viel, um gespeichert zu werden: { $size } MB, höchstens { $most } MB
 say-robots_of_then = Dieses Labor wurde mit Robotern aus Dateien gespeichert, die dieser Server nicht hat: { $names }. Es läuft ohne sie weiter; mit --robot und der Datei sind sie wieder da.
 say-laws_of_then = Dieses OnPath hat diese Gesetze oder Verstärkungen nicht, die mit diesem Labor gespeichert wurden: { $names }. Es läuft ohne sie weiter.
 say-path_of_then = Die Bahn, die mit diesem Labor gespeichert wurde, wird heute abgelehnt: { $reasons }. An ihrer Stelle steht der Kreis.
@@ -1634,8 +1645,6 @@ site-no_progress = Diese Datei enthält keinen Fortschritt in diesem Kurs.
 site-not_kept = Dieser Browser speichert für diese Seite nichts. Dein Fortschritt bleibt, bis du sie schließt.
 site-skipped = Du hast die Vorhersage übersprungen. Hier kannst du sie noch machen.
 site-draw_first = Zeichne mit der Maus oder dem Finger in das Diagramm, von links nach rechts. Mit Tasten: Tab führt zu seinen Punkten; die Pfeile nach links und rechts wählen einen, die nach oben und unten bewegen ihn.
-site-to_robots = Roboter
-site-to_text = Text
 site-commit_short = Festlegen
 site-skip_short = Überspringen
 site-again = Die Kurven dieses Laufs sind nicht gespeichert: Lass ihn noch einmal geschehen, um sie zu sehen.
@@ -1724,6 +1733,8 @@ robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Tr�
 robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauchte mehr als { $seconds } s
+robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es ist abgestürzt oder brauchte zu viel Speicher
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
@@ -1731,7 +1742,10 @@ robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg 
 robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
 robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
-robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
+robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
+robot_file-unknown = in <{ $parent }> gibt es kein solches Element
+robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-meshes = die Netze haben mehr als { $most }
 robot_file-left_out = weggelassen: { $parts }
 
 ## Die Arena (app/exports/arena_page.py)

@@ -8,8 +8,10 @@ from typing_extensions import override
 
 from onpath.app.lab.commands.scripts import commands_of, player_of
 from onpath.app.lab.lab import Command, Lab
+from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.progress import Answer, Sure
+from onpath.models.systems.parameter_specs import unknown_name
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +184,8 @@ class SetLanguage(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
+        if self.language not in languages():
+            raise unknown_name(self.language, languages(), "language")
         lab.lessons.set_language(self.language)
         lab.clear_message()
 

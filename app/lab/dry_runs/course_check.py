@@ -7,7 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.dry_runs.behaviour_check import behaviour_faults, page_faults
 from onpath.app.lab.dry_runs.run_samples import Samples
+from onpath.app.lab.dry_runs.sentence_check import sentence_faults
 from onpath.app.lab.dry_runs.sketch_check import sketch_faults
 from onpath.app.lab.dry_runs.stated_check import stated_faults
 from onpath.app.lab.lab import Lab
@@ -16,7 +18,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict, judge
-from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.course import REFERENCE, Course, read_plays, read_references
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.problems import Problem
 from onpath.lessons.record import Record
@@ -44,8 +46,14 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
         runs, faults = _measured_runs(lesson, store)
         if not faults:
             faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
+        faults += behaviour_faults(lesson, read_plays(home / REFERENCE), store)
         yield from (Problem(str(file), line, text) for line, text in faults)
+        for other in course.lessons[name].values():
+            file = home / f"{other.language}.md"
+            shown = page_faults(other, read_text(file))
+            yield from (Problem(str(file), line, text) for line, text in shown)
         yield from _reference_faults(lesson, home / REFERENCE, store)
+    yield from sentence_faults(course, folder, store)
 
 
 def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:

@@ -166,8 +166,9 @@ class View:
         own_gains: those of `Law.own_gains`, by name.
         integral: integral of `ControlAction.error`, (p, 1).
         lag: the greatest age of the controller's information when its torque ends, [s]: the control
-            interval plus, where they exist, the time constant of the velocity filter, the
-            computing delay and the time constant with which composite control predicts bending.
+            interval plus, where they exist, the time constant of the observer or the velocity
+            filter, the computing delay and the time constant with which composite control predicts
+            bending.
         measured: configuration and velocity as measured, not predicted, each (n, 1).
         held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """
@@ -266,6 +267,7 @@ class Law:
         robots: names of the systems that it is made for; none: any.
         stabilizes: whether it also controls coordinates that have no motor, so that nothing can be
             foreseen of them by the zero dynamics.
+        small_errors: whether it is meant for errors that are small against the radius of curvature.
         always_integrates: whether it uses the integral even if K3 = 0.
         origin: file and line of a law of one's own, see `python_law`; None for others. A number of
             its command that is not finite stops the run, and the message names them.
@@ -294,6 +296,7 @@ class Law:
     spatial: bool = False
     robots: tuple[str, ...] = ()
     stabilizes: bool = False
+    small_errors: bool = False
     always_integrates: bool = False
     good: str = ""
     limits: str = ""

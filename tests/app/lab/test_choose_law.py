@@ -7,6 +7,8 @@ import io
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.exports.files import csv_bytes
 from onpath.app.exports.history_figure import draw_history
@@ -37,8 +39,8 @@ def change(lab: Lab, side: str, law: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("law", laws_for())
-@pytest.mark.parametrize("side", SIDES)
+@settings(max_examples=10)
+@given(side=st.sampled_from(SIDES), law=st.sampled_from(laws_for()))
 def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetParameter("K3", 500.0), c.Hold(True))

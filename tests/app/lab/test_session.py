@@ -639,7 +639,8 @@ def test_by_key_and_by_number_too_a_point_goes_as_far_as_it_may(command: c.Comma
     assert not curve_faults(lab.session.robot.margin, editor.design.curve)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_a_command_carries_coordinates_of_the_path_s_plane_to_the_bit(robot: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))

@@ -9,12 +9,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
-from onpath.models.closed_loop.sensing import measure
+from onpath.models.closed_loop.sensing import read
 from onpath.models.closed_loop.simulation import (
     FREE,
     first_state,
@@ -38,6 +40,7 @@ EVERYTHING = {
     "sensor_noise": 5e-5,
     "seed": 7,
 }
+PARTS = ("stiction", "coulomb"), ("torque_step",), ("delay",), ("sensor_noise", "seed"), ()
 Log = dict[str, Array]
 
 
@@ -84,10 +87,8 @@ def ran(
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", list(ROBOTS))
-@pytest.mark.parametrize(
-    "names", [("stiction", "coulomb"), ("torque_step",), ("delay",), ("sensor_noise", "seed"), ()]
-)
+@settings(max_examples=10)
+@given(name=st.sampled_from(list(ROBOTS)), names=st.sampled_from(PARTS))
 def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> None:
     values: dict[str, Any] = {each: EVERYTHING[each] for each in names or EVERYTHING}
     if hasattr(ROBOTS[name].parameters(), "strain_noise") and "seed" in values:
@@ -105,7 +106,8 @@ def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> 
         assert np.array_equal(one, other) and np.isfinite(one).all()
 
 
-@pytest.mark.parametrize("name", list(ROBOTS))
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_the_ideal_loop_has_no_part_in_it(name: str) -> None:
     """Neither its instructions nor what it leaves alone at the end of the state."""
     parameters = ROBOTS[name].parameters()
@@ -351,9 +353,7 @@ def test_strain_gauges_err_by_the_deflection_that_was_asked_for() -> None:
     kernel = kernel_for("flexible", parameters)
     state_symbol, state = kernel.state.symbols("state")
     settings_symbol, settings = kernel.settings.symbols("settings")
-    q, _, _ = measure(
-        robot.system, kind_of("path_following", parameters, CURVE, FREE), state, settings
-    )
+    q = read(robot.system, kind_of("path_following", parameters, CURVE, FREE), state, settings)
     measured = ca.Function("measured", [state_symbol, settings_symbol], [q])
     given = settings_vector(robot, kernel, parameters, CURVE, FREE)
     now = start("flexible", parameters, kernel)
