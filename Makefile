@@ -16,9 +16,8 @@ TOOLS   = $(VENV)/.tools
 # Bytecode is kept beside the tools, whatever the environment says: the processes that tests start
 # would compile all of OnPath again, each of them.
 KEPT    = env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(abspath $(VENV))/bytecode
-# In order, so that the longest test begins early: it would be the last one otherwise.
 QUICK   = "not thorough and not soak"
-PYTEST  = $(KEPT) $(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder
+PYTEST  = $(KEPT) $(BIN)/pytest -n 2 --dist worksteal
 
 .PHONY: run test thorough pages fuzz check format bench soak picture wheel clean
 .DEFAULT_GOAL := run

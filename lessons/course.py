@@ -7,11 +7,12 @@ import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import msgspec
 from msgspec.structs import replace
 
-from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.cheating import fair_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, both_tests
 from onpath.lessons.parse import read_lesson
@@ -28,6 +29,8 @@ from onpath.models.systems.catalogue import ROBOTS
 
 BUILT_IN = Path(__file__).parent / "course"
 REFERENCE = "reference.toml"
+PLAYS = "plays"
+"""The table of REFERENCE with the scripts that marks in the text name."""
 NOTES = ("usual", "answer", "ask", "passed")
 """Texts that a block has either in all languages or in none."""
 LANGUAGE = re.compile(r"[a-z]{2}")  # name of a language's file
@@ -215,6 +218,9 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
     }
     for name, table in tables.items():
         line = begins[name]
+        if name == PLAYS:
+            problems += (problem(fault, line) for fault in _play_faults(table, lesson.front.robot))
+            continue
         if name not in ids:
             problems.append(problem(f"there is no task {name!r}{near(name, ids)}", line))
         try:
@@ -230,10 +236,27 @@ def read_references(lesson: Lesson, file: Path) -> tuple[dict[str, Reference], l
     return read, problems
 
 
+def read_plays(file: Path) -> dict[str, Script]:
+    """The scripts that marks in a lesson's text name, by name.
+
+    Raises:
+        ValueError: the file has a fault, which `read_references` reports.
+    """
+    return msgspec.convert(load_toml(read_text(file)).get(PLAYS, {}), dict[str, Script])
+
+
+def _play_faults(table: Any, robot: str) -> Iterator[str]:
+    try:
+        for name, script in msgspec.convert(table, dict[str, Script]).items():
+            yield from (f"{PLAYS}.{name}: {fault}" for fault in script_faults(script, robot))
+    except msgspec.ValidationError as error:
+        yield f"{PLAYS}: {error}"
+
+
 def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
     if robot in ROBOTS:
         yield from fair_faults(reference, ROBOTS[robot])
-    for script in (reference.solution, reference.failure):
+    for script in (reference.solution, reference.failure, *reference.variant):
         yield from script_faults(script, robot)
 
 
@@ -280,6 +303,7 @@ def _structure(step: Step) -> dict[str, object]:
         "number of folds": sum(text.html.count("<details>") for text in texts),
         "lab links": [link.actions for text in texts for link in text.links],
         "stated numbers": [replace(each, line=0, text="") for each in step.stated],
+        "marked behaviour": [replace(each, line=0, text="") for each in step.behaviours],
         **_asked(step),
     }
 
@@ -288,7 +312,13 @@ def _asked(step: Step) -> dict[str, object]:
     """What a step asks, as in `_structure`."""
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     return {
-        "tasks": [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()],
+        "tasks": [
+            (
+                *(task.id, task.check, len(task.hints), task.best, task.exploratory),
+                [way.when for way in task.way],
+            )
+            for task in step.tasks()
+        ],
         "order of texts and questions": [type(block) for block in step.blocks],
         "right options": [
             [o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)

@@ -8,8 +8,10 @@ from onpath.models.control.laws.own import OWN
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.efforts import stated
 from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import RobotEntry
 
 OTHERS = {
     "path": "check.path",
@@ -55,6 +57,15 @@ def path_label(name: str, words: Words) -> str:
 def robot_label(name: str, words: Words) -> str:
     """Displayed name of a robot in the catalogue."""
     return words.get(f"machine.{name}.label", ROBOTS[name].label)
+
+
+def robot_text(entry: RobotEntry, words: Words) -> str:
+    """What a robot is, with the torque limits that its file states."""
+    translated = words.get(f"machine.{entry.name}.text", "")
+    if not translated or entry.source is None:
+        return translated or entry.text
+    limits = stated(entry.source.chain)
+    return translated if limits is None else f"{translated} {words.sentence(limits)}"
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:

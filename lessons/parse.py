@@ -15,6 +15,7 @@ from markupsafe import Markup
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
+from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import TextError, reader
@@ -46,7 +47,7 @@ from onpath.lessons.vocabulary.blocks import (
     prediction_faults,
     task_faults,
 )
-from onpath.lessons.vocabulary.fences import FENCES, toml_parts
+from onpath.lessons.vocabulary.fences import FENCES
 from onpath.lessons.vocabulary.setups import release_faults, scene_faults, script_faults
 
 NO_MARK, NO_WORDS = StepMark(), Markup()
@@ -71,7 +72,7 @@ class _Draft:
     fences: set[str] = field(default_factory=set[str])  # names of its blocks of TOML
     broken: bool = False  # whether one of its blocks could not be read
 
-    def step(self, stated: tuple[Stated, ...] = ()) -> Step:
+    def step(self, stated: Iterable[Stated], behaviours: Iterable[Behaviour]) -> Step:
         kind: Any = self.kind
         blocks, when = tuple(self.blocks), self.mark.when
         return Step(
@@ -83,7 +84,8 @@ class _Draft:
             script=self.script,
             optional=self.mark.optional or bool(when),
             when=when,
-            stated=stated,
+            stated=tuple(stated),
+            behaviours=tuple(behaviours),
             watch=self.watch,
         )
 
@@ -107,7 +109,8 @@ class _Reader:
     def __init__(self, path: Path, text: str) -> None:
         self._path = path
         self._problems: list[Problem] = []
-        self._text, self._stated = take_stated(text, self._complain, toml_parts(text))
+        text, self._stated = take_stated(text, self._complain)
+        self._text, self._behaviours = take_behaviours(text, self._complain)
         self._markdown = reader()
         self._robot = self._home = "five_bar"
         self._scene = StepSetup()
@@ -133,10 +136,13 @@ class _Reader:
         raise LessonError(self._problems)
 
     def _made(self, drafts: list[_Draft]) -> tuple[Step, ...]:
-        """The steps, each with the numbers that its text states."""
+        """The steps, each with what its text states."""
         ends = [*(draft.line for draft in drafts[1:]), float("inf")]
         return tuple(
-            draft.step(tuple(each for each in self._stated if draft.line <= each.line < end))
+            draft.step(
+                (each for each in self._stated if draft.line <= each.line < end),
+                (each for each in self._behaviours if draft.line <= each.line < end),
+            )
             for draft, end in zip(drafts, ends, strict=False)
         )
 
@@ -148,6 +154,11 @@ class _Reader:
             self._complain(1, "a lesson begins with facts between two lines +++")
             return None, 0
         content = "\n".join(lines[1 : ends[1]])
+        for mark in (*self._stated, *self._behaviours):
+            if mark.line <= ends[1]:
+                self._complain(
+                    mark.line, f"{mark.text!r}: a mark stands in a step, whose run it is of"
+                )
         front = read_toml(content, 2, Front, self._complain)
         self._complain_all(2, _words_faults(content))
         if front is not None:

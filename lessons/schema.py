@@ -11,6 +11,7 @@ import msgspec
 from markupsafe import Markup
 
 from onpath.lessons.action_schema import Action, Data, RobotName, Script, StepSetup
+from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.measures.stated import Stated
 from onpath.lessons.task_schema import Task
 
@@ -182,6 +183,7 @@ class Step(msgspec.Struct, frozen=True):
         when: see `StepMark`.
         watch: of a `run` step: what to look at, shown before and during the run; may be empty.
         stated: numbers in its text that a run must confirm.
+        behaviours: words in its text that say what the lab does.
     """
 
     kind: StepKind
@@ -193,6 +195,7 @@ class Step(msgspec.Struct, frozen=True):
     optional: bool = False
     when: str = ""
     stated: tuple[Stated, ...] = ()
+    behaviours: tuple[Behaviour, ...] = ()
     watch: Markup = Markup()
 
     def predictions(self) -> list[Prediction]:
@@ -262,8 +265,9 @@ class Lesson(msgspec.Struct, frozen=True):
         return [task for step in self.steps for task in step.tasks()]
 
     def required_tasks(self) -> list[Task]:
-        """The tasks of all steps that are not optional."""
-        return [task for step in self.steps if not step.optional for task in step.tasks()]
+        """The tasks of all steps that are not optional, without those to be found by trying."""
+        steps = (step for step in self.steps if not step.optional)
+        return [task for step in steps for task in step.tasks() if not task.exploratory]
 
     def required_steps(self) -> int:
         """Number of the last step that is not optional, from 1."""

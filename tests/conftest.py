@@ -22,6 +22,17 @@ settings.load_profile("laws")
 signal.signal(signal.SIGINT, signal.default_int_handler)  # servers started from here heed it, too,
 # when a shell has started the tests in the background
 
+MOST_REPEATED = 5
+"""Tests that `.ci/run` may repeat before they pass; it shows why each of them failed."""
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Fail if more tests than that were repeated."""
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
+    reports = [] if reporter is None else reporter.stats.get("rerun", [])
+    if len({report.nodeid for report in reports}) > MOST_REPEATED:
+        session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
 
 @pytest.fixture(scope="module", autouse=True)
 def only_our_laws() -> Iterator[None]:

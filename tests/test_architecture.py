@@ -42,7 +42,6 @@ ORDER = [
 ]
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
-PRINTING = ("app/cli/", "assets/examples/")
 DRAWING = ("app.page", "app.scene")
 LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
@@ -72,7 +71,6 @@ def imports(tree: ast.AST) -> Iterator[str]:
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            assert node.level == 0, "relative import"
             yield from (f"{node.module}.{alias.name}" for alias in node.names)
 
 
@@ -265,51 +263,13 @@ def test_public_parts_and_own_private_names_are_no_private_parts() -> None:
     assert private_parts(ast.parse(public)) == private_parts(ast.parse(own)) == []
 
 
-def test_only_the_command_line_prints() -> None:
-    def prints(file: Path) -> bool:
-        names = {node.id for node in ast.walk(parse(file)) if isinstance(node, ast.Name)}
-        return "print" in names and not str(file.relative_to(ROOT)).startswith(PRINTING)
+def test_files_of_pages_come_in_one_way() -> None:
+    """With the limits of file_uploads.py."""
 
-    assert offenders(prints) == []
+    def hears_uploads(file: Path) -> bool:
+        return ".on_upload(" in file.read_text("utf-8")
 
-
-TEXTS = {"read_text": 1, "write_text": 2, "open": 9}
-"""Which argument is the encoding, if it has no name."""
-
-
-def without_encoding(tree: ast.AST) -> list[int]:
-    """Lines where a text is read or written in the encoding of the machine."""
-    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
-    return [call.lineno for call in calls if _guesses_encoding(call)]
-
-
-def _guesses_encoding(call: ast.Call) -> bool:
-    name = getattr(call.func, "attr", getattr(call.func, "id", ""))
-    named = {keyword.arg for keyword in call.keywords}
-    if name not in TEXTS or "encoding" in named or len(call.args) >= TEXTS[name]:
-        return False
-    given = [arg.value for arg in call.args if isinstance(arg, ast.Constant)]
-    modes = [mode for mode in given if mode in ("r", "w", "a", "x", "rt", "wt", "r+", "w+")]
-    is_function = isinstance(call.func, ast.Name)
-    return name != "open" or is_function or bool(modes) or "newline" in named
-
-
-def test_texts_are_in_the_same_encoding_on_every_machine() -> None:
-    assert offenders(lambda file: without_encoding(parse(file))) == []
-
-
-def test_modules_and_public_functions_say_what_they_are() -> None:
-    def silent(file: Path) -> list[str]:
-        tree = parse(file)
-        public = [
-            node
-            for node in tree.body
-            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_")
-        ]
-        without = [node.name for node in public if not ast.get_docstring(node)]
-        return without if ast.get_docstring(tree) or not tree.body else ["the module", *without]
-
-    assert offenders(silent) == []
+    assert offenders(hears_uploads) == ["app/viser_adapter/file_uploads.py: True"]
 
 
 def test_rules_would_notice() -> None:
@@ -317,8 +277,5 @@ def test_rules_would_notice() -> None:
     assert packages(bad) == {"threading", "viser", "app"}
     assert folder_of("onpath.app.lab.session") == "app.lab"
     assert folder_of("onpath.models.arrays.Array") == "models"
-    guessing = "a.read_text()\nb.write_text(x)\nc.open('w', newline='')\nopen(d)\n"
-    knowing = "a.read_text('utf-8')\nb.write_text(x, encoding='utf-8')\nc.open('rb')\nlab.open()"
-    assert without_encoding(ast.parse(guessing + knowing)) == [1, 2, 3, 4]
     first = sources()[0].relative_to(ROOT)
     assert offenders(lambda file: file == sources()[0] and "bad") == [f"{first}: bad"]

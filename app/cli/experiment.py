@@ -55,7 +55,9 @@ class ExperimentCommand:
         """Simulate, then write and print the requested output."""
         from onpath.app.exports.figures import draw_experiment
         from onpath.models.closed_loop.trajectory import write_csv
+        from onpath.models.control.laws.own import law_title
         from onpath.models.studies.experiments import (
+            beyond_limits,
             experiments,
             forecast_text,
             never_held,
@@ -90,6 +92,9 @@ class ExperimentCommand:
         if self.plot:
             with whole_file(self.plot) as path:
                 draw_experiment(chosen, runs, path)
+        for each in runs:
+            if text := beyond_limits(each, chosen.robot()):
+                print(f"onpath: {law_title(each.controller)}: {text}", file=sys.stderr)
         reasons = {each.controller: each.reason or never_held(chosen, each) for each in runs}
         print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 

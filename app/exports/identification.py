@@ -82,6 +82,7 @@ def identification_text(found: FileEstimate) -> str:
         "  The true value is within ± with a probability of 95 %, judging by what is not"
         " explained. That leaves out errors that all rows share: wrong geometry, wrong scales of"
         " torques and forces, forces that are not in the file, and terms that the model lacks."
+        " Where dry friction switches with the direction of motion, ± is too small."
     )
     if result.unexplained > MUCH:
         lines.append(

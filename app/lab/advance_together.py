@@ -21,6 +21,7 @@ from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import near_distances
+from onpath.models.systems.efforts import efforts
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -121,6 +122,10 @@ def _advance(loop: Loop, members: Sequence[Row]) -> None:
         [each.table for _, each in members],
         ticks.count,
     )
+    if efforts(first.robot) is not None:
+        torques = np.abs(rows[..., log.slices["u"]]).max(axis=1)
+        for (run, _), largest_of_run in zip(members, torques, strict=True):
+            run.check_torques(largest_of_run)
     faults = _faults(members, states, rows[..., log.slices["q"]], rows[..., log.slices["v"]])
     good = [i for i, fault in enumerate(faults) if fault is None]
     if good:

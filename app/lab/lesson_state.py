@@ -231,8 +231,17 @@ class LessonState:
         return str(self.index) in self.notes.played
 
     def hint(self, task: str) -> None:
-        """Show one more hint."""
+        """Show one more hint of a task of the open step.
+
+        Raises:
+            ValueError: there is no such task, or it has no further hint.
+        """
+        tasks = {each.id: each for each in self.step.tasks()} if self.step else {}
+        if task not in tasks:
+            raise CodedError("lesson.no_such_task")
         shown = self.notes.hints.get(task, 0) + 1
+        if shown > len(tasks[task].hints):
+            raise CodedError("lesson.no_more_hints")
         self.note(hints={**self.notes.hints, task: shown})
 
     def answer_quiz(self, block: int, option: int) -> None:

@@ -33,7 +33,11 @@ class IdentificationResult:
 
     @property
     def intervals(self) -> dict[str, tuple[float, float]]:
-        """Intervals that contain the true values with a probability of 95 %."""
+        """Intervals that contain the true values with a probability of 95 %.
+
+        This holds for logs with the dry friction that the estimate assumes, which passes smoothly
+        through standstill. If friction switches with the direction of motion, they are too narrow.
+        """
         return {each.label(): (each.low, each.high) for each in self.found.estimate.found}
 
     @property

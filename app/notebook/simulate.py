@@ -100,8 +100,9 @@ def simulate(
 
     Warns:
         UserWarning: a path that crosses itself; a parameter that is given, but has no effect in
-            this run, such as K4 with task="speed"; or what is foreseen for a robot with fewer
-            motors than coordinates, such as unstable zero dynamics.
+            this run, such as K4 with task="speed"; what is foreseen for a robot with fewer
+            motors than coordinates, such as unstable zero dynamics; or a motor that, without
+            `torque_limit`, gave more than the robot's file states.
 
     Held back for a second, the follower stays near its ellipse:
 
@@ -159,6 +160,7 @@ def simulate(
         unused_text(chosen, [name], given),
         experiments.forecast_text(chosen, [name]),
         experiments.never_held(chosen, run.trajectory),
+        experiments.beyond_limits(run.trajectory, chosen.robot()),
     )
     for text in remarks:
         if text:

@@ -34,8 +34,8 @@ class Keeper(Protocol):
         """Save the state that a function returns; it is called in another thread."""
         ...
 
-    def fails(self, code: str) -> bool:
-        """Whether the latest state of a lab could not be saved."""
+    def unsaved(self, code: str) -> str:
+        """Why the latest state of a lab is not saved, as a key of the catalogues, or empty."""
         ...
 
 
@@ -71,9 +71,9 @@ class StateObserver:
         if now != self._seen:
             self._seen = now
             self._keeper.submit(self._code, lambda: _state(*now))
-        if (fails := self._keeper.fails(self._code)) != lab.unsaved:
-            lab.unsaved = fails
-            if not fails:
+        if (unsaved := self._keeper.unsaved(self._code)) != lab.unsaved:
+            lab.unsaved = unsaved
+            if not unsaved:
                 lab.remark(lab.words("keep.again"))
 
 

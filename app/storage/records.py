@@ -44,6 +44,7 @@ from onpath.app.storage.engine import (
 from onpath.app.storage.leases import Renewal, give_up, renew, take
 from onpath.app.storage.private_files import make_private_folder
 from onpath.app.storage.schema import LONGEST_CODE, classes, labs, leases
+from onpath.models.errors import CodedError
 
 log = logging.getLogger(__name__)
 
@@ -78,6 +79,10 @@ def _statements(table: sa.Table) -> _Statements:
 
 _SERVER_TIME = sa.select(sa.cast(sa.extract("epoch", sa.func.clock_timestamp()), sa.Double))
 _STATEMENTS = {table: _statements(table) for table in (labs, classes)}
+
+
+class NotStorable(CodedError):
+    """A state cannot be stored, whatever the database does; the previous one remains."""
 
 
 class HeldElsewhere(Exception):
@@ -197,7 +202,8 @@ class Records:
         """Replace a state that belongs to this process, or save one under a new code.
 
         Raises:
-            ValueError: the state is too large or not JSON, or the code is invalid.
+            NotStorable: the state is too large or not JSON; the previous one remains.
+            ValueError: the code is invalid.
             NotKept: the database cannot be used (disk full, server away); the previous state
                 remains.
             HeldElsewhere: the state belongs to another process.
@@ -338,10 +344,10 @@ def _text(code: str, state: dict[str, Any]) -> str:
     try:
         text = msgspec.json.encode(state).decode()
     except (TypeError, ValueError, RecursionError) as error:
-        raise ValueError(f"this cannot be kept: {error}") from error
+        raise NotStorable("error.not_storable", reason=str(error)) from error
     if len(text) > LARGEST:
-        size = f"{len(text) / 1e6:.1f} MB, at most {LARGEST / 1e6:g} MB"
-        raise ValueError(f"there is too much in this lab to be kept: {size}")
+        size, most = f"{len(text) / 1e6:.1f}", f"{LARGEST / 1e6:g}"
+        raise NotStorable("error.too_much_to_store", size=size, most=most)
     return text
 
 

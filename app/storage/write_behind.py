@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from onpath.app.common.error_log import log_error
 from onpath.app.storage.engine import held
-from onpath.app.storage.records import HeldElsewhere, NotKept
+from onpath.app.storage.records import HeldElsewhere, NotKept, NotStorable
 
 log = logging.getLogger(__name__)
 
@@ -19,6 +19,8 @@ BREATH = 0.01  # [s] between labs, in which the simulation thread can run
 FLUSH = 10.0  # [s] to wait for the last write
 TURN_WAIT = 2.0  # [s] to wait for a write in progress; a user may be waiting, too
 HANGING = 5.0  # [s] after which a write in progress counts as failed
+FAILED, TOO_LARGE = "keep.failed", "keep.too_large"
+"""Keys of what a user is told."""
 
 
 class Store(Protocol):
@@ -54,7 +56,7 @@ class WriteBehind:
         self._records, self._lost = records, lost
         self._interval = interval
         self._pending: dict[str, Callable[[], dict[str, Any]]] = {}
-        self._failed = set[str]()
+        self._failed = dict[str, str]()  # code of a lab -> why its latest state is not saved
         self._current: tuple[str, float] | None = None  # the lab being written, and since when
         self._lock, self._writing = threading.Lock(), threading.Lock()
         self._wanted, self._closing = threading.Event(), threading.Event()
@@ -73,9 +75,15 @@ class WriteBehind:
             self._pending[code] = make_state
         self._wanted.set()
 
-    def fails(self, code: str) -> bool:
-        """Whether the latest state of a lab could not be saved, or will not outlive the process."""
-        return code in self._failed or bool(self._records.warning) or self._hangs(code)
+    def unsaved(self, code: str) -> str:
+        """Why the latest state of a lab is not saved, or will not outlive the process.
+
+        Returns:
+            A key of the catalogues; empty if it is saved.
+        """
+        if (why := self._failed.get(code, "")) or not (self._records.warning or self._hangs(code)):
+            return why
+        return FAILED
 
     def _hangs(self, code: str) -> bool:
         """Whether the write of this lab, or the one that it waits for, takes too long."""
@@ -99,7 +107,7 @@ class WriteBehind:
         """
         with held(self._writing, TURN_WAIT), self._lock:
             self._pending.pop(code, None)
-            self._failed.discard(code)
+            self._failed.pop(code, None)
 
     def flush(self, code: str) -> bool:
         """Write the pending state of one lab, if any, in the caller's thread.
@@ -158,25 +166,29 @@ class WriteBehind:
 
     def _write(self, code: str, make_state: Callable[[], dict[str, Any]]) -> str:
         """Write a state. Returns why it failed and will be repeated, or ""."""
-        failed: set[str] = set()
+        failed = dict[str, str]()
         try:
             self._records.save(code, make_state())
             return ""
         except NotKept as error:
             with self._lock:  # keeps a later state if there is one
                 self._pending.setdefault(code, make_state)
-                failed = set(self._pending)  # the others wait behind this one
+                failed = dict.fromkeys(self._pending, FAILED)  # the others wait behind this one
             return str(error)
+        except NotStorable as error:
+            failed = {code: TOO_LARGE}
+            if self._failed.get(code) != TOO_LARGE:
+                log.warning("a lab cannot be stored and stays as it was stored last: %s", error)
         except HeldElsewhere:
             log.info("a lab has moved to another process")
             self._tell_lost(code)
         except Exception as error:  # must not affect other labs
-            failed = {code}
+            failed = {code: FAILED}
             log_error(error)
         finally:
             with self._lock:
                 self._current = None
-                self._failed.discard(code)
+                self._failed.pop(code, None)
                 self._failed |= failed
         return ""
 

@@ -2,7 +2,7 @@
 
 import type { Side } from "./side"
 import type { FigureData } from "./figure_data"
-import { said, written } from "./words"
+import { said, significant, written } from "./words"
 import type { Simulation } from "./simulation"
 
 function kind(side: Side, off: boolean, data: FigureData): string {
@@ -38,6 +38,12 @@ export function notes(simulation: Simulation): string {
         const time = written(data, side.ticks * data.dt, 1)
         return reason ? said(data, "say.stopped", { robot: simulation.title(i), time, reason }) : ""
     })
+    for (const { beyond } of sides) {
+        if (!beyond) continue
+        const { effort: { joint, unit, most }, gave } = beyond
+        const [given, limit] = [gave, most].map(each => `${significant(data, each, 4)} ${unit}`)
+        lines.push(said(data, "efforts.exceeded", { joint, gave: given!, limit: limit! }))
+    }
     if (followed.doubts.length) {
         const reasons = followed.doubts.map(key => said(data, key)).join("; ")
         lines.push(said(data, "say.ambiguous", { reasons }))

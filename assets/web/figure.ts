@@ -83,12 +83,14 @@ export class Figure {
             view.canvas.setAttribute("role", "img")
             return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
         })
+        const { transport } = controls
+        const brakes = data.controls.includes("hold") ? transport.brakes : []
         const title = made("h2", "", said(data, "chart.title"))
         const strip = data.controls.includes("plot") ? [this.strip.chart.element] : []
         return [
-            made("div", "robots", ...robots),
+            made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.past, ...brakes)),
             this.note,
-            made("div", "bar", ...(strip.length ? [title] : []), controls.transport.element),
+            made("div", "bar", ...(strip.length ? [title] : []), transport.element),
             ...strip,
             controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),

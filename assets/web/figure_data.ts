@@ -33,6 +33,8 @@ export interface PathData extends Texts<"label" | "kind" | "fit"> {
 
 export type SliderData = Texts<"label" | "unit" | "help"> & Numbers<"low" | "high" | "step" | "value" | "place">
 
+export type EffortData = Texts<"joint" | "unit"> & Numbers<"motor" | "most">
+
 export interface FigureData extends Texts<"language" | "module"> {
     words: Record<string, string>
     dt: number
@@ -55,6 +57,8 @@ export interface FigureData extends Texts<"language" | "module"> {
     returns: number
     full: number
     strip: number
+    /** The torque limits that the robot's file states. */
+    efforts: EffortData[]
     poles: Numbers<"interval" | "size" | "steps" | "slow"> & { behaviours: string[] }
     edit: Numbers<"piece" | "fine" | "sums" | "row" | "samples" | "outline" | "grid"> &
         Numbers<"halvings" | "blend" | "nudge"> & { checks: string[] }

@@ -4,18 +4,18 @@ import { made, refused } from "./controls"
 import { ordered } from "./asked"
 import type { PageData } from "./lesson_data"
 import { Legend } from "./legend"
-import { given, thinned } from "./notes"
+import { given } from "./notes"
 import { said } from "./words"
 import { showOwn } from "./own"
 import { Comparison, elementOf } from "./predictions"
 import type { Progress } from "./progress"
-import { Stage } from "./stage"
+import { Recorded } from "./recorded"
+import { kernelsOf, Stage } from "./stage"
 import { StepView, type Robots } from "./step"
 import { LocalStudent } from "./student"
 import { Task } from "./tasks"
 
 const JUDGED = 500 // [ms] between two looks at the tasks
-const WIDE = matchMedia("(min-width: 60rem)") // as in site.css
 
 export class Player implements Robots {
     index = 0
@@ -42,9 +42,10 @@ export class Player implements Robots {
         this.back.addEventListener("click", () => this.go(-1))
         addEventListener("hashchange", () => this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
-        WIDE.addEventListener("change", () => this.view?.place())
-        this.turnable()
-        addEventListener("resize", () => this.view?.formulas())
+        addEventListener("resize", () => {
+            this.view?.place()
+            this.view?.formulas()
+        })
         addEventListener("beforeprint", () => this.sections[0]!.before(this.head)) // above all steps
         addEventListener("afterprint", () => this.section.prepend(this.head))
         document.querySelector("main")!.addEventListener("keydown", event => {
@@ -61,18 +62,6 @@ export class Player implements Robots {
     private get section(): HTMLElement { return this.sections[this.index]! }
     /** The open step; undefined at the end. */
     private get view(): StepView | undefined { return this.views[this.index] }
-    /** On a narrow page, lead from the text to the robots and back. */
-    private turnable(): void {
-        const button = document.querySelector<HTMLButtonElement>("#turn")!
-        let seen = false
-        const observer = new IntersectionObserver(entries => {
-            for (const { target, isIntersecting } of entries) if (this.section.contains(target)) seen = isIntersecting
-            button.textContent = said(this.page, seen ? "site.to_text" : "site.to_robots")
-        }, { threshold: 0.5 })
-        for (const robots of document.querySelectorAll(".step .stage")) observer.observe(robots)
-        button.addEventListener("click", () => this.section.querySelector(seen ? ".words" : ".stage")!.scrollIntoView())
-    }
-
     private readonly asked = (): number => Number(/^#(\d+)$/.exec(location.hash)?.[1] ?? 0) - 1
     private key(event: KeyboardEvent): void {
         const by = { PageDown: 1, PageUp: -1 }[event.key]
@@ -113,11 +102,14 @@ export class Player implements Robots {
         if (move) {
             const words = section.querySelector<HTMLElement>(".words")!
             words.focus({ preventScroll: true })
-            words.scrollTo(0, 0)
-            scrollTo(0, 0)
+            for (const scrolls of [words, section]) scrolls.scrollTo(0, 0)
         }
         this.show()
-        if (this.index === page.steps.length) return this.end()
+        if (this.index === page.steps.length) {
+            this.end()
+            if ((await this.recall(page.steps.keys())) && turn === this.turn) this.end()
+            return
+        }
         const step = page.steps[this.index]!
         const figure = page.figures[step.figure]
         if (!figure) return this.run() // only the lab shows it
@@ -138,6 +130,27 @@ export class Player implements Robots {
             block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell(said(page, "lesson.passed")))] : [],
         )
         this.run()
+        if ((await this.recall([this.index])) && turn === this.turn) this.run()
+    }
+
+    /** Find out what happened in runs that were seen, as far as this visit does not know: curves are not kept, since the page
+     * has them or can compute them again. Returns whether anything is new. */
+    private async recall(runs: Iterable<number>): Promise<boolean> {
+        const { page, notes } = this
+        let isNew = false
+        for (const index of runs) {
+            const { script, truth, values, figure } = page.steps[index]!
+            const data = page.figures[figure]
+            const { prediction, waits } = this.views[index]!
+            if (prediction?.data.kind !== "sketch" || waits || notes.truths[String(prediction.step)]) continue
+            let found = index < notes.seen ? truth : undefined
+            if (!found && notes.played[String(index)] && script && data)
+                found = new Recorded(data, await kernelsOf(data.module), values).played(script, prediction.data.quantity)
+            if (!found) continue
+            notes.truths[String(prediction.step)] = found
+            isNew = true
+        }
+        return isNew
     }
 
     private readonly block = (place: number, index = this.index): HTMLElement =>
@@ -153,7 +166,7 @@ export class Player implements Robots {
         })
         this.legend.add(section)
         const beneath = section.querySelector<HTMLElement>(".beneath")!
-        return new StepView(page, index, student, this, { section, beneath, isWide: () => WIDE.matches })
+        return new StepView(page, index, student, this, { section, beneath, isWide: () => getComputedStyle(section).display === "grid" })
     }
 
     act(block: number, link: number): void {
@@ -176,16 +189,15 @@ export class Player implements Robots {
         }
         stage.play(step.script, whole => {
             this.playing = false
-            if (whole) this.student.sees(index, found?.step ?? index, thinned(stage.simulation.curve(quantity)))
+            if (whole) this.student.sees(index, found?.step ?? index, stage.simulation.curve(quantity))
             this.run()
         })
         draw()
     }
 
     private run(): void {
-        const { page, index, view, notes } = this
-        const step = page.steps[index]
-        if (step?.truth && view && !view.waits) notes.truths[String(view.prediction?.step ?? index)] = step.truth
+        const { page, index, view } = this
+        if (page.steps[index]?.truth) void this.recall([index])
         view?.run()
     }
 

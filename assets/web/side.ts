@@ -1,7 +1,7 @@
 // One robot under a law: its state, the forces on it, and its drawing.
 
 import type { SideSample, Vector } from "./engine"
-import type { SideData, FigureData, LawData, Point } from "./figure_data"
+import type { EffortData, SideData, FigureData, LawData, Point } from "./figure_data"
 import type { Kernels } from "./kernels"
 import type { Path } from "./path"
 
@@ -21,6 +21,8 @@ export class Side {
     pulledBy: Point | null = null
     /** The reason why it has stopped, counted from 1 in `stops` of its law. */
     stopped = 0
+    /** The first motor that gave more than the robot's file states, and how much. */
+    beyond: { effort: EffortData; gave: number } | null = null
     ticks = 0
     distance = 0
     most = 0 // largest distance since it was held back
@@ -60,7 +62,7 @@ export class Side {
         kernels.numbers.set(path.data.settings, this.settings)
         if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
         this.held = this.looked = false
-        this.pulledBy = null
+        this.pulledBy = this.beyond = null
         this.stopped = this.ticks = this.most = 0
         this.seeStart()
     }
@@ -83,6 +85,7 @@ export class Side {
             this.row = log + i * sizes.log
             this.call("fault", this.field("q"), this.field("v"), this.field("theta_ref"), this.result)
             if ((this.stopped = kernels.numbers[this.result]!)) this.row -= sizes.log
+            this.beyond ??= this.excess()
             if (i % 4 === 0 || i === ticks || this.stopped) this.measure()
         }
     }
@@ -183,6 +186,12 @@ export class Side {
         this.row = log
         for (const [from, size] of [figure.log.u, figure.log.force]) kernels.numbers.fill(0, log + from, log + from + size)
         this.measure()
+    }
+
+    private excess(): Side["beyond"] {
+        const gave = ({ motor }: EffortData) => Math.abs(this.kernels.numbers[this.field("u") + motor]!)
+        const effort = this.figure.efforts.find(each => gave(each) > each.most)
+        return effort ? { effort, gave: gave(effort) } : null
     }
 
     private measure(): void {

@@ -91,8 +91,12 @@ export class StepView {
     place(): void {
         const { board } = this.form ?? {}
         if (!board) return
-        if (this.places.isWide()) this.places.beneath.append(board)
-        else elementOf(this.prediction!).querySelector(".committing")!.before(board)
+        const { beneath } = this.places
+        const asked = elementOf(this.prediction!).querySelector(".committing")!
+        const isWide = this.places.isWide()
+        if (isWide ? board.parentElement === beneath : board.nextElementSibling === asked) return
+        if (isWide) beneath.append(board)
+        else asked.before(board)
         dispatchEvent(new Event("resize"))
     }
 

@@ -11,9 +11,10 @@ export class Transport {
     private readonly held: HTMLButtonElement
     private readonly run: HTMLButtonElement
     private readonly rate: HTMLSelectElement
-    private readonly past: HTMLElement
+    /** Shown in place of the brakes while one looks at the past. */
+    readonly past: HTMLElement
     private readonly goes: HTMLButtonElement
-    private readonly brakes: HTMLButtonElement[]
+    readonly brakes: HTMLButtonElement[]
     private readonly hints = new Map<HTMLElement, string>()
 
     /** `offered`: names of the controls, "hold", "run", "step", and "reset". */

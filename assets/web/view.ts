@@ -15,15 +15,13 @@ export class View {
     lit = ""
     readonly canvas: HTMLCanvasElement
     private readonly sheet: Sheet
-    scale = 1 // pixels for a metre
+    scale = 1000 // pixels for a metre; this one until there is a picture
     private left = 0
     private top = 0
 
     constructor(private readonly side: Side, private readonly data: FigureData, changed: () => void) {
         this.sheet = new Sheet(changed)
         this.canvas = this.sheet.canvas
-        const [left, right, bottom, top] = data.box
-        this.canvas.style.aspectRatio = String((right - left) / (top - bottom))
     }
 
     /** Converts pixels to metres in the picture. */

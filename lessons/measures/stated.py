@@ -6,7 +6,7 @@ The text shows the number, and `onpath lessons check` plays the run and compares
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from difflib import get_close_matches
 from typing import Any, get_args
 
@@ -28,20 +28,13 @@ KNOWN: dict[str, tuple[str, ...]] = {
 }
 
 
-class Stated(msgspec.Struct, frozen=True):
-    """A number in a text, and the measure of a run that it states.
+class Measure(msgspec.Struct, frozen=True):
+    """A number that a run gives.
 
     Attributes:
-        line: its line in the file.
-        text: the number as shown.
-        tolerance: in the unit of the quantity.
         begin, end: part of the script, [s].
     """
 
-    line: int
-    text: str
-    value: float
-    tolerance: float
     stat: Stat
     quantity: str
     robot: RobotName
@@ -49,24 +42,37 @@ class Stated(msgspec.Struct, frozen=True):
     begin: float = 0.0
     end: float = float("inf")
 
+    @property
+    def words(self) -> str:
+        """What is measured, for messages."""
+        return f"{self.stat} {self.quantity} {self.robot}"
+
+
+class Stated(msgspec.Struct, frozen=True):
+    """A number in a text, and the measure of a run that it states.
+
+    Attributes:
+        line: its line in the file.
+        text: the number as shown.
+        tolerance: in the unit of the quantity.
+    """
+
+    line: int
+    text: str
+    value: float
+    tolerance: float
+    measure: Measure
+
     def agrees(self, measured: float) -> bool:
         """Whether a measured value agrees with the number."""
         return bool(abs(measured - self.value) <= self.tolerance + 1e-9)
 
 
-def take_stated(
-    text: str, complain: Callable[[int, str], None], toml: Sequence[tuple[int, int]] = ()
-) -> tuple[str, list[Stated]]:
-    """The text with plain numbers in place of the stated ones, and the stated ones.
-
-    Args:
-        toml: parts of the text, as (begin, end), in which numbers are not replaced.
-    """
+def take_stated(text: str, complain: Callable[[int, str], None]) -> tuple[str, list[Stated]]:
+    """The text with plain numbers in place of the stated ones, and the stated ones."""
     found = list[Stated]()
 
     def plain(match: re.Match[str]) -> str:
-        if any(begin <= match.start() < end for begin, end in toml):
-            return match[0]
         line = text.count("\n", 0, match.start()) + 1
         if text.endswith("{", 0, match.start()) or text.startswith("}", match.end()):
             complain(line, f"{{{match[0]}}}: three braces; a number stands between two")
@@ -85,6 +91,21 @@ def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
     Raises:
         ValueError: it is not understood; the message suggests the nearest name.
     """
+    measure = read_measure(what)
+    value = _value(number)
+    digits = len(re.split("[.,]", number)[1]) if re.search("[.,]", number) else 0
+    allowed = 0.5 * 10.0**-digits if tolerance is None else _value(tolerance)
+    for fault in zero_faults(value, allowed):
+        raise ValueError(fault)
+    return Stated(line, number, value, allowed, measure)
+
+
+def read_measure(what: str) -> Measure:
+    """The measure that some words describe, such as "max distance tracker during held".
+
+    Raises:
+        ValueError: it is not understood; the message suggests the nearest name.
+    """
     words = what.split()
     if len(words) < 3:
         raise ValueError(f"write it as {FORM}")
@@ -99,12 +120,7 @@ def _read(line: int, number: str, tolerance: str | None, what: str) -> Stated:
             raise ValueError("it ends before it begins")
     if rest:
         raise ValueError(f"{' '.join(rest)!r} is not understood; write it as {FORM}")
-    value = _value(number)
-    digits = len(re.split("[.,]", number)[1]) if re.search("[.,]", number) else 0
-    allowed = 0.5 * 10.0**-digits if tolerance is None else _value(tolerance)
-    for fault in zero_faults(value, allowed):
-        raise ValueError(fault)
-    return Stated(line, number, value, allowed, **read)
+    return Measure(**read)
 
 
 def zero_faults(number: float, tolerance: float) -> Iterator[str]:
@@ -125,6 +141,6 @@ def _one_of(word: str, what: str) -> str:
     raise ValueError(f"{what} {word!r}: {hint}")
 
 
-def in_span(times: np.ndarray, stated: Stated) -> np.ndarray:
-    """The instants to which a number refers, as a mask, shape (n,)."""
-    return (times >= stated.begin - 1e-9) & (times <= stated.end + 1e-9)
+def in_span(times: np.ndarray, measure: Measure) -> np.ndarray:
+    """The instants to which a measure refers, as a mask, shape (n,)."""
+    return (times >= measure.begin - 1e-9) & (times <= measure.end + 1e-9)

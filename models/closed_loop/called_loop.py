@@ -24,6 +24,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import GAINS, kept_layout, settings_layout
 from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.sensing import look_ahead, measure
+from onpath.models.closed_loop.simulation import NO_LIMIT
 from onpath.models.control.laws.expressions import LARGEST_NUMBER
 from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.law_error import error_in
@@ -192,7 +193,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
     beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
     plane = frame.at(settings["plane"])
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
-    output, gains = view.output, view.gains
+    output, gains, limit = view.output, view.gains, settings["torque_limit"]
     command = ca.SX.sym("command", MOST)
     clock = replace(view.clock, memory={CALLED: command})
     action, uncut = law.command(replace(view, clock=clock)), replace(kind, across_first=False)
@@ -210,7 +211,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
         "speed": view.task.speed,
         "torque": ca.substitute(torque, command, ca.SX.zeros(MOST)),
         "torque_gain": ca.vec(ca.substitute(gain, command, ca.SX.zeros(MOST))),
-        "torque_limit": system.torque_limits(settings["torque_limit"]) * ca.SX.ones(system.m),
+        "torque_limit": ca.if_else(limit < NO_LIMIT, system.torque_limits(limit), ca.inf),
         **dict(zip(GAINS, (gains.k1, gains.k2, gains.k3, gains.k4, gains.k5), strict=True)),
     }
     layout = Layout(tuple((name, ca.SX(value).numel()) for name, value in found.items()))

@@ -25,6 +25,7 @@ BEFORE = 0.1  # [s] before a fault in which its cause is looked for
 OFTEN = 0.5  # least share of that time with the motors at their limit
 WRONG = 0.01  # relative difference of a parameter of the controller's model that counts as wrong
 PULLED = 1.0  # [N]
+AWAY = 0.5  # [rad], from which on an error is large for a law that is meant for small ones
 
 
 def not_finite(law: str) -> Message:
@@ -90,6 +91,7 @@ def _causes(
     last = rows[-max(1, round(BEFORE / time_step(parameters))) :]
     last = last[np.isfinite(last).all(1)]
     if len(last):
+        causes += _large_error(law, log.unpack(last))
         causes += _seen(robot, log.unpack(last), parameters, known=bool(causes))
     plant, model = robot.plant(parameters), robot.model(parameters)
     if (np.abs(plant - model) > WRONG * np.abs(plant)).any():
@@ -120,6 +122,14 @@ def _foreseen_at(
     except ValueError:  # out of reach
         return ()
     return foreseen(robot, law, q, parameters)
+
+
+def _large_error(law: str, last: dict[str, Array]) -> list[Message]:
+    """That the reference point was far away, if the law is meant for small errors."""
+    away = float(np.abs(last["theta_ref"] - last["theta"]).max())
+    if not law_named(law).small_errors or away < AWAY:
+        return []
+    return [Message("cause.small_errors", {"away": f"{away:.1f}"})]
 
 
 def _seen(

@@ -23,10 +23,10 @@ def held_torque(
         u, (m, 1), [N m]; whether the control law is evaluated in this tick; whether a torque
         saturates. The last two are 0 or 1.
     """
+    if kind.free:
+        return wanted, ca.SX(1), ca.SX(0)
     limit = system.torque_limits(settings["torque_limit"])
     fresh = ca.fmin(ca.fmax(wanted, -limit), limit)
-    if kind.free:
-        return fresh, ca.SX(1), ca.SX(0)
     acts, fresh = state["phase"] < 0.5, _stepped(fresh, limit, settings["torque_step"])
     return ca.if_else(acts, fresh, state["u"]), acts, ca.mmax(ca.fabs(wanted) > limit)
 

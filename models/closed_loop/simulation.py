@@ -29,7 +29,7 @@ from onpath.models.systems.parameters import TICK, Parameters, look_ahead_time, 
 from onpath.models.systems.robots import Robot
 
 MOST = 8  # kernels that are kept, and as many of typed laws; 0.2 MB each
-NO_LIMIT = 1000.0  # [N m], the least limit when there is none: far above any torque, but finite
+NO_LIMIT = 1e300  # of `torque_limit`: cuts no torque, and is finite, as numbers in JSON must be
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -172,7 +172,7 @@ def settings_vector(
             "level_weights": weights,
             "level_constant": constant,
             "plan": _plan(robot, layouts.law, parameters, curve),
-            "torque_limit": parameters.torque_limit or NO_LIMIT / min(robot.system.strength),
+            "torque_limit": parameters.torque_limit or NO_LIMIT,
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
             "encoder_filter": parameters.encoder_filter,

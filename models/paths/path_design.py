@@ -53,7 +53,7 @@ class PathDesign:
         Raises:
             ValueError: there is no such point, z is not finite, or no curve can be fitted.
         """
-        self._check(index)
+        self.check_index(index)
         if not np.all(np.isfinite(z)):
             raise CodedError("error.point_not_finite")
         points = self.points.copy()
@@ -71,7 +71,7 @@ class PathDesign:
         Raises:
             ValueError: there is no such point, or there are `MOST_POINTS` already.
         """
-        self._check(index)
+        self.check_index(index)
         count = len(self.points)
         if count >= MOST_POINTS:
             raise CodedError("error.too_many_points", most=MOST_POINTS)
@@ -90,7 +90,7 @@ class PathDesign:
         Raises:
             ValueError: there is no such point, or fewer than 3 (closed) or 2 (open) would remain.
         """
-        self._check(index)
+        self.check_index(index)
         least = 3 if self.curve.closed else 2
         if len(self.points) <= least:
             raise CodedError("error.too_few_points", least=least)
@@ -102,7 +102,7 @@ class PathDesign:
         within = np.clip(points, -REACH, REACH)  # the curve between them may still lie outside
         return PathDesign("edited", fit(within), within)
 
-    def _check(self, index: int) -> None:
+    def check_index(self, index: int) -> None:
         """Raise ValueError unless `index` is that of a control point."""
         if index not in range(len(self.points)):
             raise CodedError("error.no_point", index=index, count=len(self.points))

@@ -40,6 +40,7 @@ from onpath.models.studies import schedule as schedules
 from onpath.models.studies.schedule import Schedule
 from onpath.models.studies.scheduled_run import ScheduledRun
 from onpath.models.systems.catalogue import FIVE_BAR, FLEXIBLE, ROBOTS
+from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot, start_of
 from onpath.models.systems.law_parameters import LEVEL_SET
@@ -181,6 +182,15 @@ def never_held(experiment: Experiment, trajectory: Trajectory) -> str:
         return ""
     begin = f"{schedule.hold_from:g} s"
     return f"never held: the end-point did not pass θ = {schedule.hold_at:g} rad after {begin}"
+
+
+def beyond_limits(trajectory: Trajectory, robot: Robot) -> str:
+    """Which motor gave more than the robot's file states, most of all; empty if none did."""
+    torques = trajectory.fields["u"]
+    if not len(torques):
+        return ""
+    found = exceeded(robot, np.abs(torques).max(axis=0))
+    return "" if found is None else str(found)
 
 
 def _always(point: Array, _robot: Robot, _r: float) -> Array:

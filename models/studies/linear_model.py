@@ -75,7 +75,8 @@ class BaseParameter:
         name: of the parameter.
         value: estimate.
         error: its standard error.
-        low, high: interval that contains the true value with a probability of 95 %.
+        low, high: interval that contains the true value with a probability of 95 %, if dry friction
+            passes smoothly through standstill as in `forces.dry_friction`; else it is too narrow.
         others: (name, multiple) of each further parameter of the sum.
     """
 

@@ -12,6 +12,7 @@ from onpath.models.errors import CodedError, Message
 
 MINUS = "\N{MINUS SIGN}"  # typesetters and phones replace a hyphen by it
 _WITH_COMMA = re.compile(r"[-+]?\d+,\d+")
+LONGEST_NAME = 60  # [characters] of an unknown name in a message
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 
 
@@ -104,7 +105,8 @@ def model_error(label: str, text: str, on: float = 30.0) -> Any:
 
 def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
     """A dataclass field for a mass at the end-point that no controller knows, [kg]."""
-    text = "mass at the end-point; the controller does not know"
+    text = "mass at the end-point; the controller does not know it, and its integral lifts no more"
+    text += " than what would otherwise hang 10 mm low"
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
 
 
@@ -132,7 +134,8 @@ def path_rise() -> Any:
 
 
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
-    """The error for an unknown name, which suggests the nearest known ones."""
+    """The error for an unknown name, which suggests the nearest known ones; a long one is cut."""
+    name = name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}…"
     near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
         name.lower(), known, n=3, cutoff=0.3
     )

@@ -51,6 +51,11 @@ class Joint:
     damping: float = 0.0
     armature: float = 0.0
 
+    @property
+    def unit(self) -> str:
+        """Of what its motor gives."""
+        return "N" if self.slides else "N m"
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shape:

@@ -24,6 +24,7 @@ from onpath.models.systems.chain_robot import (
     output_axes,
 )
 from onpath.models.systems.drawing import Point
+from onpath.models.systems.efforts import stated
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.home_pose import chosen_pose, reachable_circle
 from onpath.models.systems.mjcf_file import read_mjcf
@@ -88,10 +89,17 @@ def packaged_robot(name: str, label: str, text: str, pose: Mapping[str, float]) 
     """
     file = asset_path(f"robots/{name}.urdf")
     chain = read_urdf(file, root_of(file_bytes(file)), Options()).chain
+    text = " ".join([text, *_limits_of(chain)])
     home = tuple(pose[joint.name] for joint in chain.joints)
     axes = output_axes(chain)
     source = ChainSource(name=name, label=label, text=text, chain=chain, home=home, axes=axes)
     return replace(chain_entry(source), picture=f"{name}.png")
+
+
+def _limits_of(chain: Chain) -> list[str]:
+    """A sentence with the torque limits that the file states, if it states any."""
+    limits = stated(chain)
+    return [] if limits is None else [str(limits)]
 
 
 def _check(options: Options) -> None:
@@ -124,7 +132,8 @@ def _made(
     if circle < LEAST_CIRCLE:
         least, found = f"{1e3 * LEAST_CIRCLE:.0f}", f"{1e3 * circle:.0f}"
         raise CodedError("robot_file.circle", least=least, circle=found)
-    text = f"{source.text} Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
+    reach = f"Its tip follows circles of up to {1e3 * circle:.0f} mm about home."
+    text = " ".join([source.text, reach, *_limits_of(chain)])
     entry = chain_entry(replace(source, text=text))
     return RobotFile(entry=entry, circle=circle, remarks=remarks)
 

@@ -334,7 +334,7 @@ class RobotEntry:
     Attributes:
         name: as on the command line and in files, the name of its equations of motion.
         label: as shown.
-        text: one sentence about the robot.
+        text: what the robot is, with the torque limits that its file states.
         parameters: the type of its parameters; its defaults are those of the robot everywhere.
         make: the robot for given parameters, the same object for the same structural parameters.
         picture: name of an asset; if empty, the bars are sketched.

@@ -94,7 +94,7 @@ def has_browsers(folder: Path) -> bool:
     """
     named = [p for p in processes_of(folder) if "tests.bench.simulated_browser" in p]
     ports = [f":{int(process.split()[-3]):04X} 01" for process in named]  # 01: established
-    return bool(ports) and ports[0] in Path("/proc/net/tcp").read_text()
+    return bool(ports) and ports[0] in Path("/proc/net/tcp").read_text(encoding="utf-8")
 
 
 @pytest.mark.thorough

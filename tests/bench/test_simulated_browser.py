@@ -11,7 +11,8 @@ from threading import Thread
 import numpy as np
 import pytest
 import websockets.exceptions
-import websockets.sync.client
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
@@ -31,7 +32,8 @@ from tests.bench.simulated_browser import Browser, NotServed, Observations, crow
 FRAMES = 20  # of the data channel
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_filling_in_a_push_is_the_same_as_packing_anew(name: str) -> None:
     parameters, curve = ROBOTS[name].parameters(), circle(0.05)
     robot = ROBOTS[name].make(parameters)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -66,11 +68,10 @@ def test_pause_step_and_run(tab: Tab) -> None:
     wait_for(lambda: lab.session.time > paused + 0.2)
 
 
-@pytest.mark.flaky(reruns=2, only_rerun="TimeoutError")  # a busy machine may be slower still
 def test_time_runs_slower(tab: Tab) -> None:
     tab.page.get_by_label("Time runs at").select_option("×0.125")
     wait_for(lambda: tab.session.rate == 0.125)
-    tab.page.get_by_text("running at 0.13×").wait_for()
+    tab.page.get_by_text(re.compile(r"running at 0\.[01]\d×")).wait_for()
 
 
 def test_gains_by_number_and_by_slider(tab: Tab) -> None:

@@ -32,6 +32,7 @@ from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
 from tests.support.figure_runs import Act, PythonFigure
 from tests.support.fingers import fingers
+from tests.support.robot_files import HEAVY, urdf
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.thorough
@@ -189,6 +190,32 @@ def test_it_moves_as_a_run_with_the_same_arguments(
     own = given or onpath.NEWCOMER
     here = [onpath.simulate(robot, "ellipse", law, duration=0.3, **own).y[-1] for law in LAWS]
     assert np.array(there) == pytest.approx(np.array(here), abs=CLOSE)
+    opened.page.close()
+
+
+def test_a_heavy_arm_moves_as_in_python_and_says_that_it_exceeds_its_file(
+    browser: Browser, tmp_path: Path
+) -> None:
+    source = tmp_path / "heavy.urdf"
+    source.write_text(urdf("heavy", HEAVY), "utf-8")
+    arm, given = onpath.robot(source), {"speed": 6.0}
+    file = onpath.figure(tmp_path / "a.html", arm, LAWS, "circle 0.1", sliders=(), **given)
+    opened = Opened(browser, file)
+    opened.press("Pause")
+    opened.do(("reset", None), ("advance", 300))
+    begin, size = opened.number("onpath.data.log.u")
+    there = [row[begin : begin + size] for row in opened.number(LOGGED)]
+    with pytest.warns(UserWarning, match="more than the"):
+        runs = [onpath.simulate(arm, "circle 0.1", law, duration=0.3, **given) for law in LAWS]
+    assert all(np.abs(run.torque).max() > 3000 for run in runs)
+    here = np.array([run.torque[-1] for run in runs])
+    assert np.array(there) == pytest.approx(here, rel=1e-9, abs=1e-9 * np.abs(here).max())
+    opened.page.evaluate(THREE_FRAMES)
+    said = opened.page.locator(".note").inner_text()
+    assert "joint2 gave" in said and "more than the 3000 N m" in said
+    opened.press("Reset")
+    opened.page.evaluate(THREE_FRAMES)
+    assert "gave" not in opened.page.locator(".note").inner_text()
     opened.page.close()
 
 

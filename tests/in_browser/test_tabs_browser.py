@@ -37,7 +37,7 @@ def test_exports(tab: Tab) -> None:
     wait_for(lambda: tab.session.time > 1.0)
     table = download(tab, "CSV, last 60 s")
     assert table.suggested_filename == "onpath.csv"
-    records = read_csv(io.StringIO(Path(table.path()).read_text()))
+    records = read_csv(io.StringIO(Path(table.path()).read_text(encoding="utf-8")))
     assert set(records) == {TRACKER, FOLLOWER}
     for columns in records.values():
         assert len(columns["t_s"]) > 900

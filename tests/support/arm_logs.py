@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
@@ -63,6 +63,13 @@ def motion_of(robot: str, preset: str = "clover", dry: float = DRY) -> tuple[Tra
     chosen = experiments(robot)["obstruction"].with_values(values)
     chosen = chosen.along(presets()[preset].curve, preset)
     return run(chosen, "path_following"), chosen.robot().plant(chosen.parameters)
+
+
+def with_switching_friction(motion: Trajectory, dry: float) -> Trajectory:
+    """The same motion with motors that also overcome a dry friction c sign(q'), [N m]."""
+    rates = motion.fields["v"][:, : motion.fields["u"].shape[1]]
+    torques = motion.fields["u"] + dry * np.sign(rates)
+    return replace(motion, fields={**motion.fields, "u": torques})
 
 
 COLUMNS = {"t": "Zeit [ms]", "q1": "Achse 1 [°]", "q2": "Achse 2 [°]"}

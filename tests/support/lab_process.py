@@ -103,5 +103,8 @@ class LabProcess:
             with suppress(OSError):
                 own.add(os.readlink(descriptor).removeprefix("socket:["))
         here = f":{self.port:04X}"
-        rows = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+        rows = [
+            line.split()
+            for line in Path("/proc/net/tcp").read_text(encoding="utf-8").splitlines()[1:]
+        ]
         return sum(row[3] == "01" and row[1].endswith(here) and f"{row[9]}]" in own for row in rows)

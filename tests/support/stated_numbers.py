@@ -18,6 +18,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
+from onpath.lessons.behaviour.marks import take_behaviours
 from onpath.lessons.course import BUILT_IN
 from onpath.lessons.measures.stated import take_stated
 from onpath.lessons.parse import read_lesson
@@ -35,7 +36,8 @@ NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
 def text(lesson: str, language: str = "en") -> str:
     """Full text of a lesson, by its number, such as "01", with plain numbers."""
     (home,) = BUILT_IN.glob(f"{lesson}-*")
-    return take_stated((home / f"{language}.md").read_text(encoding="utf-8"), print)[0]
+    marked = (home / f"{language}.md").read_text(encoding="utf-8")
+    return take_behaviours(take_stated(marked, print)[0], print)[0]
 
 
 def numbers(part: str) -> list[float]:

@@ -42,7 +42,9 @@ from onpath.models.paths.path_checks import POINT_CHECKS, SAMPLES
 from onpath.models.standalone.edit import OUTLINE, ROW
 from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
+from onpath.models.systems.efforts import efforts
 from onpath.models.systems.parameters import time_step
+from onpath.models.systems.robots import Robot
 
 
 def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
@@ -72,6 +74,7 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
+        "efforts": _efforts(robot),
         "poles": {
             "interval": 1 / figure.parameters.control_rate,
             "steps": STEPS,
@@ -123,6 +126,18 @@ def _sizes(figure: FigureChoice, kernel: Kernel) -> dict[str, int]:
         "bars": bars.shape[1] // 2,
         "joints": joints.shape[1],
     }
+
+
+def _efforts(robot: Robot) -> list[dict[str, Any]]:
+    """The torque limits that the robot's file states, with the numbers of their motors."""
+    limits = efforts(robot)
+    if limits is None or robot.chain is None:
+        return []
+    return [
+        {"motor": i, "joint": joint.name, "most": joint.effort, "unit": joint.unit}
+        for i, joint in enumerate(robot.chain.joints)
+        if math.isfinite(joint.effort)
+    ]
 
 
 def _sides(figure: FigureChoice) -> list[dict[str, Any]]:

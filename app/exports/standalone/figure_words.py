@@ -37,6 +37,7 @@ _FILLED = {
     **{f"caption.{kind}": ("mm",) for kind in ("pulled_far", "pulled_bounded")},
     "chart.at": ("time", "values"),
     "lens.name": ("law",),
+    "efforts.exceeded": ("joint", "gave", "limit"),
     "caption.spoken": ("robot", "caption"),
     "standalone.scene": ("law",),
     "standalone.refused": ("reason",),

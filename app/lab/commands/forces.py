@@ -84,7 +84,7 @@ class Release(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        if self.side in (None, lab.session.forces.grabbed):
+        if self.side is None or checks.side(self.side) == lab.session.forces.grabbed:
             lab.session.forces.release()
 
 

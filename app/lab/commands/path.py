@@ -46,7 +46,10 @@ class SelectPoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.editor.select(self.index)
+        editor = lab.session.editor
+        if self.index is not None:
+            editor.design.check_index(self.index)
+        editor.select(self.index)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from onpath.app.lab.commands.scripts import player_of
+from onpath.app.lab.dry_runs.behaviour_check import behaviour_faults, page_faults
 from onpath.app.lab.dry_runs.run_samples import Samples
+from onpath.app.lab.dry_runs.sentence_check import sentence_faults
 from onpath.app.lab.dry_runs.sketch_check import sketch_faults
 from onpath.app.lab.dry_runs.stated_check import stated_faults
 from onpath.app.lab.lab import Lab
@@ -16,7 +18,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Script
 from onpath.lessons.checks import Verdict, judge
-from onpath.lessons.course import REFERENCE, Course, read_references
+from onpath.lessons.course import REFERENCE, Course, read_plays, read_references
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.problems import Problem
 from onpath.lessons.record import Record
@@ -44,8 +46,14 @@ def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Prob
         runs, faults = _measured_runs(lesson, store)
         if not faults:
             faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
+        faults += behaviour_faults(lesson, read_plays(home / REFERENCE), store)
         yield from (Problem(str(file), line, text) for line, text in faults)
+        for other in course.lessons[name].values():
+            file = home / f"{other.language}.md"
+            shown = page_faults(other, read_text(file))
+            yield from (Problem(str(file), line, text) for line, text in shown)
         yield from _reference_faults(lesson, home / REFERENCE, store)
+    yield from sentence_faults(course, folder, store)
 
 
 def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:
@@ -59,16 +67,17 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
     """Play a script to its end and yield the verdicts on a task, if any, ten times a second.
 
     Raises:
-        ValueError: the lab refuses a command of the script; the message says why.
+        ValueError: the lab refuses a command of the script, or a path; the message says why. A
+            note on what it does all the same is no refusal.
     """
     session, words, earlier = lab.session, Words(), EarlierRun()
     begin = Beginning.now(session)
-    lab.script, session.running = player_of(script), True
+    lab.script, session.running = (player := player_of(script)), True
     for _ in range(round(3 * script.seconds / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
             lab.drain()
             lab.advance(session.rate * FRAME)
-        if lab.message_level == "warning":
+        if session.editor.faults or (lab.script is None and not player.finished):
             raise ValueError(lab.message)
         yield [] if task is None else judged(task, record_of(session, begin), earlier, words)
         if lab.script is None:
@@ -131,11 +140,13 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[
             if task.id not in references:
                 continue  # reported by read_references
             scripts = references[task.id]
-            for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
-                fault = _fault(lesson, step, script, task, store, what == "solution")
-                if fault:
-                    heading = f"{task.id}.{what}"
-                    yield Problem(str(file), line_of_heading(heading, file), f"{heading} {fault}")
+            variants = [("variant", script) for script in scripts.variant]
+            others = ("solution", scripts.solution), ("failure", scripts.failure)
+            for number, (what, script) in enumerate((*variants, *others), 1):
+                if fault := _fault(lesson, step, script, task, store, what != "failure"):
+                    heading, count = f"{task.id}.{what}", f" {number}" * (what == "variant")
+                    line = line_of_heading(heading, file)
+                    yield Problem(str(file), line, f"{heading}{count} {fault}")
 
 
 def _fault(
@@ -155,6 +166,6 @@ def _fault(
 
 
 def line_of_heading(heading: str, file: Path) -> int:
-    """The line of `[heading]` in a TOML file; 1 if there is none."""
-    lines = read_text(file).split("\n")
-    return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)
+    """The line of `[heading]` or the first `[[heading]]` in a TOML file; 1 if there is none."""
+    lines, headings = read_text(file).split("\n"), (f"[{heading}]", f"[[{heading}]]")
+    return next((i for i, line in enumerate(lines, 1) if line.strip() in headings), 1)

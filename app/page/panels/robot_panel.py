@@ -12,7 +12,7 @@ from onpath.app.page.panels.dialog import dialog
 from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, on_press
-from onpath.lessons.labels import robot_label
+from onpath.lessons.labels import robot_label, robot_text
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -37,7 +37,7 @@ class RobotPanel:
         with dialog(self._gui, words, words("robots.choose")) as close:
             for entry in ROBOTS.values():
                 label = robot_label(entry.name, words)
-                text = words.get(f"machine.{entry.name}.text", entry.text)
+                text = robot_text(entry, words)
                 now = entry is self._chosen
                 choose = self._gui.add_button(
                     words("robots.this", robot=label) if now else label,

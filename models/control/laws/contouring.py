@@ -40,7 +40,8 @@ def contouring(view: View) -> ControlAction:
 
     κ is `contour_ratio`; √κ keeps the damping ratio. The frame is that of the reference point, as
     in the source, so that the law is meant for errors that are small against the radius of
-    curvature.
+    curvature. With larger ones it pushes sideways: held back on a circle at 2π rad/s, κ = 0.1, the
+    five-bar stops after 0.26 s, when its reference point is 1.6 rad ahead.
 
     Source: Chiu and Tomizuka, reference [1].
     """
@@ -168,11 +169,14 @@ LAW = Law(
     command=contouring,
     reference=clock_ahead,
     by_clock=True,
+    small_errors=True,
     channels=contouring_channels,
     own_gains=(RATIO,),
     good="It is on time and yields along the curve while it is stiff across it, as long as its"
     " error is small.",
-    limits="Held back for long it goes far off: its axes are those of a point that has run away.",
-    objection="Its authors mean it for errors that are small against the radius of"
-    " curvature, and would choose the ratio for the machine.",
+    limits="Its axes are those of its reference point, meant for errors that are small against the"
+    " radius of curvature: held back, it is off its curve at once, and a brake that other laws"
+    " stand may stop it in a quarter of a second.",
+    objection="Its authors would keep its error small, by a slower clock or a stiffer machine, and"
+    " choose the ratio for the machine.",
 )

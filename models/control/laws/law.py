@@ -267,6 +267,7 @@ class Law:
         robots: names of the systems that it is made for; none: any.
         stabilizes: whether it also controls coordinates that have no motor, so that nothing can be
             foreseen of them by the zero dynamics.
+        small_errors: whether it is meant for errors that are small against the radius of curvature.
         always_integrates: whether it uses the integral even if K3 = 0.
         origin: file and line of a law of one's own, see `python_law`; None for others. A number of
             its command that is not finite stops the run, and the message names them.
@@ -295,6 +296,7 @@ class Law:
     spatial: bool = False
     robots: tuple[str, ...] = ()
     stabilizes: bool = False
+    small_errors: bool = False
     always_integrates: bool = False
     good: str = ""
     limits: str = ""

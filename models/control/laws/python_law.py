@@ -45,7 +45,7 @@ class Now:
         speed: wanted rate of theta, [rad/s].
         torque, torque_gain: the torques of a command are torque + torque_gain @ command, shapes
             (m,), [N m], and (m, p).
-        torque_limit: the largest of each, shape (m,), [N m].
+        torque_limit: the largest of each, shape (m,), [N m]; infinite without a limit.
         K1, K2, K3, K4, K5: the gains as they are set.
     """
 

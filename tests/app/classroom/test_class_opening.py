@@ -63,7 +63,7 @@ def test_a_broken_key_is_replaced(home: Path, broken: bytes) -> None:
 
 
 def test_without_a_data_folder_there_is_a_class_as_long_as_the_server(home: Path) -> None:
-    home.write_text("a file, and no folder")
+    home.write_text("a file, and no folder", encoding="utf-8")
     (first,), (second,) = open_classes([]), open_classes([])
     assert first.key != second.key
 

@@ -20,7 +20,7 @@ TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"
 
 def table(arguments: list[str], file: Path) -> dict[str, np.ndarray]:
     assert run_command([*arguments, "--csv", str(file)]) == 0
-    with file.open(newline="") as lines:
+    with file.open(encoding="utf-8", newline="") as lines:
         (run,) = read_csv(lines).values()
     return run
 

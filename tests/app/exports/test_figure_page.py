@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
@@ -36,7 +38,8 @@ def numbers(function: Any, *arguments: Any) -> Array:
 
 
 @pytest.mark.parametrize("name", CURVES)
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) -> None:
     entry, rng = ROBOTS[robot], np.random.default_rng(1)
     machine = entry.make(entry.parameters())
@@ -65,7 +68,8 @@ def test_what_a_page_computes_is_what_the_lab_computes(robot: str, name: str) ->
     np.testing.assert_allclose(numbers(functions["place"], moved), seen + [0.01, -0.02], atol=1e-15)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_a_page_stops_a_robot_where_the_lab_does(robot: str) -> None:
     entry, rng = ROBOTS[robot], np.random.default_rng(2)
     machine = entry.make(entry.parameters())

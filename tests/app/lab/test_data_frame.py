@@ -244,7 +244,8 @@ def test_another_lab_is_told_from_its_beginning() -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
     lab, reader = new_lab(), Reader()
     do(lab, c.ChooseRobot(name))

@@ -210,9 +210,13 @@ def test_the_truth_has_every_peak_however_long_ago() -> None:
         assert max(curve) == pytest.approx(max(seen[name]), abs=1e-4)
 
 
-def test_hints_come_one_at_a_time(lab: Lab) -> None:
-    do(lab, c.ShowHint("hold"))
+def test_hints_come_one_at_a_time_until_there_is_none(lab: Lab) -> None:
+    do(lab, c.TakeStep("01-a", 6), c.ShowHint("hold"))
     assert lab.lessons.notes.hints == {"hold": 1}
+    do(lab, c.ShowHint("hold"), c.ShowHint("hold"))
+    assert lab.lessons.notes.hints == {"hold": 2} and "no further hint" in lab.message
+    do(lab, c.GoToStep(-1), c.ShowHint("hold"))
+    assert lab.lessons.notes.hints == {"hold": 2} and "no such task" in lab.message
 
 
 def test_links_act_on_the_lab(lab: Lab) -> None:
@@ -248,8 +252,9 @@ def test_what_is_given_up_half_way_has_not_been_seen(lab: Lab, command: object) 
 
 
 def test_progress_comes_back_from_json(lab: Lab, course: Course) -> None:
+    do(lab, c.TakeStep("01-a", 6), c.ShowHint("hold"), c.TakeStep("01-a", 0))
     do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
-    do(lab, c.SetPresenting(True), c.ShowHint("hold"))
+    do(lab, c.SetPresenting(True))
     kept = msgspec.json.encode(lab.lessons.progress)
     again = LessonRun(course, read_progress(msgspec.json.decode(kept)))
     assert again.progress == lab.lessons.progress

@@ -22,7 +22,6 @@ from onpath.models.control.settable import changed
 from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.built_in import built_in_course
-from tests.support.cases import some
 from tests.support.lab import do, run, store
 from tests.support.lesson_texts import LESSON, write_lesson
 
@@ -203,12 +202,10 @@ def test_random_walks(first: tuple[str, int], walk: list[Callable[[Lab], Lab]]) 
     assert set_up_again(lab)
 
 
-QUICK = "05-invariance", "07-flexible-link"
-"""Lessons of `make test`, a rigid and a flexible robot; `make thorough` has the others."""
-
-
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", some(COURSE.lessons, QUICK))
+@settings(max_examples=4)
+@example("07-flexible-link")
+@given(st.sampled_from(list(COURSE.lessons)))
 def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
     lab = pushed((name, 0))(new_lab())
     last = len(COURSE.lesson(name, "en").steps) - 1
@@ -224,8 +221,11 @@ def test_there_and_back_through_a_lesson_while_meddling(name: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("meddle", MEDDLING)
-@pytest.mark.parametrize("way", [set_up_again, turned(1), turned(-1), left_and_opened])
+@settings(max_examples=20)
+@given(
+    meddle=st.sampled_from(MEDDLING),
+    way=st.sampled_from([set_up_again, turned(1), turned(-1), left_and_opened]),
+)
 def test_whatever_was_done_nothing_of_it_is_left(
     meddle: Callable[[Lab], Lab], way: Callable[[Lab], Lab]
 ) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.pulse import ASIDE, FRAME, FRAMES
@@ -13,7 +15,8 @@ from tests.support.lab import do, new_lab, replayed, run
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_both_are_pulled_across_and_let_go(robot: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))

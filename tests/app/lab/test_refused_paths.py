@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.page.panels.path_panel import remark_on
@@ -35,7 +36,8 @@ def test_a_user_is_told_of_a_path_that_is_far_from_the_stroke() -> None:
     assert lab.session.editor.design.curve.deviation < 2e-3 and lab.message == ""
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_exactly_the_presets_that_are_offered_without_a_warning_can_be_chosen(name: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(name))

@@ -639,7 +639,8 @@ def test_by_key_and_by_number_too_a_point_goes_as_far_as_it_may(command: c.Comma
     assert not curve_faults(lab.session.robot.margin, editor.design.curve)
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_a_command_carries_coordinates_of_the_path_s_plane_to_the_bit(robot: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
@@ -766,7 +767,7 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
             return np.stack(states) * np.nan, rows
 
     class Store(LoopCache):
-        def get(self, *_: object) -> Breaking:  # type: ignore[override]
+        def find(self, *_: object) -> Breaking:  # type: ignore[override]
             return Breaking()
 
     broken = Store()

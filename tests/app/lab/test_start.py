@@ -48,7 +48,8 @@ def at(start: Start, robot: str = "five_bar") -> Any:
     return lab
 
 
-@pytest.mark.parametrize("robot", list(ROBOTS))
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_it_starts_where_and_as_it_is_told(robot: str) -> None:
     lab = at(OFF, robot)
     session = lab.session

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.snapshot import Snapshot
@@ -59,8 +61,8 @@ def test_an_instant_is_the_same_object_until_something_changes() -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("path", ["circle", "clover", "segment"])
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=5)
+@given(robot=st.sampled_from(list(ROBOTS)), path=st.sampled_from(["circle", "clover", "segment"]))
 def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot), c.ChoosePath(path))

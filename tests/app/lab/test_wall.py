@@ -56,7 +56,8 @@ def depths(lab: Lab, y: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("robot", list(ROBOTS))
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_a_wall_pushes_out_and_nowhere_else(robot: str) -> None:
     """F is along the normal, never inwards, and only where the end-point is in the wall."""
     lab = walled(1.5, Wall(0.0, 0.03, -math.pi / 2), robot)
@@ -109,7 +110,8 @@ def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("robot", list(ROBOTS))
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_the_drawn_surface_is_where_the_force_begins(robot: str) -> None:
     lab = walled(0.05, Wall(0.01, 0.02, 2.2), robot)
     snapshot, made = take_snapshot(lab, 1.0), lab.session.robot

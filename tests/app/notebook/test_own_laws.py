@@ -84,6 +84,20 @@ def test_python_keeps_its_memory_as_a_compiled_law_does_also_where_a_run_looks_a
     assert np.array_equal(runs[0].y, runs[2].y)  # each run has a memory of its own
 
 
+@pytest.mark.parametrize("limit", [0.0, 0.7])
+def test_a_function_knows_the_torque_limits_which_are_infinite_if_there_are_none(
+    limit: float,
+) -> None:
+    seen = list[np.ndarray]()
+
+    def looking(now: Now) -> tuple[float, ...]:
+        seen.append(now.torque_limit)
+        return by_function(now)
+
+    onpath.simulate(law=looking, duration=0.1, torque_limit=limit)
+    assert np.array_equal(np.unique(seen), [limit or np.inf])
+
+
 def broken(choice: random.Random) -> tuple[str, int]:
     """A file with a law `Law` that is broken in some way, and the line in which it is."""
     blank = ["# a remark"] * choice.randrange(8)
@@ -127,7 +141,7 @@ def broken(choice: random.Random) -> tuple[str, int]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("seed", range(60))
+@pytest.mark.parametrize("seed", range(12))
 def test_a_broken_law_stops_its_own_run_with_file_and_line(seed: int, tmp_path: Path) -> None:
     file = tmp_path / f"broken{seed}.py"
     text, line = broken(random.Random(seed))

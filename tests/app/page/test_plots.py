@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from viser import uplot
 
 from onpath.app.lab import commands as c
@@ -97,7 +99,8 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     assert made[1][1].get("label") == "Trajectory tracking"
 
 
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 @pytest.mark.parametrize("language", languages())
 def test_a_symbol_means_one_thing_in_all_plots(entry: RobotEntry, language: str) -> None:
     """ξ₁ and ξ₃ are distances and ξ₂ and ξ₄ rates, in titles, in legends and in the phase plane."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab.commands import ChooseRobot, Command, SetParameter
 from onpath.app.lab.lab import Lab
@@ -41,7 +43,8 @@ def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
     assert slider.value == 123.0
 
 
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_a_slider_stops_at_multiples_of_its_step(entry: RobotEntry) -> None:
     lab, gui = Lab(store()), Gui()
     fake: Any = gui
@@ -80,7 +83,8 @@ def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
     assert visible() == {"Along / across"}
 
 
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_every_parameter_of_a_robot_has_one_place_in_the_lab(entry: RobotEntry) -> None:
     specs = declared(entry.parameters)
     own, apart = own_of(entry), [n for n, s in specs.items() if s.group in ("realism", "path")]

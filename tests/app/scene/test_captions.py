@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -99,7 +101,8 @@ def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
     assert seen(lab, captions, 6.0) == {TRACKER: "", FOLLOWER: ""}
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
 def test_a_closed_path_has_no_end_at_which_a_robot_could_rest(robot: str) -> None:
     """Its first and last points may differ by rounding."""
     lab, captions = new_lab(), Captions(ENGLISH)

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 import viser
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.scene import meshes
@@ -21,7 +23,8 @@ from tests.support.lab import do, new_lab, run, take_snapshot
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_an_end_point_that_is_held_back_slides_in_its_guide(name: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(name))

@@ -7,6 +7,8 @@ from typing import Any, cast
 import numpy as np
 import pytest
 import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.scene.ground import DARKEST, KEY_LIGHT, PIXELS, RADIUS, painted_shadow, shadow
 from onpath.app.scene.meshes import Mesh
@@ -54,7 +56,8 @@ def pixels(png: bytes) -> np.ndarray:
     return np.asarray(image.imread(png))
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_the_painted_shadow_is_the_whole_shadow_about_the_same_middle(name: str) -> None:
     stage = stage_of(ROBOTS[name].make(ROBOTS[name].parameters()))
     solids = tuple(mesh for _, mesh, _ in stage.parts())

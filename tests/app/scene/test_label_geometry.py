@@ -8,6 +8,8 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.scene.label_geometry import IN_FRONT, SIDES, axes_of, label_function
 from onpath.models.arrays import Array
@@ -18,8 +20,6 @@ from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import Robot, RobotEntry
 from tests.support.drawing import drawn
 from tests.support.some_chains import random_arm
-
-ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
 
 
 def poses(robot: Robot, count: int = 12) -> Array:
@@ -43,7 +43,8 @@ def turned(line: Array, centre: Array) -> float:
     return float(np.arccos(np.clip(steps, -1.0, 1.0)).sum())
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_arcs_turn_by_the_joint_angles_that_they_name(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     count = len(robot.drawing.angles)
@@ -71,7 +72,8 @@ def coordinates(robot: Robot) -> list[str]:
     return [*(angle.name for angle in drawing.angles), *waist]
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     for q in poses(robot):
@@ -84,7 +86,8 @@ def test_an_arc_ends_at_its_bar(entry: RobotEntry) -> None:
             assert ray @ along / np.linalg.norm(along) == pytest.approx(1.0, abs=1e-6)
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_every_joint_is_named_and_lengths_do_not_change(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     names = zip(joint_names(robot), robot.system.coordinate_names, strict=True)
@@ -124,7 +127,8 @@ def test_the_name_of_every_joint_of_a_chain_stands_before_it(text: str, tmp_path
             assert at[name] == pytest.approx(origin + [0, -IN_FRONT * robot.reach, 0], abs=1e-12)
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_axes_begin_where_the_output_is_0_and_point_where_it_grows(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     for number, (begin, end) in enumerate(axes_of(robot)):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from viser.transforms import SO3
 
 from onpath.app.scene.projection import projections
@@ -11,7 +12,8 @@ from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.systems.catalogue import ROBOTS
 
 
-@pytest.mark.parametrize("name", sorted(ROBOTS))
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_a_point_is_projected_along_the_ray_through_it(name):
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
     origins = stage_of(robot).origins

@@ -8,6 +8,8 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathView
 from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
@@ -20,7 +22,6 @@ from onpath.models.systems.robots import Robot, RobotEntry
 from tests.support.drawing import drawn
 from tests.support.some_chains import random_arm
 
-ENTRIES = pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
 TWO_LINKS = {"five_bar", "flexible", "two_link_arm", "spatial_arm"}
 
 
@@ -46,7 +47,8 @@ def turned(arc: Array, centre: Array) -> float:
     return float(sum(np.arccos(np.clip(a @ b, -1.0, 1.0)) for a, b in pairwise(rays)))
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_the_arc_of_a_joint_turns_by_its_angle_and_ends_at_its_link(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     names = [name.partition("_")[0] for name in robot.system.coordinate_names]
@@ -68,7 +70,8 @@ def test_the_arc_of_a_joint_turns_by_its_angle_and_ends_at_its_link(entry: Robot
                 assert min(np.abs(ends - link).max(axis=1)) < 1e-9
 
 
-@ENTRIES
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_the_angle_at_the_elbow_is_between_base_and_end_point(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     assert has_meaning("delta", robot) is has_meaning("rho", robot) is (entry.name in TWO_LINKS)

@@ -361,7 +361,7 @@ def test_a_broken_frame_closes_its_sender(
 
 def memory() -> int:
     """Of this process, [B]."""
-    pages = int(Path("/proc/self/statm").read_text().split()[1])
+    pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 

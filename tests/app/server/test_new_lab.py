@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.server.new_lab import new_lab
@@ -12,7 +13,8 @@ from onpath.models.systems.catalogue import ROBOTS
 from tests.support.lab import do, run, store
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_both_robots_are_on_the_path_from_the_beginning(name: str) -> None:
     lab = new_lab(store(), NO_LESSONS)
     do(lab, c.ChooseRobot(name))

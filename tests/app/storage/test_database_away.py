@@ -26,7 +26,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage import records as database
 from onpath.app.storage.engine import TRANSACTION_WAIT
-from onpath.app.storage.records import LARGEST, NotKept, Records, file_url
+from onpath.app.storage.records import NotKept, Records, file_url
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.lessons.words import ENGLISH, Words
 from tests.support import waiting
@@ -150,12 +150,27 @@ def test_the_page_says_that_a_lab_is_not_kept_and_when_it_is_again(
     until(lambda: is_kept(server, entry.code, lab))
 
 
-def test_a_lab_that_is_too_large_to_be_kept_is_said_too(server: Server) -> None:
-    server.keeper.submit("huge", lambda: {"text": "x" * LARGEST})
-    until(lambda: server.keeper.fails("huge"))
-    assert not server.keeper.fails("other")
-    server.keeper.submit("huge", dict)
-    until(lambda: not server.keeper.fails("huge"))
+def test_a_lab_that_is_too_large_is_said_once_and_what_was_stored_last_stays(
+    server: Server, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    entry, words = server.registry.join(1, None), ENGLISH
+    lab = entry.scheduled.lab
+    do(lab, c.SetParameter("K1", 444))
+    until(lambda: is_kept(server, entry.code, lab))
+    stored = server.records.load(entry.code)
+    monkeypatch.setattr(database, "LARGEST", 20)
+    for k in range(5):
+        do(lab, c.SetParameter("K2", 50 + k), c.ChoosePath(("clover", "circle")[k % 2]))
+        until(lambda: words("keep.too_large") in page(lab))
+    do(lab, c.SetParameter("K1", 445))
+    assert page(lab).count(words("keep.too_large")) == 1
+    assert not server.keeper.unsaved("other")
+    assert server.records.load(entry.code) == stored
+    assert caplog.text.count("cannot be stored") == 1 and "Traceback" not in caplog.text
+    monkeypatch.undo()
+    do(lab, c.SetParameter("K1", 446))
+    until(lambda: words("keep.too_large") not in page(lab))
+    assert words("keep.again") in page(lab) and is_kept(server, entry.code, lab)
 
 
 def test_while_one_lab_waits_for_the_database_those_behind_it_are_not_kept_either() -> None:
@@ -177,9 +192,9 @@ def test_while_one_lab_waits_for_the_database_those_behind_it_are_not_kept_eithe
         keeper.submit(code, dict)
     held.set()
     until(lambda: len(tries) == 2)  # the third's turn has not come
-    assert keeper.fails("c") and all(map(keeper.fails, codes))
+    assert keeper.unsaved("c") and all(map(keeper.unsaved, codes))
     gate.set()
-    until(lambda: not any(map(keeper.fails, codes)))
+    until(lambda: not any(map(keeper.unsaved, codes)))
     keeper.close()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.page_functions import _fault, stop_reasons
@@ -25,7 +26,8 @@ def states(n: int) -> Array:
     return found
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_a_page_stops_every_robot_when_the_lab_does_and_says_the_same(name: str) -> None:
     entry = ROBOTS[name]
     robot, parameters = entry.make(entry.parameters()), entry.parameters()

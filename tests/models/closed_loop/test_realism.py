@@ -9,6 +9,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.delay import LONGEST
@@ -38,6 +40,7 @@ EVERYTHING = {
     "sensor_noise": 5e-5,
     "seed": 7,
 }
+PARTS = ("stiction", "coulomb"), ("torque_step",), ("delay",), ("sensor_noise", "seed"), ()
 Log = dict[str, Array]
 
 
@@ -84,10 +87,8 @@ def ran(
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", list(ROBOTS))
-@pytest.mark.parametrize(
-    "names", [("stiction", "coulomb"), ("torque_step",), ("delay",), ("sensor_noise", "seed"), ()]
-)
+@settings(max_examples=10)
+@given(name=st.sampled_from(list(ROBOTS)), names=st.sampled_from(PARTS))
 def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> None:
     values: dict[str, Any] = {each: EVERYTHING[each] for each in names or EVERYTHING}
     if hasattr(ROBOTS[name].parameters(), "strain_noise") and "seed" in values:
@@ -105,7 +106,8 @@ def test_both_tiers_agree_to_the_last_bit(name: str, names: tuple[str, ...]) -> 
         assert np.array_equal(one, other) and np.isfinite(one).all()
 
 
-@pytest.mark.parametrize("name", list(ROBOTS))
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_the_ideal_loop_has_no_part_in_it(name: str) -> None:
     """Neither its instructions nor what it leaves alone at the end of the state."""
     parameters = ROBOTS[name].parameters()

@@ -8,6 +8,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel, build_kernel
@@ -163,8 +165,8 @@ def compiled(kernel: Kernel) -> CompiledLoop:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("law", SUITABLE)
-@pytest.mark.parametrize("shape", ["saddle", "clover", "open"])
+@settings(max_examples=10)
+@given(law=st.sampled_from(SUITABLE), shape=st.sampled_from(["saddle", "clover", "open"]))
 def test_the_compiled_loop_gives_the_same_bits(law: str, shape: str) -> None:
     """Free and held, closed and open, blended from the plane, several robots in one call."""
     shapes = {

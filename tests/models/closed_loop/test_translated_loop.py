@@ -12,6 +12,8 @@ from pathlib import Path
 
 import casadi as ca
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
@@ -42,7 +44,8 @@ def flexible(plant: str) -> Robot:
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("stiction", [False, True])
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_a_compiled_loop_keeps_the_layouts_and_not_the_graphs(name: str, stiction: bool) -> None:
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
     kind = Kind(NAMES[0], delay=stiction, noise=stiction, stiction=stiction)
@@ -81,7 +84,8 @@ def test_every_loop_of_every_robot_can_be_translated(
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=lambda entry: entry.name)
+@settings(max_examples=3)
+@given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_no_law_takes_a_third_more_operations_than_path_following(entry: RobotEntry) -> None:
     robot, curve = entry.make(entry.parameters()), circle(0.05)
     curves = [curve] if robot.frame.space is None else [curve, saddle(curve, 0.02)]
@@ -124,4 +128,6 @@ def test_a_compiled_loop_keeps_its_machine_code_and_not_its_compiler() -> None:
 
 def resident() -> int:
     """Memory of this process, [B]."""
-    return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * os.sysconf(
+        "SC_PAGE_SIZE"
+    )

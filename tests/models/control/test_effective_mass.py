@@ -13,9 +13,12 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
 
 
-@pytest.mark.thorough
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=ROBOTS)
-@given(st.floats(-0.03, 0.03), st.floats(-0.03, 0.03), st.floats(0.0, 6.28))
+@given(
+    st.sampled_from(list(ROBOTS.values())),
+    st.floats(-0.03, 0.03),
+    st.floats(-0.03, 0.03),
+    st.floats(0.0, 6.28),
+)
 def test_it_is_force_by_acceleration(entry: RobotEntry, x: float, y: float, angle: float) -> None:
     robot, parameters = entry.make(entry.parameters()), entry.parameters()
     way, frame, system = np.array([np.cos(angle), np.sin(angle)]), robot.frame, robot.system

@@ -8,6 +8,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
@@ -35,9 +37,15 @@ from onpath.models.systems.robots import Robot, RobotEntry
 
 CIRCLE, CLOVER, SEGMENT = (presets()[name].curve for name in ("circle", "clover", "segment"))
 
-
 LIMITED = -1.0
 """Stands for a torque limit that the robot reaches, but with which it stays on the path."""
+SETTINGS: dict[str, tuple[Curve, dict[str, Any]]] = {
+    "PD": (CIRCLE, {"K3": 0.0}),
+    "PID": (CLOVER, {"K3": 500.0}),
+    "limit": (CIRCLE, {"K3": 500.0, "torque_limit": LIMITED}),
+    "level set": (CIRCLE, {"across": "level_set", "control_rate": 100}),
+    "open": (SEGMENT, {"encoder_counts": 2000.0}),
+}
 
 
 def robot_of(entry: RobotEntry, **changes: Any) -> tuple[Robot, Parameters]:
@@ -98,21 +106,10 @@ def torques(text: str, entry: RobotEntry, v: Array, curve: Curve = CIRCLE, **cha
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=list(ROBOTS))
-@pytest.mark.parametrize(
-    ("curve", "changes"),
-    [
-        (CIRCLE, {"K3": 0.0}),
-        (CLOVER, {"K3": 500.0}),
-        (CIRCLE, {"K3": 500.0, "torque_limit": LIMITED}),
-        (CIRCLE, {"across": "level_set", "control_rate": 100}),
-        (SEGMENT, {"encoder_counts": 2000.0}),
-    ],
-    ids=["PD", "PID", "limit", "level set", "open"],
-)
-def test_the_first_text_is_path_following_bit_by_bit(
-    entry: RobotEntry, curve: Curve, changes: dict[str, Any]
-) -> None:
+@settings(max_examples=10)
+@given(robot=st.sampled_from(list(ROBOTS)), setting=st.sampled_from(list(SETTINGS)))
+def test_the_first_text_is_path_following_bit_by_bit(robot: str, setting: str) -> None:
+    entry, (curve, changes) = ROBOTS[robot], SETTINGS[setting]
     _, wanted, _ = logs(entry, "path_following", curve, **changes)
     _, typed, compiled = logs(entry, PATH_FOLLOWING, curve, **changes)
     assert np.isfinite(wanted).all()
@@ -136,13 +133,14 @@ def test_the_integral_runs_although_k3_is_zero_and_stops_while_a_torque_saturate
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("entry", ROBOTS.values(), ids=list(ROBOTS))
-def test_a_law_with_everything_in_it_is_compiled_to_the_same_bits(entry: RobotEntry) -> None:
+@settings(max_examples=3)
+@given(robot=st.sampled_from(list(ROBOTS)))
+def test_a_law_with_everything_in_it_is_compiled_to_the_same_bits(robot: str) -> None:
     text = (
         "across = -K1*xi - 9*sign(dxi)*sqrt(abs(dxi)) if xi**2 < 1 and not t > 9 else min(y1, v1)\n"
         "along = tanh(e1 + de2)*max(sin(theta), cos(theta_r), 0.1) / (1 + int_xi**4)"
     )
-    kernel, interpreted, compiled = logs(entry, text, ticks=100)
+    kernel, interpreted, compiled = logs(ROBOTS[robot], text, ticks=100)
     assert np.isfinite(interpreted).all() and kernel.log.unpack(interpreted)["u"].any()
     assert np.array_equal(interpreted, compiled)
 

@@ -157,7 +157,8 @@ def agreed(name: str, curve: Curve) -> set[str]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
+@settings(max_examples=3)
+@given(name=st.sampled_from(list(ROBOTS)))
 def test_a_curve_is_refused_for_the_lab_s_reasons_and_in_the_same_places(name: str) -> None:
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
     rng, seen = np.random.default_rng(3), set[str]()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,15 @@ from onpath.models.errors import CodedError
 from onpath.models.studies.linear_model import dependent_names, estimate
 from onpath.models.studies.record_file import log_columns, quantities, read_records
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.arm_logs import COLUMNS, DRY, UNITS, Logger, motion_of, write_log
+from tests.support.arm_logs import (
+    COLUMNS,
+    DRY,
+    UNITS,
+    Logger,
+    motion_of,
+    with_switching_friction,
+    write_log,
+)
 
 QUANTITIES = {"t": "t_s", "q1": "q1_rad", "q2": "q2_rad", "tau1": "tau1_Nm", "tau2": "tau2_Nm"}
 OPTIONS = [f"--column={name}={column}" for name, column in COLUMNS.items()]
@@ -117,13 +126,20 @@ LOGGERS = (
 
 def covered(robot: str, logger: Logger, seeds: range) -> list[bool]:
     """Whether each interval of each log contains the truth."""
-    motion, plant = motion_of(robot)
+    return [share <= 1 for seed in seeds for share in shares(robot, logger, seed)]
+
+
+def shares(robot: str, logger: Logger, seed: int, switches: bool = False) -> list[float]:
+    """Ratio of each error to what its interval allows.
+
+    Args:
+        switches: whether the dry friction switches with the direction of motion.
+    """
+    motion, plant = motion_of(robot, dry=0.0 if switches else DRY)
+    motion = with_switching_friction(motion, DRY) if switches else motion
     true = truth(robot, plant) | {"delay": logger.late}
-    return [
-        low <= true[name] <= high
-        for seed in seeds
-        for name, (_, low, high) in found_in(logger.rows(motion, seed), robot, plant).items()
-    ]
+    found = found_in(logger.rows(motion, seed), robot, plant)
+    return [2 * abs(value - true[n]) / (high - low) for n, (value, low, high) in found.items()]
 
 
 @pytest.mark.thorough
@@ -137,6 +153,16 @@ def test_of_200_logs_as_many_intervals_contain_the_truth_as_they_say(robot: str)
 def test_of_a_few_logs_most_intervals_contain_the_truth() -> None:
     logger = LOGGERS[1]
     assert np.mean(covered("five_bar", logger, range(4))) > 0.8
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("robot", ["five_bar", "two_link_arm"])
+def test_where_friction_switches_the_intervals_are_too_narrow_as_is_said(robot: str) -> None:
+    """models/studies/README.md: one to three of ten are outside, by up to twice."""
+    for seed, logger in product(range(2), LOGGERS[:3]):
+        each = np.array(shares(robot, logger, seed, switches=True))
+        assert len(each) == 10 and 1 <= (each > 1).sum() <= 3
+        assert 1.5 < each.max() < 2.5
 
 
 def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:

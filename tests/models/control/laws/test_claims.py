@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from typing import Any
@@ -10,17 +11,26 @@ import numpy as np
 import pytest
 
 import onpath
+from onpath.lessons.labels import parameter_help
+from onpath.lessons.words import Words
+from onpath.models.closed_loop.kernel import INTEGRAL_REACH
+from onpath.models.control.laws.contouring import contouring
+from onpath.models.control.laws.disturbance_observer import disturbance_observer
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.laws.virtual_constraint import virtual_constraint
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
+from onpath.models.studies.arena import run_under
 from onpath.models.studies.comparison import Contest, Outcome, compare
 from onpath.models.studies.experiments import experiments, run
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
+from tests.support.checkout import ROOT
 
 CONTEST = Contest(FIVE_BAR, FIVE_BAR.parameters(), presets()["circle"].curve)
 HELD = 2.0  # [s], by the brake
 ON_TIME = 0.01  # [s]
 NEAR = 1e-4  # [m]
+RADIUS = 0.05  # of the circle, [m]
 
 
 @cache
@@ -60,6 +70,24 @@ def test_contouring_is_on_time_while_its_error_is_small_and_then_goes_far_off() 
     for obstruction in ("none", "start_off_at_rest"):
         assert all(abs(delay) < ON_TIME for delay in delays("contouring", obstruction))
     assert off("contouring", "brake") > 2 * off("trajectory_tracking", "brake")
+
+
+def test_a_brake_that_every_other_law_stands_stops_contouring_for_the_reason_that_is_told() -> None:
+    """In a quarter of a second, as its text says; at once it is off its curve."""
+    held = experiments("five_bar")["obstruction"]
+    robot = held.robot().system
+    ends = {n: run_under(held, n) for n, law in LAWS.items() if law.suits(robot)}
+    stops = {name: end.stopped_at for name, end in ends.items() if end.stopped_at is not None}
+    assert [*stops] == ["contouring"] and 0.24 < stops["contouring"] - 3.0 < 0.28
+    stopped = ends["contouring"]
+    assert stopped.distance[3100] > 0.005 > ends["path_following"].distance.max()
+    told = "Likely cause: its reference point was 1.6 rad away, and the law uses the axes of that"
+    assert told in stopped.reason
+    docstring = " ".join((contouring.__doc__ or "").split())
+    assert stated("stops after # s, when its reference point is # rad ahead", docstring) == [
+        pytest.approx(stops["contouring"] - 3.0, abs=0.01),
+        pytest.approx(np.ptp(stopped.fields["theta_ref"][3000:, 0]), abs=0.1),
+    ]
 
 
 def test_event_based_is_soonest_at_its_speed_and_is_pressed_off_the_curve() -> None:
@@ -134,7 +162,7 @@ def test_the_set_point_is_reached_across_the_circle() -> None:
 
 def pulled(law: str, outside: float, **values: Any) -> onpath.Run:
     """Held aside at rest for 3 s, up to 3.5 s, by a hand that is outside of the circle, [m]."""
-    aside = (0.5, 3.5, (outside, 0.0))
+    aside = (0.5, 3.5, (RADIUS + outside, 0.0))
     return onpath.simulate(law=law, task="position", target=0.0, push=aside, duration=5, **values)
 
 
@@ -144,10 +172,46 @@ def back_after(run: onpath.Run) -> float:
     return float(t[far][-1]) - 3.5
 
 
+RIVALS = " ".join((ROOT / "models/studies/README.md").read_text("utf-8").split())
+
+
+def stated(pattern: str, text: str) -> list[float]:
+    """The numbers of a sentence in a text, in order."""
+    found = re.search(pattern.replace("#", r"(\d+(?:\.\d+)?)"), text)
+    assert found is not None, pattern
+    return [float(number) for number in found.groups()]
+
+
 def test_the_disturbance_observer_is_back_sooner_after_a_long_pull() -> None:
-    for outside in (0.002, 0.01, 0.04):
-        assert back_after(pulled("disturbance_observer", outside)) < 0.3
-        assert back_after(pulled("path_following", outside)) > 1
+    """As its docstring and models/studies/README.md say: by the numbers that they state."""
+    told = " ".join((disturbance_observer.__doc__ or "").split())
+    hand = "a hand (?:that is )?# to # mm outside of the circle, it is within # mm of the path"
+    hand += " at most # s after the release[;,] (?:and )?path following (?:needs|after) # to # s"
+    nearest, farthest, near, back, first, last = stated(hand, told)
+    assert [nearest, farthest, near, back, first, last] == stated(hand, RIVALS)
+    hands = [1e-3 * mm for mm in (nearest, 5, 10, 15, 20, 30, farthest)]
+    assert near == 0.5
+    times = [back_after(pulled("disturbance_observer", each)) for each in hands]
+    assert back - 0.01 < max(times) <= back
+    times = [back_after(pulled("path_following", each)) for each in hands]
+    assert [min(times), max(times)] == pytest.approx([first, last], abs=0.01)
+    bound = LAWS["disturbance_observer"].own_gains[1].default
+    assert bound == FIVE_BAR.parameters().K1 * INTEGRAL_REACH
+    assert stated(r"The bound is # m/s², as that of the integral", RIVALS) == [bound]
+
+
+def test_with_noise_the_disturbance_observer_is_nearer_and_its_torque_trembles_more() -> None:
+    runs = [
+        onpath.simulate(law=law, duration=3, sensor_noise=1e-3)
+        for law in ("disturbance_observer", "path_following")
+    ]
+    told = " ".join((disturbance_observer.__doc__ or "").split())
+    said = stated("it is # mm rms off, and path following # mm", told)
+    off = [1e3 * np.sqrt((run.distance[1000:] ** 2).mean()) for run in runs]
+    assert off == pytest.approx(said, abs=0.006)
+    changes = [np.abs(np.diff(run.torque[1000:], axis=0)).mean() for run in runs]
+    assert changes[0] / changes[1] == pytest.approx(2, abs=0.25)
+    assert "torque changes by twice as much" in told and "torque changes by twice" in RIVALS
 
 
 def test_beyond_its_bound_a_force_moves_the_disturbance_observer_off_like_a_spring() -> None:
@@ -159,11 +223,6 @@ def test_beyond_its_bound_a_force_moves_the_disturbance_observer_off_like_a_spri
         for a in bounds
     ]
     assert off[0] > off[1] + 0.005 and off[2] < 1e-3
-    changes = dict[str, float]()
-    for law in ("disturbance_observer", "path_following"):
-        run = onpath.simulate(law=law, duration=3, sensor_noise=1e-3)
-        changes[law] = float(np.abs(np.diff(run.trajectory.fields["u"][1000:], axis=0)).mean())
-    assert changes["disturbance_observer"] > 1.5 * changes["path_following"]
 
 
 def test_maneuvering_takes_up_its_speed_without_the_haste_of_a_waiting_clock() -> None:
@@ -182,10 +241,10 @@ def test_held_back_maneuvering_leaves_the_curve_further_than_a_waiting_clock() -
 WITHIN = {"torque_limit": 0.5, "at_limit": "cut"}
 
 
-def saturated(run: onpath.Run, begin: float) -> float:
-    """Share of the time after `begin`, [s], in which a torque is at its limit."""
+def saturated(run: onpath.Run, begin: float, limit: float = 0.5) -> float:
+    """Share of the time after `begin`, [s], in which a torque is at its limit, [N m]."""
     u = np.abs(run.trajectory.fields["u"][round(1000 * begin) :]).max(axis=1)
-    return float((u > WITHIN["torque_limit"] - 1e-9).mean())
+    return float((u > limit - 1e-9).mean())
 
 
 @pytest.mark.parametrize("law", ["time_optimal_tracking", "time_optimal_following"])
@@ -215,6 +274,32 @@ def test_held_back_the_time_optimal_clock_leaves_the_curve_and_the_speed_by_plac
 def test_with_a_payload_that_it_does_not_know_the_fastest_speed_is_too_fast() -> None:
     run = onpath.simulate(law="time_optimal_following", duration=4, payload=0.05, **WITHIN)
     assert saturated(run, 1.0) > 0.1 and run.trajectory.distance.max() > 0.003
+    law = "for # and # % of the time under `time_optimal_following`, and for # and # % under"
+    said, shares = stated(law, RIVALS), list[float]()
+    for each in ("time_optimal_following", "time_optimal_tracking"):
+        for limit in (0.3, 0.5):
+            values = {**WITHIN, "torque_limit": limit, "payload": 0.05}
+            run = onpath.simulate(law=each, duration=4, **values)
+            shares.append(100 * saturated(run, 1.0, limit))
+    assert shares == pytest.approx(said, abs=1)
+
+
+def test_what_is_said_where_a_payload_is_set_is_what_it_does() -> None:
+    """What would hang less than 10 mm low without the integral is lifted by it; else 10 mm are."""
+    spec, most = specs(ROBOTS["seven_axes"].parameters)["payload"], 1e3 * INTEGRAL_REACH
+    for language in ("en", "de"):
+        told = parameter_help("payload", spec, Words(language))
+        assert stated("(?:would otherwise hang|als sonst) # mm", told) == [most]
+    for payload, at_most in ((0.45, 3.0), (3.0, 44.0)):
+        off = [
+            1e3 * onpath.simulate("seven_axes", payload=payload, duration=5, K3=k3).distance[3000:]
+            for k3 in (ROBOTS["seven_axes"].parameters().K3, 0.0)
+        ]
+        assert off[0].max() < at_most
+        if off[1].max() < most:
+            assert off[0].max() < off[1].max() / 2
+        else:
+            assert off[0].max() == pytest.approx(off[1].max() - most, abs=1.5)
 
 
 def upright(law: str, **values: Any) -> onpath.Run:

@@ -9,6 +9,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import build_kernel
@@ -139,8 +141,8 @@ def test_the_compiled_loop_is_the_interpreted_one_bit_by_bit(law: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
-@pytest.mark.parametrize("law", LAWS)
+@settings(max_examples=20)
+@given(law=st.sampled_from(list(LAWS)), name=st.sampled_from(list(ROBOTS)))
 def test_every_law_moves_every_robot_that_it_suits(law: str, name: str) -> None:
     entry = ROBOTS[name]
     parameters = entry.parameters()

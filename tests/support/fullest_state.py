@@ -1,0 +1,124 @@
+"""The most that a lab's stored state can hold: every answer to every question, at its longest."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import msgspec
+
+from onpath.app.lab.setups.setup import DRAWN, Path, RobotSetup, Setup
+from onpath.app.lab.setups.stored import to_data
+from onpath.app.lab.sketches import MOST_POINTS as SKETCHED
+from onpath.lessons.course import Course
+from onpath.lessons.kept.option_keys import second_key
+from onpath.lessons.progress import MOST_POINTS, MOST_TEXT, SURENESS, Answer, Notes, Progress, Truth
+from onpath.lessons.record import QUANTITIES
+from onpath.lessons.schema import (
+    Lesson,
+    NumberQuestion,
+    OpenQuestion,
+    Prediction,
+    Quiz,
+    Sketch,
+    Step,
+)
+from onpath.models.control.laws.expressions import LONGEST
+from onpath.models.control.settable import specs
+from onpath.models.control.sides import SIDES
+from onpath.models.paths.curves import TERMS
+from onpath.models.systems.catalogue import ROBOTS
+
+WORDS = "x" * MOST_TEXT
+NUMBER = -12345.678
+LONG_NUMBER = -1.2345678901234567e-100
+
+
+def size(state: object) -> int:
+    """Size of a state as it is stored, [characters]."""
+    return len(msgspec.json.encode(state).decode())
+
+
+def fullest_state(course: Course) -> dict[str, Any]:
+    """A state with everything that a student can store in a course, at its longest."""
+    named = {**course.lessons, **course.tests}
+    lessons = {name: course.lesson(name, "en") for name in named}
+    notes = {name: _notes(lesson) for name, lesson in lessons.items()}
+    longest = max([*lessons, ""], key=len)
+    route = max([*course.routes, ""], key=len)
+    progress = Progress(lesson=longest, presenting=True, notes=notes, route=route, ended=True)
+    setup = to_data(_setup())
+    return {"setup": setup, "lessons": msgspec.to_builtins(progress), "before": setup}
+
+
+def _notes(lesson: Lesson) -> Notes:
+    steps = list(enumerate(lesson.steps))
+    asked = {str(i): step.predictions()[0] for i, step in steps if step.predictions()}
+    answers = {key: _answer(prediction) for key, prediction in asked.items()}
+    marks = [*lesson.keys, *map(second_key, lesson.keys)]
+    hints = {task.id: len(task.hints) for step in lesson.steps for task in step.tasks()}
+    return Notes(
+        step=len(steps),
+        seen=len(steps),
+        answers=answers,
+        truths=dict.fromkeys(asked, _truth()),
+        played=tuple(str(i) for i, _ in steps),
+        tasks=dict.fromkeys(hints, NUMBER),
+        hints=hints,
+        quiz=dict.fromkeys(_blocks(lesson, Quiz), 10),
+        numbers=dict.fromkeys(_blocks(lesson, NumberQuestion), LONG_NUMBER),
+        written=dict.fromkeys(_blocks(lesson, OpenQuestion), WORDS),
+        asked_again=tuple(asked),
+        second=answers,
+        marks=dict.fromkeys(marks, "x" * 40),
+        unknown=tuple(marks),
+        handed_in=True,
+    )
+
+
+def _blocks(lesson: Lesson, kind: type[Any]) -> list[str]:
+    def keys(index: int, step: Step) -> list[str]:
+        return [f"{index}.{n}" for n, block in enumerate(step.blocks) if isinstance(block, kind)]
+
+    return [key for index, step in enumerate(lesson.steps) for key in keys(index, step)]
+
+
+def _answer(prediction: Prediction) -> Answer:
+    points = SKETCHED if isinstance(prediction, Sketch) else 0
+    return Answer(
+        option=10,
+        times=(NUMBER,) * points,
+        values=(NUMBER,) * points,
+        sure=max(SURENESS, key=len),
+        reason=10,
+        why=WORDS if prediction.why else "",
+    )
+
+
+def _truth() -> Truth:
+    numbers = (10 * NUMBER,) * MOST_POINTS
+    return Truth(max(QUANTITIES, key=len), numbers, numbers, numbers)
+
+
+def _setup() -> Setup:
+    """All robots with another value of every parameter, a drawn path, a start and a wall."""
+    start = ("theta", "beside", "along", "across", "clock_offset")
+    robots = {
+        name: RobotSetup(
+            parameters=dict.fromkeys(specs(entry.parameters), -1.23456e-10),
+            path=Path(DRAWN, False, (-123456,) * (2 * TERMS)),
+            start=dict.fromkeys(start, -1.23456e-10),
+            wall=(-1.23456e-10,) * 3,
+        )
+        for name, entry in ROBOTS.items()
+    }
+    laws: dict[str, str] = {side: "x" * LONGEST for side in SIDES}
+    longest = max(ROBOTS, key=len)
+    return Setup(
+        robot=longest,
+        robots=robots,
+        rate=0.123456,
+        copy=False,
+        exaggeration=1.23456,
+        laws=laws,
+        hold="across",
+    )
