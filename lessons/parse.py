@@ -15,11 +15,11 @@ from markupsafe import Markup
 from onpath.lessons.action_schema import Script, StepSetup
 from onpath.lessons.adaptive.branches import faults_of_when
 from onpath.lessons.adaptive.own_numbers import unanswered
+from onpath.lessons.behaviour.marks import Behaviour, take_behaviours
 from onpath.lessons.completeness import first_page_faults, lacks, order_faults
 from onpath.lessons.concept_test.concept_test import FOLDER, lacks_of_test
 from onpath.lessons.formulas import TextError, reader
 from onpath.lessons.kept.option_keys import keys_of
-from onpath.lessons.measures.behaviour import Behaviour, take_behaviours
 from onpath.lessons.measures.stated import Stated, take_stated
 from onpath.lessons.problems import LessonError, Problem, line_of
 from onpath.lessons.prose import data_faults, read_prose, text_faults

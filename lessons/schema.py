@@ -11,7 +11,7 @@ import msgspec
 from markupsafe import Markup
 
 from onpath.lessons.action_schema import Action, Data, RobotName, Script, StepSetup
-from onpath.lessons.measures.behaviour import Behaviour
+from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.measures.stated import Stated
 from onpath.lessons.task_schema import Task
 
@@ -265,8 +265,9 @@ class Lesson(msgspec.Struct, frozen=True):
         return [task for step in self.steps for task in step.tasks()]
 
     def required_tasks(self) -> list[Task]:
-        """The tasks of all steps that are not optional."""
-        return [task for step in self.steps if not step.optional for task in step.tasks()]
+        """The tasks of all steps that are not optional, without those to be found by trying."""
+        steps = (step for step in self.steps if not step.optional)
+        return [task for step in steps for task in step.tasks() if not task.exploratory]
 
     def required_steps(self) -> int:
         """Number of the last step that is not optional, from 1."""

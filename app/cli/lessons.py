@@ -48,6 +48,7 @@ class CheckLessons:
         """Print what is wrong; return exit code 1 if anything is."""
         from onpath.app.lab.dry_runs.cheat_check import cheat_faults
         from onpath.app.lab.dry_runs.course_check import play_course
+        from onpath.app.lab.dry_runs.sentence_check import unplayed
         from onpath.app.lab.loops.loop_cache import LoopCache
         from onpath.lessons.course import BUILT_IN, read_folder
 
@@ -57,6 +58,9 @@ class CheckLessons:
             problems = list(play_course(course, folder, store))
             if self.cheat:
                 problems += cheat_faults(course, folder, store)
+        if not problems and (count := unplayed(course, folder)):
+            says = _count(count, "sentence")
+            print(f"note: {says} about the lab that no mark plays; see lessons/README.md")
         if not problems:
             lessons = list(course.lessons.values())
             tasks = sum(len(next(iter(versions.values())).tasks()) for versions in lessons)

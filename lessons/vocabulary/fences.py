@@ -12,17 +12,6 @@ KNOWN = (*FENCES, "watch", "fold", "when")
 LANGUAGES = ("scheme", "opencl", "openscad")
 """Programming languages with names similar to those of blocks."""
 FIRST = re.compile(r"[^\W\d_]+")
-TOML = re.compile(
-    rf"\A\+\+\+\s*$.*?^\+\+\+"
-    rf"|^ {{0,3}}(?P<mark>`{{3,}}|~{{3,}})\s*({'|'.join(FENCES)})\s*$.*?^\s*(?P=mark)",
-    re.DOTALL | re.MULTILINE,
-)
-"""The front matter of a lesson's file, or a block of TOML."""
-
-
-def toml_parts(text: str) -> list[tuple[int, int]]:
-    """Begin and end of each part of a lesson's file that is TOML."""
-    return [part.span() for part in TOML.finditer(text)]
 
 
 def fence_faults(info: str) -> Iterator[str]:

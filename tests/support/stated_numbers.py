@@ -18,8 +18,8 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Action, RobotName, Script, Value
+from onpath.lessons.behaviour.marks import take_behaviours
 from onpath.lessons.course import BUILT_IN
-from onpath.lessons.measures.behaviour import take_behaviours
 from onpath.lessons.measures.stated import take_stated
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.schema import Lesson

@@ -17,12 +17,12 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
 from onpath.lessons.action_schema import Script, StepSetup
+from onpath.lessons.behaviour.marks import Behaviour
+from onpath.lessons.behaviour.sentences import named_controls
 from onpath.lessons.labels import parameter_label
-from onpath.lessons.measures.behaviour import Behaviour
 from onpath.lessons.problems import near
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson
-from onpath.lessons.sentences import named_controls
 from onpath.lessons.sides import ROLES, law_label
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import LAWS

@@ -13,11 +13,17 @@ from onpath.app.lab.dry_runs.behaviour_check import (
 )
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.step_setup import setup_of_scene
+from onpath.lessons.behaviour.marks import read_behaviour
+from onpath.lessons.behaviour.sentences import (
+    FILE,
+    Sentence,
+    found_sentences,
+    list_faults,
+    read_sentences,
+)
 from onpath.lessons.concept_test.concept_test import FOLDER
 from onpath.lessons.course import BUILT_IN, Course
-from onpath.lessons.measures.behaviour import read_behaviour
 from onpath.lessons.problems import Problem
-from onpath.lessons.sentences import FILE, Sentence, found_sentences, list_faults, read_sentences
 from onpath.lessons.text_files import read_text
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import LAWS

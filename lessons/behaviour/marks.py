@@ -62,6 +62,8 @@ def take_behaviours(text: str, complain: Callable[[int, str], None]) -> tuple[st
 
     def plain(match: re.Match[str]) -> str:
         line = text.count("\n", 0, match.start()) + 1
+        if text.endswith("{", 0, match.start()) or text.startswith("}", match.end()):
+            complain(line, f"{{{match[0]}}}: three braces; a mark stands between two")
         try:
             found.append(read_behaviour(line, match[1], match[2]))
         except ValueError as error:
