@@ -18,7 +18,10 @@ class ExportLesson:
     scorm: Path
     """The .zip file to write."""
     version: Literal["1.2", "2004"] = "1.2"
-    """Version of SCORM. 1.2 stores only 4,096 characters: there, curves are left out if need be."""
+    """Version of SCORM. 1.2 stores only 4,096 characters: there, points of drawn curves and
+    the ends of the longest texts are left out if need be."""
+    partial_score: bool = False
+    """Whether an unfinished lesson has a score, too: the share that is right so far."""
     language: str = "en"
     """Language of the lesson."""
     folder: Path | None = None
@@ -27,6 +30,7 @@ class ExportLesson:
     def run(self) -> None:
         """Write the package, and print its size."""
         from onpath.app.common.atomic_file import check_writable
+        from onpath.app.exports.site.pages import Package
         from onpath.app.exports.site.scorm_package import write_package
         from onpath.assets.messages import languages
         from onpath.lessons.course import BUILT_IN, read_course
@@ -41,6 +45,7 @@ class ExportLesson:
         if self.name not in course.lessons:
             raise unknown_name(self.name, list(course.lessons), "lesson")
         check_writable(self.scorm)
-        write_package(self.scorm, course, home, self.name, self.language, self.version)
+        kind = Package(self.version, self.partial_score)
+        write_package(self.scorm, course, home, self.name, self.language, kind)
         size = self.scorm.stat().st_size
         print(f"{self.scorm}: SCORM {self.version}, {size / 1e3:.0f} kB")

@@ -148,11 +148,12 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
     states, samples = list(first.states), first.sample.copy()
     for i, (side, drive) in enumerate(segment.drives.items()):
         run = session.runs[side]
-        if ticks <= 0 or drive.frozen or run.kind != drive.kind:
+        loop = run.loop()
+        if ticks <= 0 or drive.frozen or run.kind != drive.kind or loop is None:
             continue
         with np.errstate(all="ignore"):
             table = segment.curve.table()
-            state, rows = run.loop().run(drive.state, drive.settings, table, ticks)
+            state, rows = loop.run(drive.state, drive.settings, table, ticks)
         if np.isfinite(state).all() and np.isfinite(rows[-1]).all():
             distance = samples[i, session.sample_layout.slices["distance"].start]
             states[i] = state

@@ -15,7 +15,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.faults import explained
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loop_vectors import loop_layouts, state_layout
-from onpath.models.closed_loop.loops import CompiledLoop, Loop
+from onpath.models.closed_loop.loops import Loop
 from onpath.models.closed_loop.simulation import (
     Push,
     kind_of,
@@ -26,7 +26,6 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
-from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.errors import CodedError, Message
@@ -58,7 +57,6 @@ class ClosedLoopRun:
     Attributes:
         side: name of the side.
         law: name of its control law.
-        is_typed: whether that is a typed law.
         slot: its state, log row and distances; another object as soon as anything changes.
         values: the settings that the last `input` leaves out, as float64.
     """
@@ -78,8 +76,9 @@ class ClosedLoopRun:
     ) -> None:
         self._store, self.robot, self._made_with = store, robot, parameters
         self._refuse = refuse
-        self.side, self.law, self.is_typed = side, law, is_text(law)
+        self.side, self.law = side, law
         self.diverged: Diverged | None = None
+        self._unfilled: Curve | None = None  # the path of a log row that its loop has to complete
         self._inputs: tuple[Parameters, Curve, Push] | None = None
         self._leg: Leg | None = None
         self.configure(parameters, curve, Push())
@@ -106,14 +105,19 @@ class ClosedLoopRun:
         self._fill_row(curve)
 
     def lacks(self, parameters: Parameters, curve: Curve, push: Push) -> Kind | None:
-        """The kind of loop that these inputs need; None if the run has it, compiled."""
+        """The kind of loop that these inputs need; None if the run has it."""
+        has_loop = self._loop is not None
+        if has_loop and self._inputs is not None:
+            before = self._inputs
+            if before[0] is parameters and before[1] is curve and before[2] is push:
+                return None
         kind = kind_of(self.law, parameters, curve, push)
-        return None if kind == self.kind and isinstance(self._loop, CompiledLoop) else kind
+        return None if has_loop and kind == self.kind else kind
 
     def change_law(self, law: str, parameters: Parameters, curve: Curve, push: Push) -> None:
         """Change the control law; the robot moves on from where it is, with these inputs."""
         state, kind = self.state, self.kind
-        self.law, self.is_typed, self._inputs = law, is_text(law), None
+        self.law, self._inputs = law, None
         self.configure(parameters, curve, push)
         self._go_on_from(state, kind)
         self._change()
@@ -241,10 +245,12 @@ class ClosedLoopRun:
             parameters=self._made_with,
         )
 
-    def loop(self) -> Loop:
-        """The fastest loop of its kind available now."""
-        if not isinstance(self._loop, CompiledLoop):
-            self._loop = self._store.get(self.robot, self.kind, self._loop)
+    def loop(self) -> Loop | None:
+        """The loop that computes it; None while that is being made."""
+        if self._loop is None:
+            self._loop = self._store.find(self.robot, self.kind)
+            if self._loop is not None and self._unfilled is not None:
+                self._fill_row(self._unfilled)
         return self._loop
 
     def stop(self, fault: tuple[int, Message], rows: Array, curve: Curve, time: float) -> None:
@@ -337,10 +343,10 @@ class ClosedLoopRun:
     def _possible(self, kind: Kind, inputs: tuple[Parameters, Curve, Push]) -> Kind:
         """The kind of loop, or that under a new lab's law if the law has an error there."""
         try:
-            self._store.check(self.robot, kind)
+            self._store.find(self.robot, kind)
         except ValueError as error:
             self._refuse(error)
-            self.law, self.is_typed = DEFAULT_LAWS[self.side], False
+            self.law = DEFAULT_LAWS[self.side]
             return kind_of(self.law, *inputs)
         return kind
 
@@ -350,13 +356,24 @@ class ClosedLoopRun:
             self._change(primed(self._layouts, self.state))
 
     def _fill_row(self, curve: Curve) -> None:
-        """Fill the log row of a robot that has not moved yet, and on which nothing has acted."""
+        """Fill the log row of a robot that has not moved yet, and on which nothing has acted.
+
+        What the loop has to compute follows as soon as there is one.
+        """
+        self._unfilled = curve
+        loop = self.loop()
+        if self._unfilled is None:  # the loop has just come
+            return
         self._change()
         row, state = self.shown(), self.fields()
-        _, rows = self.loop().run(self.state.copy(), self.settings, curve.table(), 1)
-        first = self.log.unpack(rows[0])
         for name in ("xi", "xi_rate"):
-            row[name][:] = np.nan_to_num(first[name], posinf=0.0, neginf=0.0)
+            row[name][:] = 0.0
+        if loop is not None:
+            self._unfilled = None
+            _, rows = loop.run(self.state.copy(), self.settings, curve.table(), 1)
+            first = self.log.unpack(rows[0])
+            for name in ("xi", "xi_rate"):
+                row[name][:] = np.nan_to_num(first[name], posinf=0.0, neginf=0.0)
         for name in ("q", "v", "theta", "theta_rate", "theta_ref", "speed_ref", "u"):
             row[name][:] = state[name]
         row["y"][:] = self.robot.endpoint(state["q"])

@@ -7,7 +7,7 @@ beginning of its next frame.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from math import inf
 from time import thread_time
 from typing import ClassVar
@@ -34,6 +34,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 from onpath.models.systems.law_parameters import DISTANCE, LEVEL_SET
 
 MOST_COMMANDS = 500  # maximum in the queue; further ones are dropped
+PATIENCE = 15  # frames that a lab waits before it says so
 
 
 class Command:
@@ -59,6 +60,11 @@ class Command:
             ValueError: it is not possible now; the message tells the user why.
         """
         raise NotImplementedError
+
+    def parts(self, lab: Lab) -> Iterator[Command]:
+        """The commands of which it consists; between two of them, other labs have their turn."""
+        del lab
+        yield self
 
 
 class Lab:
@@ -92,6 +98,9 @@ class Lab:
         self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
     ) -> None:
         self._inbox: deque[Command] = deque(maxlen=MOST_COMMANDS)
+        self._parts: Iterator[Command] = iter(())  # of the command that is being applied, after
+        self._part: Command | None = None  # the next one
+        self._waiting = 0  # frames for which something has been waiting
         self.session = Session(store, entry)
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
@@ -131,33 +140,38 @@ class Lab:
     @property
     def has_commands(self) -> bool:
         """Whether commands wait to be applied."""
-        return bool(self._inbox)
+        return self._part is not None or bool(self._inbox)
+
+    @property
+    def waits(self) -> bool:
+        """Whether commands, or robots whose loops are being made, have been waiting for a while."""
+        return self._waiting > PATIENCE
 
     def drain(self, most: float = inf) -> float:
         """Apply the queued commands. If one is refused, the user is told why.
 
         Args:
-            most: processor time after which the remaining commands wait, [s].
+            most: processor time after which the remaining commands wait, [s]; one that consists of
+                parts waits between two of them, and simulated time with it.
 
         Returns:
             Processor time of the commands in this thread, [s]; what it waits for others is not
             the user's doing.
         """
-        begun = thread_time()
-        while self._inbox and thread_time() - begun < most:
-            command = self._inbox.popleft()
-            if not command.from_teacher:
-                self.asked += 1
-                if refusal := self._refusal(command):
-                    level = "stop" if self.frozen else "warning"
-                    self.show_message(self.words.sentence(refusal), level)
-                    continue
-                if self.breakdown.interrupt(self.session):
-                    self.clear_message()
-            self._apply(command)
-        taken = thread_time() - begun
+        begun, applied = thread_time(), 0
+        while self.has_commands and not self.session.has_to_step:
+            if thread_time() - begun >= most:
+                break
+            self._apply_next()
+            applied += 1
+        is_behind = self._part is not None or self.session.lacks_loops
+        is_behind = is_behind or (self.has_commands and not applied)
+        self._waiting = self._waiting + 1 if is_behind else 0
+        if self._part is not None:
+            return thread_time() - begun
         if not self.frozen:
             self._play()
+        taken = thread_time() - begun
         self._adopt_identified()
         self._end_level_set()
         self.lessons.follow(self)
@@ -165,18 +179,33 @@ class Lab:
             self.watch(self)
         return taken
 
+    def _apply_next(self) -> None:
+        """Apply the next part of a command, or begin the next command."""
+        if self._part is None:
+            command = self._inbox.popleft()
+            if not command.from_teacher:
+                self.asked += 1
+                if refusal := self._refusal(command):
+                    level = "stop" if self.frozen else "warning"
+                    self.show_message(self.words.sentence(refusal), level)
+                    return
+                if self.breakdown.interrupt(self.session):
+                    self.clear_message()
+            self._parts = command.parts(self)
+        try:
+            if self._part is not None:
+                self._part.apply(self)
+            self._part = next(self._parts, None)
+        except ValueError as error:
+            self._part = None
+            self.show_message(self.words.sentence(error), "warning")
+        self.show_faults()
+
     def _refusal(self, command: Command) -> Message | None:
         """Why a user's command is refused now; None if it is not."""
         if self.frozen:
             return Message("class.frozen")
         return self.locked if command.lets_time_run else None
-
-    def _apply(self, command: Command) -> None:
-        try:
-            command.apply(self)
-        except ValueError as error:
-            self.show_message(self.words.sentence(error), "warning")
-        self.show_faults()
 
     def _adopt_identified(self) -> None:
         """Give the controllers the requested model as soon as it has been identified."""
@@ -215,7 +244,7 @@ class Lab:
 
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` if running and not frozen; see `advance_together`."""
-        if not self.frozen:
+        if not self.frozen and self._part is None:
             yield from self.session.frame(seconds)
             self.show_faults()
             if self.breakdown.follow(self.session, seconds / self.session.rate):
@@ -244,11 +273,18 @@ class Lab:
 
     @property
     def notice(self) -> tuple[str, str]:
-        """The message on the page, preceded by a warning while nothing is saved, and its level."""
+        """The message on the page, and its level.
+
+        It is preceded by a warning while nothing is saved, and replaced while the lab waits, unless
+        it says that something has stopped.
+        """
+        message, level = self.message, self.message_level
+        if self.waits and level not in ("error", "stop"):
+            message, level = self.words("say.waits"), "info"
         if not self.unsaved:
-            return self.message, self.message_level
-        is_error = bool(self.message) and self.message_level == "error"
-        text = f"{self.words(self.unsaved)} {self.message}".strip()
+            return message, level
+        is_error = bool(message) and level == "error"
+        text = f"{self.words(self.unsaved)} {message}".strip()
         return text, "error" if is_error else "warning"
 
     def show_message(self, message: str, level: str = "info") -> None:

@@ -5,7 +5,7 @@ It does not know its user: commands, lessons, class and messages belong to `app.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -27,8 +27,8 @@ from onpath.models.closed_loop.obstacles import ALONG, Wall
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.laws.own import short_name
+from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import SIDES
-from onpath.models.errors import CodedError
 from onpath.models.layout import Layout
 from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -57,6 +57,8 @@ class Session:
         history: the last minute.
         time: simulated, [s].
         running: whether simulated time advances.
+        lacks_loops: whether time stands still because loops are being made.
+        has_to_step: whether a step has to be made as soon as they are.
         rate: simulated seconds per second.
         copy: whether pulling and holding act on both robots.
         exaggeration: magnification of the drawn deflection.
@@ -79,6 +81,7 @@ class Session:
         self.law_changes = LawChanges(store, self.change_law)
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = self.resumes = True
+        self.lacks_loops = self.has_to_step = False
         self.viewing: float | None = None
         self.rate = 1.0
         self.copy = True
@@ -104,6 +107,7 @@ class Session:
         If it has the same states, both go on from the present one; otherwise they restart.
         """
         robot = self.entry.make(parameters)  # may take long, and another thread may read the lab
+        self._make_plans(self.laws.values(), robot, parameters)
         if self.robot.extras:
             self.history.settle()  # the samples depend on the parameters
         rise = rise_of(parameters)
@@ -158,7 +162,17 @@ class Session:
     def choose_law(self, side: str, law: str) -> None:
         """Change the law of a side as soon as its loop can run; the old law goes on until then."""
         self.law_changes.coming[side] = law
+        self._make_plans([law], self.robot, self.parameters)
         self._follow_laws()
+
+    def _make_plans(self, laws: Iterable[str], robot: Robot, parameters: Parameters) -> None:
+        """Make the plans of laws now, while a command is applied: they take tens of milliseconds.
+
+        They are kept until the next frame needs them.
+        """
+        for law in laws:
+            if (plan := law_named(law).plan) is not None:
+                plan(robot, parameters, self.editor.curve)
 
     def change_law(self, side: str, law: str) -> None:
         """Change the law of a side now; its robot moves on from where it is."""
@@ -166,15 +180,14 @@ class Session:
         if law != self.runs[side].law:
             push = self.forces.pushes[side]
             self.runs[side].change_law(law, self.parameters, self.editor.curve, push)
-            if self.law_changes.stands_still:  # the run begins with this law
-                self.runs[side].reset(self.editor.curve, self._beginning())
-            else:
-                self.note("law", short_name(law), (side,))
+            self.note("law", short_name(law), (side,))
 
     def _follow_laws(self) -> bool:
         """Change to the laws whose loops can run now; returns whether time can run."""
         curve, pushes = self.editor.curve, self.forces.pushes
-        return self.law_changes.follow(self.runs, self.parameters, curve, pushes)
+        ready = self.law_changes.follow(self.runs, self.parameters, curve, pushes)
+        self.lacks_loops = not ready
+        return ready
 
     def note(self, name: str, detail: str = "", sides: tuple[str, ...] = SIDES) -> None:
         """Record an event; what a drag of a slider repeats within a second is recorded once."""
@@ -185,7 +198,11 @@ class Session:
 
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` of simulated time, if running; see `advance_together`."""
-        if not self._follow_laws() or not self.running:
+        ready = self._follow_laws()
+        if ready and self.has_to_step:
+            self.has_to_step = False
+            return self.frame_of(self._step_ticks)
+        if not ready or not self.running:
             self._owed = 0.0
             if self.viewing is None:
                 self._bend_paused(seconds)
@@ -216,7 +233,10 @@ class Session:
             count = ticks if leg is None or leg.end is None else min(ticks, leg.end - now)
             for run in runs:
                 run.configure(parameters, curve, pushes[run.side], leg, now)
-            moving = [(run, run.loop()) for run in runs if run.diverged is None]
+            going = [run for run in runs if run.diverged is None]
+            moving = [(run, loop) for run in going if (loop := run.loop()) is not None]
+            if len(moving) < len(going):  # the path has just become another kind of curve
+                return
             self.law_changes.remark_on(moving)
             part = Ticks(
                 runs=moving,
@@ -268,14 +288,17 @@ class Session:
     def step_once(self) -> None:
         """Make one step of a paused lab: the controller's next sample, at least a millisecond.
 
-        Raises:
-            ValueError: the loop of a typed law is being made.
+        If a robot lacks its loop, the step is made as soon as there is one.
         """
         self.running = False
-        if not self._follow_laws():
-            raise CodedError("error.law_not_ready")
-        dt = time_step(self.parameters)
-        self.simulate(max(1, round(max(TICK, 1 / self.parameters.control_rate) / dt)))
+        self.has_to_step = not self._follow_laws()
+        if not self.has_to_step:
+            self.simulate(self._step_ticks)
+
+    @property
+    def _step_ticks(self) -> int:
+        step = max(TICK, 1 / self.parameters.control_rate)
+        return max(1, round(step / time_step(self.parameters)))
 
     def reset(self, laws: Mapping[str, str] | None = None) -> None:
         """Put both robots at the start. Clears the history; keeps path, parameters and wall.
@@ -294,10 +317,11 @@ class Session:
 
     def _restart(self, laws: Mapping[str, str] | None = None) -> None:
         laws, curve = self.laws if laws is None else laws, self.editor.curve
-        laws = self.law_changes.begin(laws, self.robot, self.parameters, curve)
+        laws = self.law_changes.begin(laws, self.robot, self.parameters)
         self.run_number += 1
         self.time = self.across_since = 0.0
         self._owed = 0.0
+        self.has_to_step = False
         self.return_to_present()
         self.undo_timeline: Timeline | None = None
         self.history.clear()

@@ -10,6 +10,7 @@ import mimetypes
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from importlib import import_module
 from io import BytesIO
 from threading import Thread
@@ -17,11 +18,14 @@ from threading import Thread
 import numpy as np
 
 from onpath.app.common.error_log import log_warning
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.session import Session
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.assets.messages import languages
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
 
 log = logging.getLogger(__name__)
@@ -35,7 +39,7 @@ TRIES = 5
 
 
 def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
-    """After `rest` [s], in a thread: read the lessons, compile loops, import the modules `LATER`.
+    """After `rest` [s], in a thread: read lessons, compile loops, import modules, build robots.
 
     A part that fails, for instance because too many files are open, is tried again after a rest.
     """
@@ -58,7 +62,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
         mimetypes.init()  # the types of files, for downloads
 
     def work() -> None:
-        parts = [read_lessons, compile_loops, import_modules]
+        parts = [read_lessons, compile_loops, import_modules, partial(build_robots, store)]
         tries = TRIES
         while parts and tries:
             time.sleep(rest)
@@ -70,10 +74,16 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
     return thread
 
 
+def build_robots(store: LoopCache) -> None:
+    """Build the equations and drawings of all robots, before somebody chooses one."""
+    for entry in ROBOTS.values():
+        take_page_snapshot(Lab(store, entry), 1.0)
+
+
 def compile_loops(store: LoopCache, entry: RobotEntry) -> None:
     """Compile the loops that a new lab with a robot needs, before anybody waits for them.
 
-    Until its loop is compiled, a robot with many joints would take much of each frame.
+    Those of a robot with many joints take seconds.
     """
     runs = Session(store, entry).runs.values()
     loops = [(run.robot, replace(run.kind, free=free)) for run in runs for free in (True, False)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import Protocol
 
 from msgspec import Struct
@@ -15,9 +16,9 @@ from onpath.app.simulation.frame_length import FRAME
 from onpath.app.simulation.slow_updates import Updated
 
 FORGETTING = 1 / 600  # low-pass gain of the processor time of a lab's commands, per frame
+FORGIVING = 1 / 120  # share per frame by which a lab's longest commands count less
+SHORT = 2e-3  # [s] of processor time, of short commands
 FADING = 1 / 60  # low-pass gain of a lab's measured speed, per frame
-COMMANDS = 4e-3  # [s] of a frame for one lab's commands; longer ones delay the next
-DEBT = 0.25  # [s], at most: also after very long ones the next is applied within about a second
 LONGEST = 4  # maximum number of frames that are simulated together
 NEVER = -1_000_000  # number of a frame in the distant past
 
@@ -83,7 +84,7 @@ class ScheduledLab(Updated):
         self.lab, self.session = lab, lab.session
         self.view: LabDisplay | None = None
         self.refreshed = NEVER
-        self._credit = self.used = 0.0
+        self.used = self._longest = 0.0
         self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
         self._elapsed = NOTHING
 
@@ -97,20 +98,25 @@ class ScheduledLab(Updated):
         """Recent simulated seconds per second."""
         return self._simulated / self._passed
 
-    def drain(self, share: float = COMMANDS, may_begin: bool = True) -> float:
+    @property
+    def is_light(self) -> bool:
+        """Whether its commands have lately been short, so that they need not wait for long ones."""
+        return self._longest < SHORT
+
+    def drain(self, most: float = inf) -> float:
         """Apply commands, and do whatever else a lab does before a frame.
 
         Args:
-            share: processor time per frame, [s]; a command that takes longer delays the next.
-            may_begin: whether commands may be applied in this frame.
+            most: processor time after which the remaining commands wait, [s].
 
         Returns:
             Processor time of the commands, [s].
         """
-        self._credit = min(self._credit, 0.0) + share
-        taken = self.lab.drain(self._credit if may_begin else 0.0)
-        self._credit = max(self._credit - taken, -DEBT)
+        taken = self.lab.drain(most)
         self.used += taken - FORGETTING * self.used
+        if not self.lab.has_commands:  # it need not wait to be forgiven
+            self._longest -= FORGIVING * self._longest
+        self._longest = max(taken, self._longest)
         return taken
 
     def frame(

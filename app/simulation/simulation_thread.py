@@ -23,7 +23,7 @@ from onpath.app.lab.advance_together import advance_together
 from onpath.app.simulation.display_rate import DisplayRate
 from onpath.app.simulation.frame_length import FRAME, frame_length
 from onpath.app.simulation.frame_times import FrameTimes
-from onpath.app.simulation.scheduled_lab import COMMANDS, ScheduledLab
+from onpath.app.simulation.scheduled_lab import ScheduledLab
 from onpath.app.simulation.slow_updates import SHARE, SlowUpdates
 
 log = logging.getLogger(__name__)
@@ -65,6 +65,7 @@ class SimulationThread:
         self.frames = FrameTimes()
         self._calls: deque[tuple[Callable[[], Any], Future[Any]]] = deque()
         self._slow_updates, self._drawing = SlowUpdates(clock), 0.0
+        self._turns = CommandTurns()
         self._advancing = 0.0  # [s] of a frame, without commands, low-pass filtered as `_drawing`
 
     def start(self) -> None:
@@ -154,7 +155,7 @@ class SimulationThread:
             function, answer = self._calls.popleft()
             _answer(function, answer)
         spare = FRAME - late - self._advancing - self._drawing
-        apply_commands(labs, min(max(spare, FEWEST), ALL_COMMANDS))
+        self._turns.apply(labs, min(max(spare, FEWEST), ALL_COMMANDS))
         applied = self._clock()
         frames = [lab.frame(seconds, length, count, stride) for lab in labs]
         advance_together(frames, log_error)
@@ -171,20 +172,34 @@ class SimulationThread:
         return ended - begun + drawing, drawing
 
 
-def apply_commands(labs: list[ScheduledLab], most: float) -> None:
-    """Apply the commands of one frame within `most` [s], exceeded by one command at most.
+class CommandTurns:
+    """Divides the processor time for commands among labs, by what their commands have taken.
 
-    Labs whose recent commands took the least time come first, so that no lab waits for one that
-    keeps asking for long work.
+    Labs with short commands come first, and in each group those that have taken least lately. So no
+    lab waits for one that keeps asking for long work.
     """
-    share = min(COMMANDS, most / max(sum(lab.lab.has_commands for lab in labs), 1))
-    left = most
 
-    def drain(lab: ScheduledLab) -> None:
-        nonlocal left
-        left -= lab.drain(share, left > 0)
+    def __init__(self) -> None:
+        self._owed = {True: 0.0, False: 0.0}  # [s] taken too long by light labs, and by others
 
-    _do(drain, sorted(labs, key=lambda lab: lab.used))
+    def apply(self, labs: list[ScheduledLab], most: float) -> None:
+        """Apply the commands of a frame within `most` [s].
+
+        It may be exceeded by one command, or part of one, of each group; later frames make up for
+        it.
+        """
+
+        def drain(lab: ScheduledLab) -> None:
+            nonlocal left
+            left -= lab.drain(left)
+
+        spent = 0.0
+        for is_light in (True, False):
+            left = before = most - spent - self._owed[is_light]
+            group = [lab for lab in labs if lab.is_light is is_light]
+            _do(drain, sorted(group, key=lambda lab: lab.used))
+            spent = before - left
+            self._owed[is_light] = max(-left, 0.0)
 
 
 def _answer(function: Callable[[], T], answer: Future[T]) -> None:

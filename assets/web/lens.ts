@@ -32,8 +32,7 @@ export class Lens {
     scale = 1000
     readonly sheet: Sheet
     private readonly distance = made("b", "distance")
-    private readonly acts = made("span", "")
-    private readonly times = made("span", "times")
+    private readonly more = made("span", "")
     private stale = true
     private factor = FACTORS[FACTORS.length - 1]!
     private drawn = 0 // pixels for a metre, at present
@@ -45,7 +44,7 @@ export class Lens {
         this.sheet = new Sheet(() => (this.stale = true))
         this.sheet.canvas.setAttribute("role", "img")
         const tone = engine.texts[side]!.side
-        this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", made("span", "", this.acts, this.times)))
+        this.element = made("div", `lens side${tone}`, this.sheet.canvas, made("p", "reading", this.distance, " ", this.more))
         engine.on(() => (this.stale = true), ended)
         this.read(shown(engine).sides[side]!)
     }
@@ -125,8 +124,7 @@ export class Lens {
         if (this.sheet.canvas.ariaLabel !== name) this.sheet.canvas.ariaLabel = name
         tell(this.distance, `${written(texts, 1e3 * sample.distance, 1)} mm`)
         const acts = sample.held ? "chart.held" : sample.pulled ? "chart.pulled" : ""
-        tell(this.acts, acts && said(texts, acts))
-        tell(this.times, `${acts && " · "}×${written(texts, factor)}`)
+        tell(this.more, [acts && said(texts, acts), `×${written(texts, factor)}`].filter(Boolean).join(" · "))
     }
 
     private grid(ink: CanvasRenderingContext2D, middle: Pixel, radius: number): void {

@@ -2,6 +2,7 @@
 
 import type { FigureData, Place } from "./figure_data"
 import type { Curves } from "./notes"
+import type { Package } from "./scorm"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
@@ -98,6 +99,10 @@ export interface TaskData {
     id: string
     best: string
     checks?: Check[]
+    /** Conditions of the ways in which it may be passed; see lessons/task_schema.py. */
+    ways?: Check[]
+    /** Whether it counts nothing in a grade. */
+    exploratory?: boolean
 }
 
 export interface SketchData {
@@ -139,7 +144,7 @@ export interface PageData {
     symbols: Record<string, string>
     /** Whether this is the concept test, which tells nothing. */
     test?: boolean
-    scorm?: "1.2" | "2004" | null
+    scorm?: Package | null
     figures: SiteFigure[]
     steps: StepData[]
     lessons: Record<string, { steps: number; required: number; tasks: string[] }>

@@ -23,9 +23,14 @@ export interface Notes {
     step: number
     seen: number
     answers: Record<string, Answer>
+    /** What happened after each prediction; this is not kept, since it can be computed again. */
     truths: Record<string, Curves>
     played: Record<string, boolean>
     tasks: Record<string, number>
+    /** The way in which each task was passed last, if it is not the usual one, 0. */
+    ways: Record<string, number>
+    /** Number of hints that were read, by task. */
+    hints: Record<string, number>
     quiz: Record<string, number>
     /** First answers to quizzes and questions for numbers, after which the page shows the right ones. */
     first: Record<string, number>
@@ -34,19 +39,18 @@ export interface Notes {
 }
 
 const FORMAT = "onpath-progress-1"
-const MOST_POINTS = 200
 
 export function noNotes(): Notes {
-    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {} }
+    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, ways: {}, hints: {}, quiz: {}, first: {}, numbers: {}, written: {} }
 }
 
 export function notesOf(progress: Progress, lesson: string): Notes {
     const kept = parsed(progress.get(key(lesson)) ?? "{}")
-    return isNotes(kept) ? { ...noNotes(), ...kept } : noNotes()
+    return isNotes(kept) ? { ...noNotes(), ...kept, truths: {} } : noNotes()
 }
 
 export function keep(progress: Progress, lesson: string, notes: Notes): void {
-    progress.set(key(lesson), JSON.stringify(notes))
+    progress.set(key(lesson), JSON.stringify({ ...notes, truths: {} }))
 }
 
 /** Whether a prediction was committed; a skipped one is an empty answer. */
@@ -72,22 +76,6 @@ export function imported(progress: Progress, page: PageData, text: string): bool
 
 export function forget(progress: Progress, page: PageData): void {
     for (const name of Object.keys(page.lessons)) progress.set(key(name), "{}")
-}
-
-/** A curve with fewer points; the extremes of every part are kept. */
-export function thinned({ times, tracker, follower }: Curves): Curves {
-    const parts = Math.floor(MOST_POINTS / 4)
-    const kept = new Set([0, times.length - 1])
-    for (let part = 0; times.length > MOST_POINTS && part < parts; part++) {
-        const [from, until] = [part, part + 1].map(i => Math.floor((i * times.length) / parts)) as [number, number]
-        for (const curve of [tracker, follower]) {
-            const own = curve.slice(from, until)
-            kept.add(from + own.indexOf(Math.max(...own))).add(from + own.indexOf(Math.min(...own)))
-        }
-    }
-    const places = times.length > MOST_POINTS ? [...kept].sort((a, b) => a - b) : [...times.keys()]
-    const at = (curve: number[]) => places.map(i => Math.round(1e4 * curve[i]!) / 1e4)
-    return { times: at(times), tracker: at(tracker), follower: at(follower) }
 }
 
 function key(lesson: string): string {
@@ -119,6 +107,6 @@ function isNotes(read: unknown): read is Partial<Notes> {
     const curves = fields({ times: numbers, tracker: numbers, follower: numbers })
     return fields({
         step: place, seen: place, answers: every(answer), truths: every(curves), played: every(flag),
-        tasks: every(number), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
+        tasks: every(number), ways: every(place), hints: every(place), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
     })(read)
 }

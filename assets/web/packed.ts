@@ -1,9 +1,8 @@
 // Packs notes into a text that fits a learning platform: 4,096 characters in SCORM 1.2. Pure functions.
 
-/** What packing may leave out: curves of runs, which can be seen again; points of a drawn curve, which keeps its
- * ends and extremes; and the ends of long texts, which the page must say. */
+/** What packing may leave out: points of a drawn curve, which keeps its ends and extremes; and the ends of long texts, which
+ * the page must say. */
 interface Size {
-    truths: boolean
     points: number
     letters: number
 }
@@ -18,15 +17,14 @@ type Curve = [begin: number, end: number, low: number, high: number, letters: st
 const LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_"
 const FINE = LETTERS.length ** 2 - 1 // parts of the length and of the height of a curve, of two letters
 const SIZES: Size[] = [
-    { truths: true, points: Infinity, letters: Infinity },
-    ...[Infinity, 80, 40, 20, 10].map(points => ({ truths: false, points, letters: Infinity })),
-    ...Array.from({ length: 47 }, (_, i) => ({ truths: false, points: 10, letters: 980 - 20 * i })),
+    ...[Infinity, 80, 40, 20, 10].map(points => ({ points, letters: Infinity })),
+    ...Array.from({ length: 47 }, (_, i) => ({ points: 10, letters: 980 - 20 * i })),
 ]
 
 /** The most complete text with at most `room` characters; null if none fits. */
 export function packed(kept: unknown, room: number): Packed | null {
     for (const size of SIZES) {
-        const text = JSON.stringify(kept, (name, own: unknown) => reduced(name, own, size))
+        const text = JSON.stringify(kept, (_, own: unknown) => reduced(own, size))
         if (text.length <= room) return { text, cut: size.letters < Infinity }
     }
     return null
@@ -45,8 +43,7 @@ export function unpacked(text: string): unknown {
     }
 }
 
-function reduced(name: string, own: unknown, size: Size): unknown {
-    if (name === "truths" && !size.truths) return undefined
+function reduced(own: unknown, size: Size): unknown {
     if (typeof own === "string") return shortened(own, size.letters)
     const { times, values, ...rest } = { ...(own as { times?: unknown; values?: unknown } | null) }
     if (!isLine(times) || !isLine(values) || times.length !== values.length || times.length < 2) return own

@@ -4,12 +4,13 @@ import { made, refused } from "./controls"
 import { ordered } from "./asked"
 import type { PageData } from "./lesson_data"
 import { Legend } from "./legend"
-import { given, thinned } from "./notes"
+import { given } from "./notes"
 import { said } from "./words"
 import { showOwn } from "./own"
 import { Comparison, elementOf } from "./predictions"
 import type { Progress } from "./progress"
-import { Stage } from "./stage"
+import { Recorded } from "./recorded"
+import { kernelsOf, Stage } from "./stage"
 import { StepView, type Robots } from "./step"
 import { LocalStudent } from "./student"
 import { Task } from "./tasks"
@@ -104,7 +105,11 @@ export class Player implements Robots {
             for (const scrolls of [words, section]) scrolls.scrollTo(0, 0)
         }
         this.show()
-        if (this.index === page.steps.length) return this.end()
+        if (this.index === page.steps.length) {
+            this.end()
+            if ((await this.recall(page.steps.keys())) && turn === this.turn) this.end()
+            return
+        }
         const step = page.steps[this.index]!
         const figure = page.figures[step.figure]
         if (!figure) return this.run() // only the lab shows it
@@ -125,6 +130,27 @@ export class Player implements Robots {
             block.kind === "task" ? [new Task(page, this.block(i), block, student, () => this.tell(said(page, "lesson.passed")))] : [],
         )
         this.run()
+        if ((await this.recall([this.index])) && turn === this.turn) this.run()
+    }
+
+    /** Find out what happened in runs that were seen, as far as this visit does not know: curves are not kept, since the page
+     * has them or can compute them again. Returns whether anything is new. */
+    private async recall(runs: Iterable<number>): Promise<boolean> {
+        const { page, notes } = this
+        let isNew = false
+        for (const index of runs) {
+            const { script, truth, values, figure } = page.steps[index]!
+            const data = page.figures[figure]
+            const { prediction, waits } = this.views[index]!
+            if (prediction?.data.kind !== "sketch" || waits || notes.truths[String(prediction.step)]) continue
+            let found = index < notes.seen ? truth : undefined
+            if (!found && notes.played[String(index)] && script && data)
+                found = new Recorded(data, await kernelsOf(data.module), values).played(script, prediction.data.quantity)
+            if (!found) continue
+            notes.truths[String(prediction.step)] = found
+            isNew = true
+        }
+        return isNew
     }
 
     private readonly block = (place: number, index = this.index): HTMLElement =>
@@ -163,16 +189,15 @@ export class Player implements Robots {
         }
         stage.play(step.script, whole => {
             this.playing = false
-            if (whole) this.student.sees(index, found?.step ?? index, thinned(stage.simulation.curve(quantity)))
+            if (whole) this.student.sees(index, found?.step ?? index, stage.simulation.curve(quantity))
             this.run()
         })
         draw()
     }
 
     private run(): void {
-        const { page, index, view, notes } = this
-        const step = page.steps[index]
-        if (step?.truth && view && !view.waits) notes.truths[String(view.prediction?.step ?? index)] = step.truth
+        const { page, index, view } = this
+        if (page.steps[index]?.truth) void this.recall([index])
         view?.run()
     }
 

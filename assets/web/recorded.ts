@@ -3,7 +3,8 @@
 import type { Kernels } from "./kernels"
 import { Simulation } from "./simulation"
 import type { Happening, RunRecord } from "./checks"
-import { ROBOTS, type Action, type Robot, type SiteFigure, type StepData } from "./lesson_data"
+import { ROBOTS, type Action, type Robot, type Script, type SiteFigure, type StepData } from "./lesson_data"
+import type { Curves } from "./notes"
 
 const FRAME = 1 / 60 // [s]
 const MOST = 3600 // samples: the lab keeps one minute, too
@@ -11,7 +12,7 @@ const MOST = 3600 // samples: the lab keeps one minute, too
 export class Recorded extends Simulation {
     happenings: Happening[] = []
     /** Called before every frame of a 60th of a second; a script acts then. False: wait here. */
-    before: (time: number) => boolean = () => true
+    private before: (time: number) => boolean = () => true
     /** Number of the run; each reset begins another one. */
     run = 0
     private frame = 0
@@ -98,6 +99,41 @@ export class Recorded extends Simulation {
         else if (action.set) this.write(action.set, action.write ?? [])
     }
 
+    /** Begin a script, from the step's beginning; time must then advance. `told` gets each action, and `ended` whether all of
+     * it was played, or a reset came. */
+    play(script: Script, told: (action: Action) => void, ended: (whole: boolean) => void): void {
+        const waiting = [...script.do].sort((a, b) => a[0] - b[0])
+        let before = 0 // simulated time before the last reset, [s]
+        this.setUp()
+        let { run } = this
+        const end = (whole: boolean) => {
+            this.before = () => true
+            ended(whole)
+            return !whole
+        }
+        this.before = time => {
+            if (this.run !== run) return end(false)
+            while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
+                const [, action] = waiting.shift()!
+                told(action)
+                this.act(action)
+                if (this.run === run) continue
+                run = this.run
+                before += time
+                time = 0
+            }
+            return before + time < script.until - 1e-9 || end(true)
+        }
+    }
+
+    /** Play all of a script at once; returns what a quantity did. */
+    played(script: Script, quantity: string): Curves {
+        let playing = true
+        this.play(script, () => {}, () => (playing = false))
+        while (playing) this.advance(Math.round(1 / this.data.dt))
+        return this.curve(quantity)
+    }
+
     record(): RunRecord {
         const { times, happenings, run, settings } = this
         return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.different() }
@@ -110,7 +146,7 @@ export class Recorded extends Simulation {
     }
 
     /** A quantity of both robots up to now. */
-    curve(quantity: string): { times: number[]; tracker: number[]; follower: number[] } {
+    curve(quantity: string): Curves {
         const now = this.now()
         const of = (robot: Robot) => [...(this.samples[robot][quantity] ?? []), now[robot][quantity] ?? 0]
         return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }

@@ -17,7 +17,12 @@ const NAMES = {
         status: "cmi.completion_status", scaled: "cmi.score.scaled", progress: "cmi.progress_measure",
     },
 }
-export type Version = keyof typeof NAMES
+/** What kind of package this is. */
+export interface Package {
+    version: keyof typeof NAMES
+    /** Whether an unfinished lesson gets a score, too. */
+    partial: boolean
+}
 
 export class ScormProgress implements Progress {
     private kept: Record<string, unknown> = {}
@@ -25,7 +30,12 @@ export class ScormProgress implements Progress {
     private records = false // false in a review
     private credit = false // whether a score is wanted
 
-    private constructor(private readonly names: (typeof NAMES)[Version], private readonly api: Api, private readonly tell: Tell) {
+    private constructor(
+        private readonly names: (typeof NAMES)[Package["version"]],
+        private readonly api: Api,
+        private readonly scoresParts: boolean,
+        private readonly tell: Tell,
+    ) {
         this.begin()
         this.kept = { ...(unpacked(this.value(DATA)) as object | undefined) }
         addEventListener("pagehide", () => this.end())
@@ -37,11 +47,11 @@ export class ScormProgress implements Progress {
     }
 
     /** Null if there is no platform around this page. */
-    static found(version: Version, tell: Tell): ScormProgress | null {
+    static found({ version, partial }: Package, tell: Tell): ScormProgress | null {
         const { api } = NAMES[version]
         const found = apiOf(window, api) ?? apiOf(window.opener as Window | null, api)
         if (!found) tell("site.no_platform")
-        return found && new ScormProgress(NAMES[version], found, tell)
+        return found && new ScormProgress(NAMES[version], found, partial, tell)
     }
 
     get(key: string): string | null {
@@ -54,12 +64,13 @@ export class ScormProgress implements Progress {
         this.keep()
     }
 
-    /** A score never decreases, and what is passed or completed remains so. */
+    /** A score never decreases, and what is passed or completed remains so. An unfinished lesson gets none, unless the
+     * teacher wants that. */
     grade({ progress, score }: Grade): void {
         const { names } = this
         if (this.credit) {
             const points = Math.round(100 * (score ?? NaN))
-            if (this.raises(`${names.core}score.raw`, points)) {
+            if ((progress === 1 || this.scoresParts) && this.raises(`${names.core}score.raw`, points)) {
                 this.ask("SetValue", `${names.core}score.min`, "0") // a platform need not take these two
                 this.ask("SetValue", `${names.core}score.max`, "100")
                 this.put(`${names.core}score.raw`, String(points))

@@ -67,39 +67,15 @@ export class Stage {
     /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
     play(script: Script, ended: (whole: boolean) => void): void {
         const { simulation, figure } = this
-        const waiting = [...script.do].sort((a, b) => a[0] - b[0])
-        let before = 0 // simulated time before the last reset, [s]
-        simulation.setUp()
+        const rate = (rate: number) => figure.engine.act({ do: "rate", rate })
+        simulation.play(script, action => action.rate && rate(action.rate), whole => {
+            rate(1)
+            if (whole) this.run(false)
+            ended(whole)
+        })
         figure.changed()
         this.sliders()
-        let { run } = simulation
-        simulation.before = time => {
-            if (simulation.run !== run) {
-                this.cancel()
-                ended(false)
-                return true
-            }
-            while (waiting.length && waiting[0]![0] <= before + time + 1e-9) {
-                const [, action] = waiting.shift()!
-                if (action.rate) figure.engine.act({ do: "rate", rate: action.rate })
-                simulation.act(action)
-                if (simulation.run === run) continue
-                run = simulation.run
-                before += time
-                time = 0
-            }
-            if (before + time < script.until - 1e-9) return true
-            this.cancel()
-            this.run(false)
-            ended(true)
-            return false
-        }
         this.run(true)
-    }
-
-    private cancel(): void {
-        this.simulation.before = () => true
-        this.figure.engine.act({ do: "rate", rate: 1 })
     }
 
     /** Show the values on the sliders. */

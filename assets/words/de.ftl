@@ -919,6 +919,7 @@ say-laws_replaced = Nicht für diesen Roboter: { $laws }. An dieser Stelle steht
 say-law_interpreted = Dieses Regelgesetz wird interpretiert statt übersetzt, was etwa 30-mal so lange dauert: { $reason }.
 say-looking_back = Das ist die Vergangenheit. „Zurück zu jetzt“ kehrt in die Gegenwart zurück; „Von hier aus weiter“ verwirft, was danach kam, und lässt sich rückgängig machen.
 say-let_go = Die Spitzen sind losgelassen.
+say-waits = Das Lab arbeitet noch; es geht gleich weiter.
 say-present = Zurück in der Gegenwart.
 say-set_up = Das Labor ist nach dem Code eingerichtet. Rückgängig im Bahneditor holt die frühere Bahn zurück.
 say-went_on = Weiter ab { $time } s. Die { $seconds } s danach sind verworfen; Taste U holt sie zurück.
@@ -969,6 +970,8 @@ guide-right = Richtig:
 guide-curves = Die wirklichen Kurven beider Roboter
 guide-solution = Eine Lösung
 guide-why = Warum sie geht:
+guide-otherwise = Anders geschafft:
+guide-exploratory = durch Ausprobieren, ohne Wertung
 guide-test = Konzepttest
 guide-test_intro = Dieselben Fragen vor und nach dem Kurs. Öffne sie für die Klasse auf der Seite „Vorhersagen“; die Antworten werden erst verraten, wenn der zweite Test abgegeben ist, also besprich sie nicht vorher. Der normierte Lernzuwachs der Klasse steht dann auf derselben Seite und in der CSV-Datei, ohne Namen.
 guide-aims = Zielt auf die Vorstellung:
@@ -1117,7 +1120,10 @@ parameter-encoder_counts-unit = je Umdrehung
 parameter-encoder_counts-help = Schritte der Drehgeber in den Gelenken; 0: genaue Messung
 
 parameter-encoder_filter-label = Filterzeit
-parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern; ohne deren Stufen und ohne Rauschen bewirkt sie nichts
+parameter-encoder_filter-help = Zeitkonstante des Filters hinter den Drehgebern, wenn es keinen Beobachter gibt; ohne Stufen und ohne Rauschen bewirkt sie nichts
+
+parameter-observer_time-label = Beobachter
+parameter-observer_time-help = die Geschwindigkeiten schätzt ein Beobachter mit dem Modell des Reglers; in dieser Zeit vergisst er Fehler. 0: der Filter liefert sie; ohne Stufen und ohne Rauschen bewirkt sie nichts
 
 parameter-coulomb-label = Trockene Reibung
 parameter-coulomb-help = trockene Reibung in den Gelenken; 0: keine
@@ -1137,7 +1143,7 @@ parameter-delay-unit = Regeltakte
 parameter-delay-help = Zeit von einer Messung bis zum Drehmoment, das aus ihr berechnet wird; 0: sofort
 
 parameter-sensor_noise-label = Messrauschen
-parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel; ihr Filter liefert die Geschwindigkeiten
+parameter-sensor_noise-help = Standardabweichung der gemessenen Gelenkwinkel
 
 parameter-seed-label = Startwert des Rauschens
 parameter-seed-help = wählt die Zufallszahlen des Rauschens: gleicher Startwert, gleicher Lauf
@@ -1191,7 +1197,7 @@ parameter-posture_damping-label = Haltungsdämpfer
 parameter-posture_damping-help = Dämpfer der Gelenkbewegung, die die Spitze nicht bewegt; 0: keiner
 
 parameter-payload-label = Last
-parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon
+parameter-payload-help = Masse an der Spitze; der Regler weiß nichts davon, und sein Integral hebt nicht mehr, als sonst 10 mm tief hinge
 
 parameter-alpha-label = α
 parameter-alpha-help = Anteil der Biegung oder des Pendelns, den der Regler sieht: 1 der ganze, 0 nichts davon
@@ -1406,7 +1412,7 @@ error-law_same_name = OnPath hat ein Gesetz namens { $law }: wählen Sie einen a
 error-law_is_called = { $law } ist eine Python-Funktion, die in jedem Regelintervall aufgerufen wird. Das geht in onpath.simulate, onpath experiment und onpath arena; hier ist ein Gesetz ein Objekt mit command(view)
 error-law_cannot_run = ein eigenes Gesetz ist mit diesem Roboter und diesen Einstellungen nicht möglich
 error-no_earlier_settings = es gibt keine früheren Einstellungen, zu denen es zurückgehen könnte
-error-law_not_ready = das Regelgesetz entsteht noch; versuche es gleich noch einmal
+error-too_many_actions = ein Verweis hat höchstens { $most } Aktionen
 error-law = Zeile { $line }, Spalte { $column }: { $reason }
 error-law_too_long = ein Regelgesetz hat höchstens { $most } Zeichen, nicht { $count }
 error-law_too_complex = das Regelgesetz ist zu kompliziert: höchstens { $most } Namen, Zahlen und Operationen, höchstens { $deepest }-fach verschachtelt
@@ -1485,7 +1491,7 @@ error-file_empty = die Datei ist leer
 error-file_no_text = die Datei ist kein Text
 error-file_described = die Datei beschreibt eine Bahn mit Worten; dazu gibt es keine Optionen
 error-file_points = Zeile { $line }: mehr als { $most } Punkte
-error-file_corners = die Linie hat { $count } Ecken; höchstens { $most } werden abgerundet
+error-file_corners = die Linie hat zu viele Ecken: Höchstens { $most } werden abgerundet
 error-file_no_line = die Datei enthält keine Linie, die eine Bahn sein könnte
 error-file_part = part { $part }: die Datei hat { $count } Linien
 error-file_option = { $name }: { $value } ist nicht möglich
@@ -1493,6 +1499,10 @@ error-file_radius = ein Radius gehört zu corners=round
 error-file_too_large = die Bahn reicht { $farthest } m weit vom Ursprung, möglich ist höchstens { $most } m: gib die Einheit an, einen Maßstab (scale) oder fit=0.1
 error-file_takes_long = das Lesen der Datei hat zu lange gedauert
 error-file_failed = die Datei konnte nicht gelesen werden
+error-file_busy = eine Datei nach der anderen: Die letzte ist noch in Arbeit
+error-file_incoherent = die Datei kam nicht so an, wie sie angekündigt war: Wähle sie noch einmal
+error-file_late = die Datei war zu lange unterwegs: Wähle sie noch einmal
+error-file_often = zu viele Dateien hintereinander: Warte einen Moment
 error-points_columns = Zeile { $line }: { $count } Spalten, von denen keine x und y heißen
 error-points_units = Zeile { $line }: x und y haben verschiedene Einheiten
 error-gcode_word = Zeile { $line }, Spalte { $column }: { $text } wird nicht gelesen. Von G-Code werden es G0 bis G3, G20, G21, G90 und G91 mit X, Y, Z, I, J und R, und was die Bahn lässt, wie sie ist, etwa F, S und M3, hat keine Wirkung
@@ -1728,6 +1738,8 @@ robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Tr�
 robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
+robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauchte mehr als { $seconds } s
+robot_file-mujoco_ended = MuJoCo ist beim Lesen von { $file } ausgefallen: Es ist abgestürzt oder brauchte zu viel Speicher
 robot_file-mujoco_warns = MuJoCo warnt: { $reason }
 robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
@@ -1735,7 +1747,10 @@ robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg 
 robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
 robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
-robot_file-refused = <{ $element }> würde andere Dateien lesen oder Code ausführen: Lassen Sie es weg
+robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
+robot_file-unknown = in <{ $parent }> gibt es kein solches Element
+robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-meshes = die Netze haben mehr als { $most }
 robot_file-left_out = weggelassen: { $parts }
 
 ## Die Arena (app/exports/arena_page.py)

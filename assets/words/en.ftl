@@ -847,6 +847,8 @@ guide-right = Right:
 guide-curves = The true curves of both robots
 guide-solution = A solution
 guide-why = Why it works:
+guide-otherwise = Passed otherwise:
+guide-exploratory = found by trying, not graded
 guide-test = Concept test
 guide-test_intro = The same questions before and after the course. Open them for the class on the page “Predictions”; the answers are shown when the second test is handed in, so do not discuss them before. The class's normalised gain is then on the same page and in the class record, without names.
 guide-aims = Aims at the belief:
@@ -889,6 +891,7 @@ say-laws_replaced = Not for this robot: { $laws }. A usual law is in its place.
 say-law_interpreted = This law is interpreted instead of compiled, which takes about 30 times as long: { $reason }.
 say-looking_back = This is the past. “Back to now” returns to the present; “Go on from here” discards what came after, and can be undone.
 say-let_go = The end-points have been let go.
+say-waits = The lab is still working on what was asked; it goes on in a moment.
 say-present = Back in the present.
 say-set_up = The lab is set up from the code. Undo in the path editor restores the previous path.
 say-went_on = Going on from { $time } s. The { $seconds } s that came after are discarded; key U restores them.
@@ -1047,7 +1050,7 @@ error-law_same_name = OnPath has a law named { $law }: choose another name
 error-law_is_called = { $law } is a Python function, which is called in every control interval. That works in onpath.simulate, onpath experiment and onpath arena; here a law is an object with command(view)
 error-law_cannot_run = a typed law is not possible with this robot and these settings
 error-no_earlier_settings = there are no earlier settings to go back to
-error-law_not_ready = the law is still being made; try again in a moment
+error-too_many_actions = a link has at most { $most } actions
 error-law = line { $line }, column { $column }: { $reason }
 error-law_too_long = a law has at most { $most } characters, not { $count }
 error-law_too_complex = the law is too complicated: at most { $most } names, numbers and operations, nested at most { $deepest } deep
@@ -1126,7 +1129,7 @@ error-file_empty = the file is empty
 error-file_no_text = the file is not a text file
 error-file_described = the file describes a path in words, which takes no options
 error-file_points = line { $line }: more than { $most } points
-error-file_corners = the line has { $count } corners; at most { $most } are rounded
+error-file_corners = the line has too many corners: at most { $most } are rounded
 error-file_no_line = the file has no line that could be a path
 error-file_part = part { $part }: the file has { $count } lines
 error-file_option = { $name }: { $value } is not possible
@@ -1134,6 +1137,10 @@ error-file_radius = a radius is for corners=round
 error-file_too_large = the path reaches { $farthest } m from the origin, at most { $most } m is possible: state the unit, a scale, or fit=0.1
 error-file_takes_long = reading the file took too long
 error-file_failed = the file could not be read
+error-file_busy = one file at a time: the last one is still under way
+error-file_incoherent = the file did not arrive as it was announced: choose it again
+error-file_late = the file took too long to arrive: choose it again
+error-file_often = too many files in a row: wait a moment
 error-points_columns = line { $line }: { $count } columns, of which none are called x and y
 error-points_units = line { $line }: x and y have different units
 error-gcode_word = line { $line }, column { $column }: { $text } is not read. G0 to G3, G20, G21, G90 and G91 with X, Y, Z, I, J and R are; words that leave the path as it is, such as F, S and M3, have no effect
@@ -1369,6 +1376,8 @@ robot_file-massless = what the joint { $joint } moves has no mass or inertia: ad
 robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² is enough, --armature { $armature }
 robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
+robot_file-mujoco_slow = MuJoCo was ended while it read { $file }: it took more than { $seconds } s
+robot_file-mujoco_ended = MuJoCo has ended while it read { $file }: it crashed, or needed too much memory
 robot_file-mujoco_warns = MuJoCo warns: { $reason }
 robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
@@ -1376,7 +1385,10 @@ robot_file-still = the joint { $joint } has no travel between its limits, and st
 robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
 robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER)
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
-robot_file-refused = <{ $element }> would read other files or run code: leave it out
+robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
+robot_file-unknown = there is no such element in <{ $parent }>
+robot_file-mesh = the mesh { $mesh } is not a .stl, .obj or .msh file of up to 20 MB in the folder or package of the robot (--package NAME=FOLDER)
+robot_file-meshes = the meshes have more than { $most }
 robot_file-left_out = left out: { $parts }
 
 ## The arena (app/exports/arena_page.py)

@@ -33,6 +33,7 @@ from onpath.models.closed_loop.loop_vectors import (
     loop_layouts,
     settings_layout,
 )
+from onpath.models.closed_loop.observer import carried_on
 from onpath.models.closed_loop.plant_tick import held_torque, move
 from onpath.models.closed_loop.reference_speed import next_speed, wanted_speed
 from onpath.models.closed_loop.sensing import logged, look_ahead, measure, remembered
@@ -208,8 +209,12 @@ def _advance(
     drive = driven(kind, state, settings, fresh, acts)
     tip, force, moved = move(system, kind, state, settings, drive.parts, plant)
     summed = _integral(kind, law, state, settings, acts, saturated, command)
+    estimate = {"estimate": moved["q"], "estimate_rate": moved["v"]}
+    if kind.observer:
+        estimate = carried_on(system, kind, settings, measured, drive.parts, plant)
     after = {
         **moved,
+        **estimate,
         **_next_places(kind, law, state, settings, view, command),
         "integral": bounded(summed, settings, command),
         **remembered(kind, state, acts, reading, measured_v[: system.joints]),

@@ -99,7 +99,7 @@ def lag(system: MechanicalSystem, kind: Kind, settings: Fields) -> ca.SX:
     """Greatest age of the controller's information when its torque ends, [s]: `View.lag`."""
     age = interval(kind, settings)
     if kind.encoder or kind.noise:
-        age += settings["encoder_filter"]
+        age += settings["observer_time" if kind.observer else "encoder_filter"]
     if kind.delay:
         age += settings["delay_ticks"] * settings["dt"]
     if kind.law == "composite":

@@ -16,8 +16,7 @@ class Kind:
         controller: name of a law of `models/control/laws`.
         closed: whether the path is a closed curve.
         level_set: whether λ is the paper's s(y) instead of the signed distance.
-        encoder: whether the controller gets quantised angles and filtered velocities instead of the
-            exact state.
+        encoder: whether the controller gets quantised angles instead of the exact state.
         free: whether the loop may omit external forces, torque limits, dry friction and held
             torques, for speed. It is equivalent to the full loop while none of these act.
         space: whether the path is a space curve.
@@ -29,6 +28,8 @@ class Kind:
         delay: whether a torque takes effect some time after the measurement (delay.py).
         stiction: whether joints stick, by Karnopp's model (stiction.py).
         noise: whether sensors are noisy (noise.py).
+        observer: whether an observer (observer.py) gives the velocities behind encoders or noise,
+            instead of a filter.
         further_gains: names of gains of other laws that the settings have besides the law's own:
             the laws of a figure share one vector.
     """
@@ -43,6 +44,7 @@ class Kind:
     delay: bool = False
     stiction: bool = False
     noise: bool = False
+    observer: bool = False
     space: bool = False
     level: ImplicitLevel | None = None
     further_gains: tuple[str, ...] = ()

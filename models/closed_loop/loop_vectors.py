@@ -74,7 +74,9 @@ def state_layout(system: MechanicalSystem, memory: Memory = ()) -> Layout:
         ("speed_ref", 1),  # speed reference, which ramps to the wanted speed, [rad/s]
         ("integral", p),  # of λ, or of the error to the reference point
         ("encoder", system.joints),  # last reading, [rad]
-        ("encoder_rate", system.joints),  # filtered velocity, [rad/s]
+        ("encoder_rate", system.joints),  # measured velocity, [rad/s]
+        ("estimate", n),  # of q, before this tick's reading; exact without an observer
+        ("estimate_rate", n),  # of v
         *(composite.MEMORY.fields if system.modes else ()),
         ("u", m),  # torque that is held, [N m]
         ("phase", 1),  # ticks since the control law was evaluated
@@ -113,7 +115,8 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
     scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
     flexible = (*composite.GAINS, "strain_noise") if system.modes else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")
-    realism += ("stiction", "torque_step", "look_ahead", "delay_ticks", "sensor_noise", "seed")
+    realism += ("observer_time", "stiction", "torque_step", "look_ahead", "delay_ticks")
+    realism += ("sensor_noise", "seed")
     return _layout(
         (
             *((name, 1) for name in (*scalars, *sorted(own.union(kind.further_gains)), *flexible)),

@@ -10,6 +10,7 @@ import numpy as np
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.noise import standard_normal
+from onpath.models.closed_loop.observer import corrected
 from onpath.models.control.virtual_output import VirtualOutput
 from onpath.models.layout import Fields, Layout
 from onpath.models.systems.beam import beam_modes
@@ -21,28 +22,52 @@ def measure(
 ) -> tuple[ca.SX, ca.SX, ca.SX]:
     """q and v as measured, each (n, 1), and the encoder readings, (joints, 1), [rad].
 
-    Without encoders the state is exact. With encoders the joint angles are rounded to
-    `encoder_step`, and the velocities are their differences behind a first-order low-pass filter of
-    time constant `encoder_filter`:
+    Without encoders and noise the state is exact. The velocities come from an observer, see
+    observer.py, which also smooths the coordinates, or else from a filter. The filter takes the
+    joint angles as they are read, and differentiates them behind a first-order low-pass of time
+    constant `encoder_filter`:
 
-        v_f⁺ = v_f + T / (encoder_filter + T) ((q - q_previous) / T - v_f),   T = hold_ticks dt.
+        v_f⁺ = v_f + T / (encoder_filter + T) ((r - r_previous) / T - v_f),   T = hold_ticks dt;
 
-    Encoders are on all joints, also on those without a motor; the modes of a flexible link are
-    exact, but for the noise of strain gauges. Noise of the joint angles is added before they are
-    rounded; it, too, calls for the filter.
+    the rates of a flexible link's modes are then exact.
     """
-    joints, v = system.joints, state["v"]
-    q = state["q"] + _noise(system, state, settings) if kind.noise else state["q"]
+    joints, v, reading = system.joints, state["v"], read(system, kind, state, settings)
     if not (kind.encoder or kind.noise):
-        return q, v, q[:joints]
-    step, dt = settings["encoder_step"], settings["dt"] * settings["hold_ticks"]
-    reading = step * ca.floor(q[:joints] / step + 0.5) if kind.encoder else q[:joints]
+        return reading, v, reading[:joints]
+    if kind.observer:
+        estimate = corrected(state, settings, reading)
+    else:
+        estimate = reading, ca.vertcat(_filtered(state, settings, reading[:joints]), v[joints:])
+    if not kind.encoder:  # exact angles have exact velocities
+        noisy, exact = settings["sensor_noise"] > 0, (reading, v)
+        angles, rates = (
+            ca.if_else(noisy, estimated[:joints], known[:joints])
+            for estimated, known in zip(estimate, exact, strict=True)
+        )
+        estimate = ca.vertcat(angles, estimate[0][joints:]), ca.vertcat(rates, estimate[1][joints:])
+    return *estimate, reading[:joints]
+
+
+def _filtered(state: Fields, settings: Fields, reading: ca.SX) -> ca.SX:
+    """The velocities by the filter of `measure`, (joints, 1)."""
+    dt = settings["dt"] * settings["hold_ticks"]
     weight = dt / (settings["encoder_filter"] + dt)
     difference = (reading - state["encoder"]) / dt
-    rate = state["encoder_rate"] + weight * (difference - state["encoder_rate"])
-    if not kind.encoder:  # exact velocities without noise of the angles
-        rate = ca.if_else(settings["sensor_noise"] > 0, rate, v[:joints])
-    return ca.vertcat(reading, q[joints:]), ca.vertcat(rate, v[joints:]), reading
+    return state["encoder_rate"] + weight * (difference - state["encoder_rate"])
+
+
+def read(system: MechanicalSystem, kind: Kind, state: Fields, settings: Fields) -> ca.SX:
+    """What the sensors of all coordinates read, (n, 1).
+
+    Encoders are on all joints, also on those without a motor, and round to `encoder_step`; strain
+    gauges measure the modes of a flexible link. Noise of the joint angles is added before they are
+    rounded.
+    """
+    q = state["q"] + _noise(system, state, settings) if kind.noise else state["q"]
+    if not kind.encoder:
+        return q
+    joints, step = system.joints, settings["encoder_step"]
+    return ca.vertcat(step * ca.floor(q[:joints] / step + 0.5), q[joints:])
 
 
 def readings(
@@ -58,10 +83,9 @@ def readings(
     if not len(q):
         return np.zeros((0, joints))
     symbol, fields = settings_layout.symbols("settings")
-    sizes = {"q": system.n, "v": system.n, "encoder": joints, "encoder_rate": joints}
-    state = {name: ca.SX.sym(name, size) for name, size in (sizes | {"ticks": 1}).items()}
-    read = measure(system, kind, state, fields)[0][:joints]
-    function = ca.Function("readings", [symbol, state["q"], state["ticks"]], [read])
+    state = {"q": ca.SX.sym("q", system.n), "ticks": ca.SX.sym("ticks")}
+    angles = read(system, kind, state, fields)[:joints]
+    function = ca.Function("readings", [symbol, state["q"], state["ticks"]], [angles])
     ticks, constant = np.arange(len(q))[None], np.tile(settings[:, None], len(q))
     return np.asarray(function.map(len(q))(constant, q.T, ticks), dtype=float).T
 
@@ -71,7 +95,7 @@ def _noise(system: MechanicalSystem, state: Fields, settings: Fields) -> ca.SX:
 
     Joint angles have the standard deviation `sensor_noise`. Strain gauges measure the modal
     coordinates f_j, each with a standard deviation such that that of the deflection of the tip,
-    Σ φ_j(l) f_j, is `strain_noise`. The rates of the modes are not affected.
+    Σ φ_j(l) f_j, is `strain_noise`.
     """
     modes = system.modes
     deviation = settings["sensor_noise"] * ca.SX.ones(system.joints)
@@ -127,12 +151,12 @@ def logged(output: VirtualOutput) -> Fields:
 
 
 def remembered(kind: Kind, state: Fields, acts: ca.SX, reading: ca.SX, rate: ca.SX) -> Fields:
-    """Readings and filtered velocities that the next evaluation differentiates; ticks of noise.
+    """Readings and velocities of which the filter makes the next velocities; ticks of noise.
 
     Args:
         acts: whether the control law is evaluated in this tick.
         reading: (joints, 1), [rad].
-        rate: filtered velocity, (joints, 1), [rad/s].
+        rate: measured velocity, (joints, 1), [rad/s].
     """
     counted = {"ticks": state["ticks"] + int(kind.noise)} if "ticks" in state else Fields()
     if not (kind.encoder or kind.noise):

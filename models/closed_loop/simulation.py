@@ -96,6 +96,8 @@ def kind_of(
     """
     plain = parameters.torque_limit == 0 == parameters.coulomb
     exact = parameters.torque_step == parameters.delay == parameters.stiction == 0
+    encoder = parameters.encoder_counts > 0
+    noise = parameters.sensor_noise > 0 or getattr(parameters, "strain_noise", 0.0) > 0
     every_tick = parameters.control_rate * TICK >= 1
     untouched = push is not None and not push.acts and not is_text(controller)
     return _kind(
@@ -103,14 +105,15 @@ def kind_of(
         closed=curve.closed,
         level_set=(level_set := parameters.across == LEVEL_SET and has_level_set(curve)),
         level=implicit_level(curve) if level_set else None,
-        encoder=parameters.encoder_counts > 0,
+        encoder=encoder,
+        observer=(encoder or noise) and parameters.observer_time > 0,
         law=getattr(parameters, "law", "redefined"),
         space=curve.dimension == 3,
         free=plain and exact and every_tick and untouched,
         across_first=_gives_way(controller, parameters),
         delay=parameters.delay > 0,
         stiction=parameters.stiction > 0,
-        noise=parameters.sensor_noise > 0 or getattr(parameters, "strain_noise", 0.0) > 0,
+        noise=noise,
     )
 
 
@@ -173,6 +176,7 @@ def settings_vector(
             "coulomb": parameters.coulomb,
             "encoder_step": 2 * np.pi / counts if counts else 1.0,
             "encoder_filter": parameters.encoder_filter,
+            "observer_time": parameters.observer_time,
             "hold_ticks": (interval := round(1 / (parameters.control_rate * dt))),
             "dt": dt,
             **{name: getattr(parameters, name) for name in ("stiction", "torque_step")},
@@ -276,6 +280,8 @@ def first_state(
             "integral": np.zeros(robot.system.p),
             "encoder": q[:joints],
             "encoder_rate": velocity[:joints],
+            "estimate": q,
+            "estimate_rate": velocity,
             "u": np.zeros(m),
             "phase": 0.0,
         }

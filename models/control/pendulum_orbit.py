@@ -8,6 +8,7 @@ the pendulum's equation of models/systems/cart_pendulum.py, has no motor in it; 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,7 @@ class Pendulum:
         return np.array([rate, -(half * rate**2 + GRAVITY * self.moment * np.sin(phi)) / inertia])
 
 
+@lru_cache(maxsize=64)
 def orbit_plan(pendulum: Pendulum, swing: float) -> Array:
     """Coefficients of k1, k2, k3 and e_r over the phase ψ, four times 2 ORDER + 1 numbers.
 

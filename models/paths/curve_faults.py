@@ -71,14 +71,21 @@ def curve_faults(reach: Callable[[Array], Array], curve: Curve) -> list[Fault]:
         reach: the robot's `Robot.margin`, shape (n, d) -> (n,).
         curve: the candidate, in coordinates of the path's plane.
     """
-    d = curve.dimension
-    (samples,) = evaluated(_samples(curve.closed, d), curve.table())
+    return list(_curve_faults(reach, curve.closed, curve.dimension, curve.table().tobytes()))
+
+
+@lru_cache(maxsize=64)
+def _curve_faults(
+    reach: Callable[[Array], Array], closed: bool, d: int, table: bytes
+) -> tuple[Fault, ...]:
+    """`curve_faults` by content: all labs of a class get the same paths."""
+    (samples,) = evaluated(_samples(closed, d), np.frombuffer(table))
     z = samples[:, :d]
     if not np.all(np.isfinite(z)):
-        return [Fault("not_numbers", np.zeros((0, 2)))]
+        return (Fault("not_numbers", np.zeros((0, 2))),)
     (found,) = evaluated(_point_checks(d), samples[:, d:], reach(z))
     bad = zip(POINT_CHECKS, found.T > 0, strict=True)
-    return [Fault(check, z[at]) for check, at in bad if at.any()]
+    return tuple(Fault(check, z[at]) for check, at in bad if at.any())
 
 
 def ambiguities(curve: Curve) -> list[Fault]:

@@ -18,7 +18,8 @@ def begin_function(robot: Robot, kind: Kind, kernel: Kernel) -> ca.Function:
     start = table[:2, :] @ basis(ca.SX(0), kind.closed)
     q = robot.inverse(lift_of(robot, kind)(start, False))
     theta = {"theta": ca.SX(0), "theta_ref": ca.SX(0)}
-    state = dict(state) | {"q": q, "encoder": q[: robot.system.joints]} | theta
+    seen = {"encoder": q[: robot.system.joints], "estimate": q}
+    state = dict(state) | {"q": q} | seen | theta
     return ca.Function("begin", [table, symbol], [ca.densify(kernel.state.join(state))])
 
 

@@ -1,11 +1,13 @@
-"""Reads a robot from an MJCF file, by MuJoCo, which is an extra of this package."""
+"""Reads a robot from an MJCF file, by MuJoCo, which is an extra of this package.
+
+file -> mjcf_check.py -> mujoco_process.py -> MuJoCo in another process -> arrays -> FileChain
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -24,13 +26,14 @@ from onpath.models.systems.file_chain import (
     many_joints,
     turn,
 )
+from onpath.models.systems.mjcf_check import all_elements, checked_model
+from onpath.models.systems.mujoco_process import read_model
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
-from onpath.models.systems.xml_elements import LARGEST_NUMBER, Element, FileFault, shown
+from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 FREE, BALL, SLIDE = 0, 1, 2  # types of joints in MuJoCo; 3 turns
 SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX, MESH = range(2, 8)  # types of geoms
 HIDDEN = 3  # group of geoms, from which on MuJoCo's viewer shows none
-REFUSED = ("include", "plugin", "extension")  # which would read other files, or run code
 
 
 def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
@@ -44,54 +47,14 @@ def read_mjcf(file: Path, root: Element, options: Options) -> FileChain:
 
     Raises:
         FileFault: something in the file is refused.
-        CodedError: MuJoCo is not installed or cannot read the file, or an option names a joint or
-            tip that does not exist.
+        CodedError: MuJoCo is not installed or cannot read the file in time, or an option names a
+            joint or tip that does not exist.
     """
-    for element in _all(root):
-        if element.tag in REFUSED:
-            raise FileFault(element, Message("robot_file.refused", {"element": element.tag}))
-        _check_numbers(element)
-    try:
-        mujoco: Any = import_module("mujoco")
-    except ImportError:
-        raise CodedError("robot_file.mujoco") from None
-    warned, before = list[str](), mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(warned.append)  # else they go to a file in the current folder
-    try:
-        model = mujoco.MjModel.from_xml_path(str(file))
-    except (ValueError, RuntimeError) as error:
-        reason = _one_line(str(error)) or type(error).__name__
-        raise CodedError("robot_file.mjcf", file=file.name, reason=reason) from None
-    finally:
-        mujoco.set_mju_user_warning(before)
+    checked = checked_model(file, root, options.packages)
+    model, warnings = read_model(checked.text, checked.meshes, file.name)
     read = _Model(model, root, options).read()
-    told = [Message("robot_file.mujoco_warns", {"reason": _one_line(each)}) for each in warned]
+    told = [Message("robot_file.mujoco_warns", {"reason": each}) for each in warnings]
     return replace(read, remarks=(*read.remarks, *told))
-
-
-def _one_line(text: str) -> str:
-    """What MuJoCo says, as it may appear in a message."""
-    return shown(" ".join(text.split()), 200)
-
-
-def _all(root: Element) -> Iterator[Element]:
-    waiting = [root]
-    while waiting:
-        element = waiting.pop()
-        yield element
-        waiting += element.children
-
-
-def _check_numbers(element: Element) -> None:
-    """Refuse numbers that MuJoCo would take, but with which no robot can be simulated."""
-    for field, value in element.values.items():
-        try:
-            numbers = [float(word) for word in value.split()]
-        except ValueError:  # a name, or wrong: then MuJoCo refuses it
-            continue
-        if not all(abs(number) <= LARGEST_NUMBER for number in numbers):
-            reason = Message("robot_file.large", {"field": field, "value": shown(value)})
-            raise FileFault(element, reason)
 
 
 class _Model:
@@ -104,7 +67,7 @@ class _Model:
     def __init__(self, model: Any, root: Element, options: Options) -> None:
         self._model, self._root, self._options = model, root, options
         self._way = set[int]()  # bodies from the world to the tip
-        self._joints = {model.joint(i).name or f"joint{i}": i for i in range(model.njnt)}
+        self._joints = {name or f"joint{i}": i for i, name in enumerate(model.joint_names)}
         for name in (*options.lock, *options.pose):
             if name not in self._joints:
                 names = ", ".join(self._joints)
@@ -119,7 +82,7 @@ class _Model:
             self._way.add(body)
             body = int(model.body_parentid[body])
         groups, frames = [Group("world")], [(0, RigidTransform())]
-        for body in range(1, model.nbody):
+        for body in range(1, len(model.body_names)):
             number, before = frames[int(model.body_parentid[body])]
             here = before @ _place(model.body_pos[body], model.body_quat[body])
             number, here = self._joined(body, body in self._way, number, here, groups)
@@ -127,7 +90,7 @@ class _Model:
             inertial = here @ _place(model.body_ipos[body], model.body_iquat[body])
             inertia = inertial.rotation @ np.diag(model.body_inertia[body]) @ inertial.rotation.T
             groups[number].add(float(model.body_mass[body]), inertial.translation, inertia)
-        for geom in range(model.ngeom):
+        for geom in range(len(model.geom_type)):
             number, here = frames[int(model.geom_bodyid[geom])]
             groups[number].shapes += self._shapes(geom, here)
         number, here = frames[tip]
@@ -149,7 +112,7 @@ class _Model:
         model = self._model
         first, count = int(model.body_jntadr[body]), int(model.body_jntnum[body])
         for i in range(first, first + count):
-            name = model.joint(i).name or f"joint{i}"
+            name = model.joint_names[i] or f"joint{i}"
             kind = int(model.jnt_type[i])
             if kind in (FREE, BALL):
                 if on_way:
@@ -165,7 +128,9 @@ class _Model:
                 here = here @ anchor @ _moved(kind, axis, self._locked(i, name)) @ back
                 continue
             frame = RigidTransform(aligned(axis))
-            groups.append(Group(model.body(body).name, self._joint(i, name), here @ anchor @ frame))
+            groups.append(
+                Group(model.body_names[body], self._joint(i, name), here @ anchor @ frame)
+            )
             if len(groups) - 1 > MOST_JOINTS:
                 raise FileFault(self._element(name), many_joints(self._moving_names()))
             number, here = len(groups) - 1, RigidTransform(frame.rotation.T) @ back
@@ -173,7 +138,7 @@ class _Model:
 
     def _element(self, joint: str) -> Element:
         """The element of a joint; that of the whole file if it has no name."""
-        named = (each for each in _all(self._root) if each.tag in ("joint", "freejoint"))
+        named = (each for each in all_elements(self._root) if each.tag in ("joint", "freejoint"))
         return next((each for each in named if each.values.get("name") == joint), self._root)
 
     def _moving_names(self) -> list[str]:
@@ -216,7 +181,7 @@ class _Model:
             return float(np.abs(model.jnt_actfrcrange[i]).max())
         efforts = [
             float(np.abs(model.actuator_forcerange[a] * model.actuator_gear[a][0]).max())
-            for a in range(model.nu)
+            for a in range(len(model.actuator_gear))
             if model.actuator_trnid[a][0] == i and model.actuator_forcelimited[a]
         ]
         return sum(efforts) or math.inf
@@ -265,9 +230,9 @@ class _Model:
     def _home(self) -> dict[str, float]:
         """Coordinates of the joints in the keyframe."""
         model = self._model
-        if not model.nkey:
+        names = model.key_names
+        if not names:
             return {}
-        names = [model.key(i).name for i in range(model.nkey)]
         values = model.key_qpos[names.index("home") if "home" in names else 0]
         turning = {n: i for n, i in self._joints.items() if model.jnt_type[i] not in (FREE, BALL)}
         at = {name: int(model.jnt_qposadr[i]) for name, i in turning.items()}
@@ -276,8 +241,8 @@ class _Model:
     def _tip(self) -> tuple[int, RigidTransform]:
         """The body of the tip, and the tip in it."""
         model, wanted = self._model, self._options.tip
-        sites = {model.site(i).name: i for i in range(model.nsite) if model.site(i).name}
-        bodies = {model.body(i).name: i for i in range(1, model.nbody) if model.body(i).name}
+        sites = {name: i for i, name in enumerate(model.site_names) if name}
+        bodies = {name: i for i, name in enumerate(model.body_names) if i and name}
         if not wanted:
             parents = set(model.body_parentid[1:].tolist())
             leaves = [name for name, i in bodies.items() if i not in parents]
@@ -295,11 +260,14 @@ class _Model:
         return bodies[wanted], RigidTransform()
 
     def _remarks(self) -> Iterator[Message]:
-        model = self._model
-        springs = np.ravel(model.jnt_stiffness).any()
-        parts = {"<equality>": model.neq, "<tendon>": model.ntendon, "stiffness": springs}
-        if left := [name for name, count in parts.items() if count]:
+        left = [f"<{tag}>" for tag in ("equality", "tendon") if self._has(tag)]
+        left += ["stiffness"] if np.any(self._model.jnt_stiffness) else []
+        if left:
             yield Message("robot_file.left_out", {"parts": ", ".join(left)})
+
+    def _has(self, tag: str) -> bool:
+        """Whether the file has elements in another one of this name."""
+        return any(part.children for part in self._root.all(tag))
 
 
 def _place(position: Any, quaternion: Any) -> RigidTransform:

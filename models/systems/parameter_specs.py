@@ -105,7 +105,8 @@ def model_error(label: str, text: str, on: float = 30.0) -> Any:
 
 def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
     """A dataclass field for a mass at the end-point that no controller knows, [kg]."""
-    text = "mass at the end-point; the controller does not know"
+    text = "mass at the end-point; the controller does not know it, and its integral lifts no more"
+    text += " than what would otherwise hang 10 mm low"
     return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
 
 
@@ -118,7 +119,10 @@ def pivot_damping(default: float) -> Any:
 
 def velocity_filter(default: float) -> Any:
     """A dataclass field for the filter that gives velocities from measured angles, [s]."""
-    text = "time constant of the velocity filter behind them; no effect without steps or noise"
+    text = (
+        "time constant of the velocity filter behind them, where there is no observer; no effect"
+        " without steps or noise"
+    )
     bounds = (0.0005, 0.05, 0.0005)
     return number(default, "s", bounds, text, group="realism", label="Velocity filter")
 

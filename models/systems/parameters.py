@@ -70,11 +70,21 @@ class Parameters(LawParameters):
         on=2000.0,
     )
     encoder_filter: float = velocity_filter(0.005)
+    observer_time: float = number(
+        0.008,
+        "s",
+        (0, 0.05, 0.0005),
+        "an observer with the controller's model estimates the velocities, and forgets its errors"
+        " in this time. 0: the filter gives them; no effect without steps or noise",
+        group="realism",
+        label="Observer",
+        on=0.008,
+    )
     sensor_noise: float = number(
         0.0,
         "rad",
         (0, 0.002, 0.00001),
-        "standard deviation of the measured joint angles; their filter gives the velocities",
+        "standard deviation of the measured joint angles",
         group="realism",
         label="Sensor noise",
         on=0.0001,

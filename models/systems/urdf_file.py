@@ -8,9 +8,7 @@ body. Source: http://wiki.ros.org/urdf/XML.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
 
 import numpy as np
 
@@ -27,12 +25,12 @@ from onpath.models.systems.file_chain import (
     many_joints,
     turn,
 )
+from onpath.models.systems.mesh_folders import MeshFolders
 from onpath.models.systems.rigid_chain import Chain, Joint, Shape
 from onpath.models.systems.xml_elements import Element, FileFault, shown
 
 MOST_LINKS = 64
 MESHES = (".stl", ".obj", ".dae")
-LARGEST_MESH = 20_000_000  # [B]
 TURNING, SLIDING, STILL = ("revolute", "continuous"), ("prismatic",), ("fixed",)
 FREE = ("floating", "planar")
 
@@ -59,7 +57,7 @@ class _Tree:
             raise FileFault(root, Message("robot_file.root"))
         _refuse_xacro(root)
         self.remarks = list[Message]()
-        self._folders = _Folders(file, options.packages)
+        self._folders = MeshFolders(file, options.packages, MESHES)
         self._options = options
         self._root = root
         self._links = _named(root, "link", MOST_LINKS)
@@ -276,46 +274,6 @@ class _Tree:
                 translation=here.translation,
             )
         return None
-
-
-class _Folders:
-    """Where the meshes of a robot may be.
-
-    Args:
-        file: of the robot.
-        packages: folders of packages by name.
-    """
-
-    def __init__(self, file: Path, packages: Mapping[str, Path]) -> None:
-        self._home = file.resolve().parent
-        inside = (self._home, *self._home.parents)
-        self._package = next((f for f in inside if (f / "package.xml").is_file()), None)
-        self._packages = {name: folder.resolve() for name, folder in packages.items()}
-
-    def mesh(self, address: str) -> Path | None:
-        """The file of a mesh; None if it is not there, not a mesh, too large, or elsewhere."""
-        try:
-            path = self._resolved(address)
-            if path is None or path.suffix.lower() not in MESHES:
-                return None
-            path = path.resolve()
-            allowed = self._package or self._home, *self._packages.values()
-            if not any(path.is_relative_to(folder) for folder in allowed) or not path.is_file():
-                return None
-            return path if path.stat().st_size <= LARGEST_MESH else None
-        except (OSError, ValueError, RuntimeError):  # not a path, or links in a circle
-            return None
-
-    def _resolved(self, address: str) -> Path | None:
-        if "://" not in address:
-            return self._home / address
-        parts = urlsplit(address)
-        if parts.scheme == "file":
-            return Path(unquote(parts.path))
-        if parts.scheme != "package":
-            return None
-        folder = self._packages.get(parts.netloc, self._package)
-        return None if folder is None else folder / unquote(parts.path).lstrip("/")
 
 
 def _named(root: Element, tag: str, most: int) -> dict[str, Element]:

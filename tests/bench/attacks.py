@@ -9,6 +9,7 @@ import asyncio
 import random
 import re
 import sys
+import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
 from contextlib import suppress
 from functools import partial
@@ -16,6 +17,7 @@ from itertools import count, cycle, product
 from math import inf
 from typing import Any
 
+from typing_extensions import override
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 from websockets.frames import Opcode
@@ -27,6 +29,7 @@ from onpath.lessons.labels import robot_label
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
+from tests.bench.dear_commands import dear_message
 from tests.bench.hostile_messages import (
     BROKEN,
     COMMANDS,
@@ -42,6 +45,7 @@ from tests.bench.simulated_browser import Browser, stand_back
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
 RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that
+BYTES = 0.9 * 4000 * Limits().messages_per_second  # per second; see `Limits.message_burst`
 MIXED = 0.75 * Limits().messages_per_second  # of messages, a quarter of which are drags
 TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
@@ -101,6 +105,43 @@ class Intruder(Browser):
         async for message in self._misuse(self):
             await socket.send(message)
             await asyncio.sleep(1 / self._rate)
+
+
+class Greedy(Browser):
+    """A tab that sends the dearest commands through its data channel, as fast as is allowed."""
+
+    @override
+    async def _use(self, socket: ClientConnection, until: float) -> None:
+        await asyncio.sleep(until - time.monotonic())
+
+    @override
+    async def _read_data(self, ticket: str) -> None:
+        draw = random.Random(ticket)
+        async with self._connected(DATA) as data:
+            await data.send(ticket)
+            reading = asyncio.create_task(_read_all(data))
+            try:
+                while not reading.done():
+                    message = dear_message(draw)
+                    await data.send(message)
+                    await asyncio.sleep(max(1 / RATE, len(message) / BYTES))
+            finally:
+                reading.cancel()
+
+
+async def _read_all(data: ClientConnection) -> None:
+    async for _ in data:
+        pass
+
+
+def greedy_tabs(number: int) -> Attack:
+    """A number of tabs that ask for the dearest work; see `Greedy`."""
+
+    async def attack(port: int) -> None:
+        visits = [again(lambda: Greedy(port, 0, SOURCE).browse(inf)) for _ in range(number)]
+        await asyncio.gather(*visits)
+
+    return attack
 
 
 def update(uuid: str, value: Any) -> bytes:
@@ -256,6 +297,8 @@ ATTACKS: dict[str, Attack] = {
     "all places": tabs(66, look_on),  # D10
     "nonsense": tabs(8, send_nonsense, MIXED),  # D16
     "data channels": tabs(8, misuse_data),
+    "one dear tab": greedy_tabs(1),
+    "dear tabs": greedy_tabs(8),
     "tickets": connections(20, [frames(b"x" * 32, opcode=Opcode.TEXT), UNFINISHED], [DATA]),
     "come and go": tabs(20, leave),  # D18
     "floods": connections(20, [100 * GREETING, TOO_LARGE]),

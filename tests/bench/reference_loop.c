@@ -54,7 +54,7 @@ typedef struct { Real x, y; } Vec;
 typedef struct {
   Vec q, v;
   Real theta, theta_rate, theta_ref, speed_ref;
-  Vec integral, encoder, encoder_rate, u;
+  Vec integral, encoder, encoder_rate, estimate, estimate_rate, u;
   Real phase, ticks;
   Vec queue[8];
 } State;
@@ -67,7 +67,7 @@ typedef struct {
   Real level_constant;
   Real plan[40]; /* of other laws */
   Real torque_limit, coulomb, encoder_step, encoder_filter, hold_ticks, dt;
-  Real stiction, torque_step, look_ahead, delay_ticks, sensor_noise, seed;
+  Real observer_time, stiction, torque_step, look_ahead, delay_ticks, sensor_noise, seed;
   Real hand_active;
   Vec hand_target;
   Real hold_active;
@@ -292,6 +292,7 @@ static void tick(const Settings *s, const Real *table, State *x, Row *row) {
   row->speed = now.theta_rate * now.length;
   row->xi = now.lambda, row->xi_rate = now.lambda_rate;
   x->encoder = row->q, x->encoder_rate = row->v, x->u = u;
+  x->estimate = x->q, x->estimate_rate = x->v;
   x->phase = choose(x->phase + 1 < s->hold_ticks - 0.5, x->phase + 1, all(0));
 }
 

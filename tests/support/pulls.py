@@ -47,6 +47,10 @@ class Trouble:
     end: float
     acts: Actor
 
+    def judged(self, t: float) -> bool:
+        """Whether the distance at a time counts: while it acts, and from `BACK` after it on."""
+        return self.begin <= t < self.end or t >= self.end + BACK
+
 
 @dataclass(frozen=True)
 class Result:
@@ -78,22 +82,33 @@ def runs_untouched(
     name: str, parameters: Parameters, law: str, path: str = "circle", seconds: float = 10.0
 ) -> bool:
     """Whether a robot runs along its path without a fault if nobody touches it."""
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
+    return untouched(name, parameters, law, presets()[path].curve, seconds) is not None
+
+
+def untouched(
+    name: str, parameters: Parameters, law: str, curve: Curve, seconds: float = 10.0
+) -> float | None:
+    """Largest distance of a robot that nobody touches, [m], from 1 s on; None if it stops."""
+    robot = ROBOTS[name].make(parameters)
     loop, start = _loop(robot, kind_of(law, parameters, curve)), _begin(robot, curve, 0.0)
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)
     ticks = round(seconds / time_step(parameters))
     state = first_state(robot, layouts, curve, start)
     _, (rows,) = loop.run_many([state], [settings], [curve.table()], ticks)
-    return fault_in(robot, layouts.log, law, rows, parameters) is None
+    if fault_in(robot, layouts.log, law, rows, parameters) is not None:
+        return None
+    moved = layouts.log.unpack(rows)["y"][round(1 / time_step(parameters)) :]
+    return float(path_distance(robot.frame, curve, moved).max())
 
 
 def troubled(
-    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str = "circle"
+    name: str, parameters: Parameters, law: str, seed: int, count: int, path: str | Curve = "circle"
 ) -> list[Result]:
     """Robots that begin at random places, each with a trouble of its own."""
     rng = np.random.default_rng(seed)
-    robot, curve = ROBOTS[name].make(parameters), presets()[path].curve
+    robot = ROBOTS[name].make(parameters)
+    curve = path if isinstance(path, Curve) else presets()[path].curve
     loop, dt = _loop(robot, kind_of(law, parameters, curve)), time_step(parameters)
     layouts, table, ticks = loop.layouts, curve.table(), round(STEP / dt)
     troubles = [_trouble(rng, robot, curve) for _ in range(count)]
@@ -118,14 +133,16 @@ def troubled(
             fault = fault_in(robot, layouts.log, law, own, parameters)
             if fault is not None:
                 faults[i] = t + fault[0] * dt, str(fault[1])
-        well = [k for k, i in enumerate(alive) if faults[i] is None]
+        well = [k for k, i in enumerate(alive) if faults[i] is None and troubles[i].judged(t)]
+        if not well:
+            continue
         y = rows[well][:, :, layouts.log.slices["y"]].reshape(-1, robot.system.p)
         distances = path_distance(robot.frame, curve, y).reshape(-1, ticks).max(axis=1)
         for k, distance in zip(well, distances.tolist(), strict=True):
             i = alive[k]
             if troubles[i].begin <= t < troubles[i].end:
                 off[i] = max(off[i], distance)
-            elif t >= troubles[i].end + BACK:
+            else:
                 late[i] = max(late[i], distance)
     found = zip(troubles, faults, off.tolist(), late.tolist(), strict=True)
     return [Result(trouble, fault, far, after) for trouble, fault, far, after in found]

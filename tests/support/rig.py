@@ -49,6 +49,7 @@ DEFAULTS: dict[str, Any] = {
     "seed": 0,
     "encoder_step": 1e-3,
     "encoder_filter": 5e-3,
+    "observer_time": 5e-3,
     "hand_active": 0,
     "hand_target": (0, 0),
     "hold_active": 0,
@@ -103,6 +104,7 @@ class Rig:
         v = np.zeros(2) if y_rate is None else np.linalg.solve(jacobian(q), y_rate)
         values: dict[str, Any] = {"q": q, "v": v, "theta": 0, "theta_rate": 0, "theta_ref": 0}
         values |= {"speed_ref": 0, "integral": (0, 0), "u": (0, 0), "phase": 0}
+        values |= {"estimate": q, "estimate_rate": v}
         values |= {"encoder": q, "encoder_rate": v, "ticks": 0, "queue": np.zeros(2 * LONGEST)}
         values |= {name: 0 for name, _ in LAWS[kind.controller].memory}
         return self.kernel(kind).state.pack({**values, **changes})

@@ -1,4 +1,4 @@
-"""The static site of the first lesson, as tests open it."""
+"""The static site of some lessons, as tests open it."""
 
 from __future__ import annotations
 
@@ -11,10 +11,13 @@ from onpath.lessons.course import BUILT_IN, read_course
 LESSON = "01-path-or-timetable"
 
 
-def exported_site(folder: Path, languages: tuple[str, ...] = ("en", "de")) -> Path:
-    """Write the site of lesson 1 into a folder, and return it."""
+def exported_site(
+    folder: Path, languages: tuple[str, ...] = ("en", "de"), lessons: tuple[str, ...] = (LESSON,)
+) -> Path:
+    """Write the site of lesson 1, or of others, into a folder, and return it."""
     home = folder / "course"
-    shutil.copytree(BUILT_IN / LESSON, home / LESSON)
+    for lesson in lessons:
+        shutil.copytree(BUILT_IN / lesson, home / lesson)
     course, problems = read_course([home])
     assert not problems
     write_site(folder / "site", course, home, languages)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Literal
 
 from onpath.app.common.templates import environment, json_block
 from onpath.app.exports.site.step_data import SiteStep
@@ -30,6 +30,21 @@ MESSAGES = (
     *("site.no_platform", "site.no_room", "site.skip_short"),
     *("site.review", *CHART),
 )
+
+
+Version = Literal["1.2", "2004"]
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """What kind of SCORM package a page belongs to.
+
+    Attributes:
+        partial: whether an unfinished lesson gets a score, too.
+    """
+
+    version: Version
+    partial: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +106,7 @@ def lesson_page(
     following: dict[str, str] | None,
     words: Words,
     around: dict[str, Any],
-    scorm: str | None = None,
+    scorm: Package | None = None,
 ) -> str:
     """The page of a lesson.
 
@@ -99,7 +114,7 @@ def lesson_page(
         steps: the steps; their figures have names of files in place of modules.
         pictures: pictures by number of the step.
         following: address and title of the next lesson, if there is one.
-        scorm: version of the SCORM package to which the page belongs, if any.
+        scorm: the SCORM package to which the page belongs, if any.
     """
     figures = list[dict[str, Any]]()
     for step in steps:
@@ -109,7 +124,7 @@ def lesson_page(
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
         "symbols": {name: words(f"symbol.{name}") for name in lesson.front.symbols},
-        "scorm": scorm,
+        "scorm": scorm and asdict(scorm),
         "figures": figures,
         "steps": [
             {**step.data, "figure": figures.index(step.figure) if step.figure else -1}

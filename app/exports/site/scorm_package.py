@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import Literal
 from zipfile import ZIP_DEFLATED, ZipFile, ZipInfo
 
 from onpath.app.common.atomic_file import whole_file
 from onpath.app.common.templates import render
+from onpath.app.exports.site.pages import Package, Version
 from onpath.app.exports.site.write_site import write_lesson
 from onpath.lessons.course import Course
 
-Version = Literal["1.2", "2004"]
 TEMPLATES: dict[Version, str] = {"1.2": "imsmanifest_12.xml", "2004": "imsmanifest_2004.xml"}
 MANIFEST = "imsmanifest.xml"
 DATE = (1980, 1, 1, 0, 0, 0)
@@ -20,7 +19,7 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 def write_package(
-    file: Path, course: Course, home: Path, name: str, language: str, version: Version
+    file: Path, course: Course, home: Path, name: str, language: str, kind: Package
 ) -> None:
     """Write the package of a lesson.
 
@@ -32,10 +31,10 @@ def write_package(
     """
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
-        page = write_lesson(folder, course, home, name, language, version)
+        page = write_lesson(folder, course, home, name, language, kind)
         files = sorted(each.relative_to(folder) for each in folder.rglob("*") if each.is_file())
         manifest = render(
-            f"scorm/{TEMPLATES[version]}",
+            f"scorm/{TEMPLATES[kind.version]}",
             identifier=f"onpath-{name}-{language}",
             title=course.lesson(name, language).front.title,
             page=page,

@@ -14,6 +14,7 @@ from typing import Any
 
 from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.exports.site.pages import (
+    Package,
     Picture,
     entry_of,
     lesson_page,
@@ -29,6 +30,7 @@ from onpath.assets import asset_path
 from onpath.lessons.course import REFERENCE, Course, read_references
 from onpath.lessons.progress import Truth
 from onpath.lessons.words import DEFAULT, Words
+from onpath.models.closed_loop.loops import InterpretedLoop
 from onpath.models.paths.path_design import presets
 
 SHARED = "site"
@@ -60,12 +62,12 @@ def write_site(folder: Path, course: Course, home: Path, languages: Iterable[str
 
 
 def write_lesson(
-    folder: Path, course: Course, home: Path, name: str, language: str, scorm: str
+    folder: Path, course: Course, home: Path, name: str, language: str, scorm: Package
 ) -> str:
     """Write one lesson into an empty folder, and return the address of its page in it.
 
     Args:
-        scorm: version of the SCORM package to which it belongs.
+        scorm: the package to which it belongs.
     """
     _write_shared(folder)
     writer = _Writer(
@@ -99,9 +101,9 @@ class _Writer:
         home: Path,
         languages: list[str],
         truths: Mapping[tuple[str, int], Truth],
-        scorm: str | None = None,
+        scorm: Package | None = None,
     ) -> None:
-        """Pages of a SCORM package, with its version in `scorm`, have no links to others."""
+        """Pages of a SCORM package have no links to others."""
         self._folder, self._course, self._home = folder, course, home
         self._languages, self._truths, self._scorm = languages, truths, scorm
 
@@ -204,8 +206,7 @@ class _Writer:
 
 def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
     """The results of all steps with a script, by lesson and index of the step."""
-    store = LoopCache()
-    store.close()  # compiling is not worth it for one run
+    store = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
     found = dict[tuple[str, int], Truth]()
     for name in names:
         lesson = course.lesson(name, DEFAULT)

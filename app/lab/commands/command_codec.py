@@ -14,10 +14,12 @@ import msgspec
 import numpy as np
 
 from onpath.app.lab import commands
+from onpath.app.lab.commands.path import MOST_STROKE_POINTS
 from onpath.app.lab.lab import Command
 
 MOST_TEXT = 2000  # [characters], as in a text widget
 LARGEST = 1e9  # magnitude of a number
+LONGEST = 250_000  # [characters] of a message: a stroke of `MOST_STROKE_POINTS`, with all digits
 MOST_WHY = 200  # [characters] of a reason
 
 _AT_NAME = "at `$.do`"
@@ -51,6 +53,8 @@ def command_from(message: str) -> Command:
     Raises:
         NoCommand: the message is not one.
     """
+    if len(message) > LONGEST:
+        raise NoCommand(f"expected at most {LONGEST} characters, got {len(message)}")
     try:
         fields = _decoder.decode(message)
     except (ValueError, RecursionError, MemoryError) as error:
@@ -94,6 +98,8 @@ def _struct(command: type[Any]) -> type[msgspec.Struct]:
 def _array(kind: type, value: Any) -> Any:
     """A point, or a list of points."""
     assert kind is np.ndarray
+    if isinstance(value, list) and len(value) > MOST_STROKE_POINTS:
+        raise ValueError(f"expected at most {MOST_STROKE_POINTS} points, got {len(value)}")
     nested = isinstance(value, list) and bool(value) and isinstance(value[0], list)
     return np.array(msgspec.convert(value, list[tuple[Number, Number]] if nested else list[Number]))
 

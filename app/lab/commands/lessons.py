@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from typing_extensions import override
@@ -11,7 +12,10 @@ from onpath.app.lab.lab import Command, Lab
 from onpath.assets.messages import languages
 from onpath.lessons.action_schema import Action
 from onpath.lessons.progress import Answer, Sure
+from onpath.models.errors import CodedError
 from onpath.models.systems.parameter_specs import unknown_name
+
+MOST_ACTIONS = 100  # of a link; those of lessons have a few
 
 
 @dataclass(frozen=True, slots=True)
@@ -163,17 +167,23 @@ class AnswerInWords(Command):
 
 @dataclass(frozen=True, slots=True)
 class Act(Command):
-    """Perform the actions of a link in the text."""
+    """Perform the actions of a link in the text, at most `MOST_ACTIONS`."""
 
     actions: tuple[Action, ...]
 
     @override
     def apply(self, lab: Lab) -> None:
+        for command in self.parts(lab):
+            command.apply(lab)
+
+    @override
+    def parts(self, lab: Lab) -> Iterator[Command]:
+        if len(self.actions) > MOST_ACTIONS:
+            raise CodedError("error.too_many_actions", most=MOST_ACTIONS)
         for action in self.actions:
             if action.run:
                 lab.lessons.check_unlocked()
-            for command in commands_of(action):
-                command.apply(lab)
+            yield from commands_of(action)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,1 +1,1 @@
-"""The labs' closed loops: compiled in the background, cached, and awaited by changes of law."""
+"""The labs' closed loops: compiled in the background, cached, and awaited by the labs."""

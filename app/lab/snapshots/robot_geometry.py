@@ -79,8 +79,8 @@ def drawn_robots(
     robot: Robot, curve: Curve, instant: Instant, exaggeration: float = 1.0
 ) -> tuple[Array, Counts]:
     """`Motion.drawn` of both robots at one instant, and their numbers of parts."""
-    geometry = _geometry_of(robot, curve.closed, curve.dimension)
-    return geometry(instant, curve, exaggeration), geometry.counts
+    geometry = _geometry_of(robot.core, curve.closed, curve.dimension)
+    return geometry(robot, instant, curve, exaggeration), geometry.counts
 
 
 def drawn_now(
@@ -91,12 +91,12 @@ def drawn_now(
     Args:
         table: `Curve.table()` of the path.
     """
-    geometry = _geometry_of(robot, curve.closed, curve.dimension)
-    return geometry.of_runs(runs, table, exaggeration), geometry.counts
+    geometry = _geometry_of(robot.core, curve.closed, curve.dimension)
+    return geometry.of_runs(robot, runs, table, exaggeration), geometry.counts
 
 
 class RobotGeometry:
-    """The geometry of one kind of robot on one kind of path. Not thread-safe.
+    """The geometry of robots with one `core` on one kind of path. Not thread-safe.
 
     Attributes:
         counts: numbers of parts.
@@ -105,28 +105,36 @@ class RobotGeometry:
     def __init__(self, robot: Robot, closed: bool, dimension: int) -> None:
         function, self.counts = geometry_function(robot, closed, dimension)
         self._draw = Buffered(function)
-        self._joints, self._robot = robot.system.n, robot
+        self._joints, self._core, self._dimension = robot.system.n, robot, dimension
 
-    def __call__(self, instant: Instant, curve: Curve, exaggeration: float) -> Array:
+    def __call__(self, robot: Robot, instant: Instant, curve: Curve, exaggeration: float) -> Array:
         """`Motion.drawn` of an instant."""
         q = [state[: self._joints] for state in instant.states]
-        seen = instant.sample.take(_seen(self._robot, instant.laws))
-        return self._drawn(q, [seen], curve.table(), exaggeration)
+        seen = instant.sample.take(_seen(self._core, instant.laws))
+        return self._drawn(robot, q, [seen], curve.table(), exaggeration)
 
-    def of_runs(self, runs: Iterable[ClosedLoopRun], table: Array, exaggeration: float) -> Array:
+    def of_runs(
+        self, robot: Robot, runs: Iterable[ClosedLoopRun], table: Array, exaggeration: float
+    ) -> Array:
         """`Motion.drawn` of the present states of two runs; see `drawn_now`."""
         q, seen = list[Array](), list[Array]()
         for run in runs:
             states, i = run.slot
             record = states.records[i]
             q.append(record[: self._joints])
-            seen.append(record[states.size :].take(_logged(self._robot, run.law)))
-        return self._drawn(q, seen, table, exaggeration)
+            seen.append(record[states.size :].take(_logged(self._core, run.law)))
+        return self._drawn(robot, q, seen, table, exaggeration)
 
     def _drawn(
-        self, q: Sequence[Array], seen: Sequence[Array], table: Array, exaggeration: float
+        self,
+        robot: Robot,
+        q: Sequence[Array],
+        seen: Sequence[Array],
+        table: Array,
+        exaggeration: float,
     ) -> Array:
-        drawn = self._draw(np.concatenate(q), np.concatenate(seen), table, exaggeration)[0]
+        inputs = np.concatenate(q), np.concatenate(seen), table, exaggeration
+        drawn = self._draw(*inputs, path_place(robot, self._dimension))[0]
         return drawn.reshape(len(SIDES), -1).copy()
 
 
@@ -171,7 +179,7 @@ class _Points(NamedTuple):
     force: ca.SX
 
 
-@lru_cache(maxsize=16)
+@lru_cache(maxsize=64)
 def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[ca.Function, Counts]:
     """Make the function from the state to points and poses of both robots.
 
@@ -179,15 +187,14 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
         closed, dimension: of the path.
 
     Returns:
-        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration) -> one
-        column per robot: `RobotView.points`, then `RobotView.poses`.
+        (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration; `path_place`)
+        -> one column per robot: `RobotView.points`, then `RobotView.poses`.
     """
     p, both = robot.system.p, len(SIDES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
     table = ca.SX.sym("table", dimension * ORDERS, TERMS)
     exaggeration = ca.SX.sym("exaggeration")
-    placed = _affine(robot.place, p)
-    on_path = _affine(lambda z: robot.place(robot.frame.lift(z)), dimension)
+    placed, path = _affine(robot.place, p), ca.SX.sym("path", 3, dimension + 1)
 
     def drawn(q: ca.SX, seen: ca.SX) -> _Points:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]
@@ -200,7 +207,7 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
             bars=bars,
             joints=joints,
             marks=marks,
-            marker=on_path(sigma),
+            marker=path[:, 0] + path[:, 1:] @ sigma,
             tip=bars[:, -1],
             end=placed(y),
             force=pull,
@@ -220,15 +227,28 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
         for points, q_of in zip(robots, ca.horzsplit(q), strict=True)
     ]
     flat = ca.densify(ca.horzcat(*columns))
-    return ca.Function("geometry", [q, seen, table, exaggeration], ca.cse([flat])), counts
+    inputs = [q, seen, table, exaggeration, path]
+    return ca.Function("geometry", inputs, ca.cse([flat])), counts
 
 
-@per_thread
+@lru_cache(maxsize=64)
+def path_place(robot: Robot, dimension: int) -> Array:
+    """How the plane of the path lies in the robot's frame: origin and axes, flat, by columns."""
+    origin, *ends = robot.place(robot.frame.lift(np.eye(dimension + 1, dimension, -1)))
+    return np.concatenate([origin, *(end - origin for end in ends)])
+
+
 def straight_tip(robot: Robot) -> Callable[[Array], Array] | None:
     """Where the end-point would be if no link were bent: q -> y, (n,) -> (p,).
 
     None if no link of the robot bends.
     """
+    return _straight_tip(robot.core)
+
+
+@per_thread
+def _straight_tip(robot: Robot) -> Callable[[Array], Array] | None:
+    """`straight_tip` of all robots with one `core`."""
     q, exaggeration = ca.SX.sym("q", robot.system.n), ca.SX.sym("exaggeration")
     if not ca.depends_on(robot.skeleton(q, exaggeration)[0], exaggeration):
         return None

@@ -166,8 +166,9 @@ class View:
         own_gains: those of `Law.own_gains`, by name.
         integral: integral of `ControlAction.error`, (p, 1).
         lag: the greatest age of the controller's information when its torque ends, [s]: the control
-            interval plus, where they exist, the time constant of the velocity filter, the
-            computing delay and the time constant with which composite control predicts bending.
+            interval plus, where they exist, the time constant of the observer or the velocity
+            filter, the computing delay and the time constant with which composite control predicts
+            bending.
         measured: configuration and velocity as measured, not predicted, each (n, 1).
         held: torque that the motors have given since the law's last evaluation, (m, 1), [N m].
     """

@@ -10,7 +10,8 @@ import pytest
 
 from onpath.app.cli.main import run_command
 from onpath.app.common.templates import render
-from onpath.app.exports.site.scorm_package import MANIFEST, TEMPLATES, Version
+from onpath.app.exports.site.pages import Version
+from onpath.app.exports.site.scorm_package import MANIFEST, TEMPLATES
 from tests.support.site_export import LESSON
 
 PARTS = {
@@ -56,7 +57,7 @@ def test_the_manifest_names_every_file_and_the_page(tmp_path: Path, version: Ver
     (organizations,) = manifest.iter(f"{part}organizations")
     assert organizations.get("default") == organization.get("identifier")
     page = package.read(str(resource.get("href"))).decode()
-    assert f'"scorm":"{version}"' in page and "index.html" not in page
+    assert f'"scorm":{{"version":"{version}","partial":false}}' in page and "index.html" not in page
     again = tmp_path / "again.zip"
     assert run_command([*command[:4], str(again), *command[5:], "--language", "de"]) == 0
     assert again.read_bytes() == file.read_bytes()

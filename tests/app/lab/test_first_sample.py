@@ -5,18 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons.record import ROBOTS
 from onpath.models.closed_loop.start import Start
-from tests.support.lab import run
+from tests.support.lab import new_lab, run
 
 
 @pytest.mark.parametrize("beside", [0.01, -0.004])
 def test_robots_that_begin_beside_the_path_are_there_at_once(beside: float) -> None:
     """Also across it: overshoot is a share of the largest value, which is that at the start."""
-    lab = Lab(LoopCache())
+    lab = new_lab()
     lab.session.start = Start(beside=beside)
     lab.session.reset()
     run(lab, 0.1)

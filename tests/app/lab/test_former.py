@@ -70,6 +70,8 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
 """Made with version 1, when K3 was 0 and acted in the tracker, too; and what they meant then."""
 VERSION_1 = ("five_bar", "two_link_arm", "flexible")
 """The robots that there were."""
+SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0}
+"""Former values of what every robot has had since version 2."""
 
 
 def parameters(lab: Lab, robot: str) -> Any:
@@ -204,7 +206,7 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
 def test_an_old_push_of_a_teacher_is_accepted() -> None:
     sent = read_push({"setup": {"benches": {"five_bar": {"parameters": {"K2": 60.0}}}}})
     assert isinstance(sent, TakeSetup)
-    own = {"K2": 60.0, "K3": 0.0, "tracker_integral": "on", "at_limit_for": "path_following"}
+    own = {"K2": 60.0, "K3": 0.0, "tracker_integral": "on", **SINCE_2}
     assert sent.setup.robots["five_bar"] == RobotSetup(own)
     assert read_push(push_data(sent)) == sent
 
@@ -212,7 +214,7 @@ def test_an_old_push_of_a_teacher_is_accepted() -> None:
 def test_a_robot_added_since_has_its_own_defaults() -> None:
     assert "spatial_arm" not in VERSION_1
     found = from_data({"benches": {"spatial_arm": {}}, "defaults": 2}).robots["spatial_arm"]
-    assert found == RobotSetup({"at_limit_for": "path_following"})
+    assert found == RobotSetup(SINCE_2)
     assert from_data({"benches": {"spatial_arm": {}}}).robots["spatial_arm"] == found
 
 
@@ -307,7 +309,7 @@ def test_a_share_code_with_the_old_name_opens() -> None:
         "plant": NEW,
         "alpha": 1.0,
         "tracker_integral": "on",
-        "at_limit_for": "path_following",
+        **SINCE_2,
     }  # as it was then
     assert capture(lab.session).robots["flexible"].parameters == own
 

@@ -159,7 +159,7 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
     for segment, later in pairwise(segments):
         drive, ends = segment.drives[name], segment.time + segment.ticks * segment.dt
         assert later.time == pytest.approx(ends, abs=1e-9)
-        loop = lab.session._store.get(lab.session.robot, drive.kind)
+        loop = lab.session._store.find(lab.session.robot, drive.kind)
         state, _ = loop.run(drive.state, drive.settings, segment.curve.table(), segment.ticks)
         assert np.array_equal(state, later.drives[name].state)
 

@@ -57,13 +57,12 @@ def test_others_are_still_compiled(
         for _ in range(3):
             store.prepare(robot, Kind(law))
             finish(store)
-    assert store.is_ready(robot, Kind(law))
-    assert isinstance(store.get(robot, Kind(law)), InterpretedLoop)
+    assert isinstance(store.find(robot, Kind(law)), InterpretedLoop)
     (warning,) = caplog.records
     assert law in warning.getMessage() and "OP_" in warning.getMessage()
     store.prepare(robot, Kind("waiting_clock"))
     finish(store)
-    assert isinstance(store.get(robot, Kind("waiting_clock")), CompiledLoop)
+    assert isinstance(store.find(robot, Kind("waiting_clock")), CompiledLoop)
 
 
 def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: str) -> None:
@@ -74,7 +73,7 @@ def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: st
             run(lab, FRAME)
             finish(store)
         assert lab.session.laws[LEFT] == name
-    made = [store.get(r.robot, r.kind) for r in (lab.session.runs[LEFT] for lab in labs)]
+    made = [store.find(r.robot, r.kind) for r in (lab.session.runs[LEFT] for lab in labs)]
     assert [type(loop) for loop in made] == [InterpretedLoop, CompiledLoop]
 
 

@@ -1,4 +1,4 @@
-"""Loops are available at once; compiled ones replace them when ready, without visible effect."""
+"""Loops are compiled in the background; a lab waits for its own, and no other lab waits with it."""
 
 from __future__ import annotations
 
@@ -7,167 +7,262 @@ import logging
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from dataclasses import replace
-from itertools import count, islice, product
+from itertools import islice, product
 from weakref import WeakSet
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
-from onpath.app.lab.lab import Lab
-from onpath.app.lab.loops import compile_queue
-from onpath.app.lab.loops import loop_cache as loop_store
-from onpath.app.lab.loops.loop_cache import MOST, LoopCache
+from onpath.app.lab.lab import PATIENCE, Lab
+from onpath.app.lab.loops import loop_cache
+from onpath.app.lab.loops.loop_cache import MOST, MOST_SOON, Key, LoopCache
 from onpath.app.server.warm_up import LATER, warm_up
 from onpath.lessons.course import NO_LESSONS
+from onpath.models.closed_loop import simulation
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop, Loop
-from onpath.models.closed_loop.simulation import kernel_of
+from onpath.models.closed_loop.simulation import kernel_of, kind_of
+from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control import speed_limit
-from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
+from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
+from onpath.models.errors import CodedError
+from onpath.models.paths.curves import circle
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
-from tests.support.lab import FRAME, do, finish, run, states
-from tests.support.lab import store as store_of_other_tests
+from tests.support.lab import FRAME, assert_sound, do, finish, new_lab, run, states
 from tests.support.suitable_laws import laws_for
 from tests.support.waiting import wait_for
 
-PATIENCE = 60.0  # [s]
-
-
-@pytest.fixture
-def store() -> Iterator[LoopCache]:
-    finish(store_of_other_tests())  # it would use what these tests replace
-    made = LoopCache()
-    pool = made._pool
-    yield made
-    made.close()
-    assert pool is not None
-    pool.shutdown()  # it makes nothing while the next test runs
+LONG = 60.0  # [s]
 
 
 class Gate(threading.Event):
-    """Nothing is translated for a store before it is open; `passed` has what was."""
+    """Translates nothing before it is open.
 
-    def __init__(self, translate: Callable[[Kernel], CompiledLoop], store: LoopCache) -> None:
+    Attributes:
+        threads: that have asked for a translation.
+        passed: kernels that have been translated.
+    """
+
+    def __init__(self, translate: Callable[[Kernel], Loop] = translate_loop) -> None:
         super().__init__()
-        assert store._pool is not None
-        self._threads = store._pool._threads
-        self.reached = threading.Event()
-        self.passed: list[Kernel] = []
-        self._translate = translate
+        self._translate, self.reached = translate, threading.Event()
+        self.threads, self.passed = set[int](), list[Kernel]()
 
-    def __call__(self, kernel: Kernel) -> CompiledLoop:
-        if threading.current_thread() not in self._threads:  # another test's store
-            return self._translate(kernel)
+    def __call__(self, kernel: Kernel) -> Loop:
+        self.threads.add(threading.get_ident())
         self.reached.set()
-        assert self.wait(PATIENCE)
+        assert self.wait(LONG)
         self.passed.append(kernel)
         return self._translate(kernel)
 
 
 @pytest.fixture
-def gate(store: LoopCache, monkeypatch: pytest.MonkeyPatch) -> Iterator[Gate]:
-    """It is opened before the store waits for what is being made."""
-    made = Gate(loop_store.translate_loop, store)
-    monkeypatch.setattr(loop_store, "translate_loop", made)
-    yield made
-    made.set()
-
-
-def loops(lab: Lab, store: LoopCache) -> list[Loop]:
-    return [store.get(run.robot, run.kind) for run in lab.session.runs.values()]
-
-
-def test_loops_are_interpreted_at_once_and_compiled_later(store: LoopCache, gate: Gate) -> None:
-    never = LoopCache()
-    never.close()
-    lab, reference = Lab(store), Lab(never)
-    for tier in (InterpretedLoop, CompiledLoop):
-        for _ in range(30):
-            lab.advance(FRAME)
-            reference.advance(FRAME)
-        now = loops(lab, store)
-        assert all(isinstance(loop, tier) for loop in now) and loops(lab, store) == now
-        assert all(isinstance(loop, InterpretedLoop) for loop in loops(reference, never))
-        gate.set()
-        finish(store)
-    for name, state in states(lab.session).items():
-        assert np.array_equal(state, reference.session.runs[name].state)
-        assert lab.session.runs[name].diverged is None
-    assert len(gate.passed) == len(SIDES)
-
-
-def test_a_failed_compilation_is_logged_once_for_each_kind_and_the_lab_continues(
-    store: LoopCache, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
-    lab = Lab(store)
-    with caplog.at_level(logging.WARNING):
-        lab.advance(FRAME)
-        finish(store)
-        for _ in range(20):
-            lab.advance(FRAME)
-        do(lab, c.Hold(on=True))
-        lab.advance(FRAME)  # a loop that nobody has asked for before
-        finish(store)
-        for _ in range(20):
-            lab.advance(FRAME)
-        finish(store)
-    warnings = [r for r in caplog.records if r.name == "onpath.app.lab.loops.loop_cache"]
-    assert all("interpreted" in warning.getMessage() for warning in warnings)
-    assert len(warnings) == 2 * len(SIDES)  # free, and held
-    assert lab.session.time == pytest.approx(42 * FRAME, abs=2e-3)
-    assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab, store))
-
-
-def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
-    kinds = [
-        Kind(DEFAULT_LAWS[LEFT], closed, encoder=e)
-        for closed in (True, False)
-        for e in (True, False)
-    ]
-    for kind in kinds:
-        store.get(RIGID_FIVE_BAR, kind)
-    assert gate.reached.wait(PATIENCE)
-    pool = store._pool
-    assert pool is not None
-    store.close()
-    gate.set()
-    pool.shutdown(wait=True)
-    assert len(gate.passed) == 1
-    waiting = len(store._waiting)
-    for kind in kinds[1:]:
-        assert isinstance(store.get(RIGID_FIVE_BAR, kind), InterpretedLoop)
-    store.get(RIGID_FIVE_BAR, replace(kinds[0], free=True))  # that is new, and refused quietly
-    assert len(store._waiting) == waiting
-
-
-def test_a_first_lab_finds_its_loops_compiled(store: LoopCache) -> None:
-    """Free and held: whoever comes after a while meets no interpreted loop."""
-    warm_up(store, NO_LESSONS, rest=0.0).join(PATIENCE)
-    finish(store)
-    assert all(name in sys.modules for name in (*LATER, "babel"))
-    lab = Lab(store)
-    for commands in ([], [c.Hold(on=True)]):
-        do(lab, *commands)
-        lab.advance(FRAME)
-        assert all(isinstance(loop, CompiledLoop) for loop in loops(lab, store))
-    assert len(store._kept) == 2 * len(SIDES)
-
-
-class Quick(InterpretedLoop):
-    """Stands in for a compiled loop."""
+def gate() -> Gate:
+    return Gate()
 
 
 @pytest.fixture
-def cheap(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Nothing is compiled, and all loops have one kernel."""
-    kernel = kernel_of(RIGID_FIVE_BAR, Kind(DEFAULT_LAWS[LEFT]))
-    monkeypatch.setattr(loop_store, "kernel_of", lambda *_: kernel)
-    monkeypatch.setattr(loop_store, "translate_loop", Quick)
-    monkeypatch.setattr(loop_store, "CompiledLoop", Quick)
+def store(gate: Gate) -> Iterator[LoopCache]:
+    made = LoopCache(translate=gate)
+    pool = made._pool
+    yield made
+    gate.set()
+    made.close()
+    assert pool is not None
+    pool.shutdown()  # it makes nothing while the next test runs
+
+
+def loops(lab: Lab) -> list[Loop | None]:
+    return [run.loop() for run in lab.session.runs.values()]
+
+
+def law(number: float) -> str:
+    return f"across = -K1*xi - K2*dxi - {number:g}; along = -K5*(dtheta - speed)"
+
+
+def key(number: float) -> Key:
+    parameters = FIVE_BAR.parameters()
+    return FIVE_BAR.make(parameters), kind_of(law(number), parameters, circle(0.05))
+
+
+# A lab that waits
+
+
+def test_a_lab_stands_still_until_its_loops_are_made_and_says_so(
+    store: LoopCache, gate: Gate
+) -> None:
+    lab, reference = Lab(store), new_lab()
+    run(lab, 0.2)
+    assert lab.session.time == 0.0 and loops(lab) == [None, None] and not lab.waits
+    run(lab, PATIENCE * FRAME)
+    assert lab.waits and lab.notice == (lab.words("say.waits"), "info")
+    gate.set()
+    finish(store)
+    run(lab, 0.5)
+    run(reference, 0.5)
+    assert not lab.waits and lab.notice == reference.notice
+    assert all(isinstance(loop, CompiledLoop) for loop in loops(lab))
+    for name, state in states(lab.session).items():
+        assert np.array_equal(state, reference.session.runs[name].state)
+        assert lab.session.runs[name].diverged is None
+    assert np.array_equal(lab.session.sample(), reference.session.sample())
+
+
+def test_the_first_sample_is_the_same_whenever_its_loop_comes(store: LoopCache, gate: Gate) -> None:
+    late, soon = Lab(store), new_lab()
+    for lab in (late, soon):
+        lab.session.running = False
+        do(lab, c.SetStart("beside", 0.01), c.Reset())
+        run(lab, FRAME)
+    gate.set()
+    finish(store)
+    run(late, FRAME)
+    assert np.array_equal(late.session.sample(), soon.session.sample())
+
+
+def test_commands_keep_their_order_while_a_step_waits(store: LoopCache, gate: Gate) -> None:
+    lab = Lab(store)
+    do(lab, c.SetRunning(False), c.StepOnce(), c.StepOnce(), c.SetRate(2.0))
+    run(lab, 0.5)
+    assert lab.session.time == 0.0 and lab.session.rate == 1.0 and lab.waits
+    gate.set()
+    finish(store)
+    run(lab, 0.1)
+    assert lab.session.time == pytest.approx(2e-3) and lab.session.rate == 2.0 and not lab.waits
+
+
+def test_settings_that_need_another_loop_stop_time_until_it_is_made(
+    store: LoopCache, gate: Gate
+) -> None:
+    gate.set()
+    lab = Lab(store)
+    finish(store)
+    do(lab, c.TypeLaw(LEFT, law(0.125)))
+    wait_for(lambda: (run(lab, FRAME), lab.session.laws[LEFT] == law(0.125))[1], LONG)
+    gate.clear()
+    do(lab, c.SetParameter("encoder_counts", 4096.0))
+    time = lab.session.time
+    run(lab, 0.5)
+    assert lab.session.time == time and lab.waits
+    gate.set()
+    wait_for(lambda: (run(lab, FRAME), lab.session.time > time)[1], LONG)
+    assert all(each.kind.encoder for each in lab.session.runs.values())
+    assert lab.session.laws[LEFT] == law(0.125)
+    assert_sound(lab)
+
+
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_nothing_is_built_on_the_thread_of_the_simulation(
+    store: LoopCache, gate: Gate, robot: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whatever needs another loop: robots, laws, parameters, a hand, the kind of path."""
+    built, known = set[int](), kernel_of
+
+    def kernel(*wanted: Key) -> Kernel:
+        built.add(threading.get_ident())
+        return known(*wanted)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(loop_cache, "kernel_of", kernel)
+    gate.set()
+    lab = Lab(store)
+    asked: list[c.Command] = [c.ChooseRobot(robot)]
+    asked += [c.ChooseLaw(RIGHT, each) for each in laws_for(robot)[:2]]
+    asked += [c.SetParameter("encoder_counts", 2000.0), c.Hold(on=True), c.ChoosePath("arc")]
+    for command in asked:
+        do(lab, command)
+        run(lab, 0.4)
+        finish(store)
+    assert built and threading.get_ident() not in built | gate.threads
+    assert_sound(lab)
+
+
+# Fair to others
+
+wanted = st.lists(
+    st.tuples(st.integers(0, 4), st.lists(st.integers(0, 30), max_size=3)), min_size=1, max_size=40
+)
+
+
+class Owner:
+    """Stands in for a lab."""
+
+
+@pytest.fixture(scope="module")
+def one_kernel() -> Kernel:
+    return kernel_of(*key(0))
+
+
+@pytest.fixture
+def cheap(one_kernel: Kernel, monkeypatch: pytest.MonkeyPatch) -> None:
+    """All loops have one kernel."""
+    monkeypatch.setattr(loop_cache, "kernel_of", lambda *_: one_kernel)
+
+
+@given(wanted)
+def test_the_next_loop_is_for_the_lab_that_has_taken_least(
+    asked: list[tuple[int, list[int]]],
+) -> None:
+    """Only what a lab wanted last is made for it, and nobody waits for who has taken more."""
+    store, labs, last = LoopCache(), [Owner() for _ in range(5)], dict[int, list[int]]()
+    store.close()  # the test takes the place of its thread
+    for number, keys in asked:
+        store.want(labs[number], [(RIGID_FIVE_BAR, Kind(str(each))) for each in keys])
+        last[number] = keys
+    spent, made = dict.fromkeys(range(5), 0.0), set[int]()
+    while (task := store._next()) is not None:
+        lab, (_, kind) = task
+        number = labs.index(lab)  # type: ignore[arg-type]
+        waiting = [n for n, keys in last.items() if set(keys) - made]
+        assert spent[number] == min(spent[n] for n in waiting)
+        assert int(kind.controller) == next(k for k in last[number] if k not in made)
+        made.add(int(kind.controller))
+        store._keep(task[1], CodedError("error.law_cannot_run"))
+        spent[number] += 1.0 + number
+        store._spent[labs[number]] = spent[number]
+    assert made == {each for keys in last.values() for each in keys}
+
+
+def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
+    store: LoopCache, gate: Gate
+) -> None:
+    greedy, other = Lab(store), Lab(store)
+    for number in range(300):
+        typed = [c.TypeLaw(side, law(number + i / 4)) for i, side in enumerate(SIDES)]
+        do(greedy, *typed)
+        run(greedy, FRAME)
+        if number == 150:
+            do(other, c.ChooseLaw(LEFT, "waiting_clock"), c.TypeLaw(RIGHT, law(-1)))
+            gate.set()
+        if number > 150:
+            run(other, FRAME)
+    laws = {LEFT: "waiting_clock", RIGHT: law(-1)}
+    wait_for(lambda: (run(other, FRAME), other.session.laws == laws)[1], LONG)
+    assert greedy.session.chosen_laws == {LEFT: law(299), RIGHT: law(299.25)}
+    for each in (greedy, other):
+        run(each, 0.1)
+        assert_sound(each)
+
+
+@pytest.mark.usefixtures("cheap")
+def test_what_is_prepared_waits_for_what_labs_wait_for_and_is_bounded(
+    store: LoopCache, gate: Gate
+) -> None:
+    for kind in some_kinds(200):
+        store.prepare(RIGID_FIVE_BAR, kind)
+    assert gate.reached.wait(LONG)
+    lab = Owner()
+    store.want(lab, [key(7)])
+    gate.set()
+    wait_for(lambda: store.find(*key(7)) is not None, LONG)
+    assert len(gate.passed) <= 3 and len(store._soon) <= MOST_SOON
+
+
+# What is kept
 
 
 def some_kinds(most: int) -> list[Kind]:
@@ -181,64 +276,136 @@ def some_kinds(most: int) -> list[Kind]:
 
 
 @pytest.mark.usefixtures("cheap")
-def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept(store: LoopCache) -> None:
+def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept() -> None:
+    store = LoopCache(at_once=True, translate=InterpretedLoop)
     robot, (mine, *others) = RIGID_FIVE_BAR, some_kinds(3 * MOST)
-    store.prepare(robot, mine)
-    finish(store)
-    used, seen = store.get(robot, mine), WeakSet[Loop]()
+    used, seen = store.find(robot, mine), WeakSet[Loop]()
     for kind in others:
-        seen.add(store.get(robot, kind))
-        finish(store)
-        seen.add(store.get(robot, kind))
+        loop = store.find(robot, kind)
+        assert loop is not None and store.find(robot, kind) is loop
+        seen.add(loop)
+    del loop
     gc.collect()
-    assert store.get(robot, mine) is used
-    assert len(store._kept) <= MOST and len(seen) <= MOST + 1  # the loop of the last turn
+    assert store.find(robot, mine) is used
+    assert len(store._kept) <= MOST and len(seen) <= MOST
+    store.close()
 
 
-@pytest.mark.usefixtures("cheap")
-def test_labs_that_wait_for_more_loops_than_are_kept_get_them(
-    store: LoopCache, monkeypatch: pytest.MonkeyPatch
+def test_a_lab_keeps_the_loop_that_it_uses() -> None:
+    store = LoopCache(at_once=True)
+    lab, same = Lab(store), Lab(store)
+    for each in (lab, same):
+        do(each, c.TypeLaw(LEFT, law(0)), c.TypeLaw(RIGHT, law(0.25)))
+        run(each, 0.2)
+    before = loops(lab)
+    for number in range(MOST):
+        store._keep(key(5000 + number), CodedError("error.law_cannot_run"))
+    for each in (lab, same):
+        do(each, c.SetParameter("K1", 500.0), c.Hold(on=True))
+        run(each, 0.3)
+        do(each, c.LookAt(0.2), c.GoOn())
+        run(each, 0.3)
+        assert_sound(each)
+    assert loops(lab) == before == loops(same)
+    store.close()
+
+
+def test_kernels_of_typed_laws_displace_no_others() -> None:
+    known = RIGID_FIVE_BAR, kind_of(DEFAULT_LAWS[LEFT], FIVE_BAR.parameters(), circle(0.05))
+    kernel = kernel_of(*known)
+    for number in range(simulation.MOST + 2):
+        kernel_of(*key(number))
+    assert kernel_of(*known) is kernel
+    assert simulation._typed_kernel.cache_info().currsize == simulation.MOST
+
+
+# What fails
+
+
+def test_a_failed_compilation_is_logged_once_for_each_kind_and_the_lab_continues(
+    store: LoopCache, gate: Gate, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Loops that labs go on with meanwhile do not displace those that have been compiled."""
-    turn, made = threading.Semaphore(0), list[int]()
-
-    def translate(kernel: Kernel) -> Loop:
-        """Less than one loop is compiled in a frame."""
-        assert turn.acquire(timeout=PATIENCE)
-        loop = Quick(kernel)
-        made.append(id(loop))
-        return loop
-
-    monkeypatch.setattr(loop_store, "translate_loop", translate)
-    robot = RIGID_FIVE_BAR
-    used: dict[Kind, Loop] = {kind: store.get(robot, kind) for kind in some_kinds(2 * MOST)}
-    for frame in range(2 * MOST):
-        turn.release()
-        wait_for(lambda n=frame: made[n:] and made[n] in map(id, store._made.values()), PATIENCE)
-        for kind, loop in reversed(used.items()):
-            if not isinstance(loop, Quick):
-                used[kind] = store.get(robot, kind, loop)
-    assert all(isinstance(loop, Quick) for loop in used.values())
+    monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
+    gate.set()
+    lab = Lab(store)
+    with caplog.at_level(logging.WARNING):
+        lab.advance(FRAME)
+        finish(store)
+        for _ in range(20):
+            lab.advance(FRAME)
+        do(lab, c.Hold(on=True))
+        for _ in range(20):
+            lab.advance(FRAME)
+    warnings = [r for r in caplog.records if r.name == loop_cache.__name__]
+    assert all("interpreted" in warning.getMessage() for warning in warnings)
+    assert len(warnings) == 2 * len(SIDES)  # free, and held
+    assert lab.session.time == pytest.approx(40 * FRAME, abs=2e-3)
+    assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab))
 
 
-def test_settings_changed_without_end_do_not_hold_up_another_lab(
+def test_whatever_fails_in_the_background_the_next_loop_is_made(
+    store: LoopCache, gate: Gate, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def failing(*wanted: Key) -> Kernel:
+        if wanted == key(1):
+            raise MemoryError
+        return kernel_of(*wanted)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(loop_cache, "kernel_of", failing)
+    gate.set()
+    lab = Owner()
+    store.want(lab, [key(1), key(2)])
+    wait_for(lambda: store.find(*key(2)) is not None, LONG)
+    with pytest.raises(CodedError, match="not possible"):
+        store.find(*key(1))
+
+
+def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
+    lab, pool = Owner(), store._pool
+    store.want(lab, [key(number) for number in range(4)])
+    assert gate.reached.wait(LONG) and pool is not None
+    store.close()
+    gate.set()
+    pool.shutdown(wait=True)
+    assert len(gate.passed) == 1
+    store.want(lab, [key(9)])  # that is new, and refused quietly
+    assert store.find(*key(9)) is None
+
+
+# In advance
+
+
+def test_a_first_lab_finds_its_loops_compiled(store: LoopCache, gate: Gate) -> None:
+    """Free and held: whoever comes after a while waits for no loop."""
+    gate.set()
+    warm_up(store, NO_LESSONS, rest=0.0).join(LONG)
+    finish(store)
+    assert all(name in sys.modules for name in (*LATER, "babel"))
+    lab = Lab(store)
+    for commands in ([], [c.Hold(on=True)]):
+        do(lab, *commands)
+        lab.advance(FRAME)
+        assert all(isinstance(loop, CompiledLoop) for loop in loops(lab))
+    assert len(store._kept) == 2 * len(SIDES)
+
+
+def test_whoever_gets_a_loop_also_gets_that_with_a_hand_on_the_robot(
     store: LoopCache, gate: Gate
 ) -> None:
-    clock = count()  # [s]; time passes whenever somebody asks
-    store._waiting._clock = lambda: float(next(clock))
-    for kind in some_kinds(200):
-        store.prepare(RIGID_FIVE_BAR, kind)
-    lab = Lab(store)
-    do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
-    run(lab, FRAME)
-    assert len(store._waiting) <= compile_queue.MOST
     gate.set()
-    wait_for(lambda: (run(lab, FRAME), lab.session.laws[LEFT] == "waiting_clock")[1], PATIENCE)
-    assert len(gate.passed) <= 2 * len(SIDES)
+    lab = Lab(store)
+    run(lab, FRAME)
+    finish(store)
+    run(lab, FRAME)
+    time = lab.session.time
+    do(lab, c.Hold(on=True))
+    run(lab, FRAME)
+    assert lab.session.time > time
 
 
-def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache) -> None:
+def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache, gate: Gate) -> None:
     """`slow_down` builds nothing on the simulation thread."""
+    gate.set()
     speed_limit._on_path.cache_clear()
     lab = Lab(store)
     lab.advance(FRAME)

@@ -767,7 +767,7 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
             return np.stack(states) * np.nan, rows
 
     class Store(LoopCache):
-        def get(self, *_: object) -> Breaking:  # type: ignore[override]
+        def find(self, *_: object) -> Breaking:  # type: ignore[override]
             return Breaking()
 
     broken = Store()

@@ -72,6 +72,7 @@ def test_codes_of_version_1_stay_readable() -> None:
         "K3": 100.0,
         "tracker_integral": "on",
         "at_limit_for": "path_following",
+        "observer_time": 0.0,
     }
 
 

@@ -14,7 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
 from onpath.app.lab.snapshots.part_poses import bar_quaternions, waist_angle
-from onpath.app.lab.snapshots.robot_geometry import geometry_function
+from onpath.app.lab.snapshots.robot_geometry import geometry_function, path_place
 from onpath.app.lab.snapshots.snapshot import (
     TIP,
     PathView,
@@ -53,7 +53,8 @@ def robot(
     function, counts = geometry_function(FIVE_BAR, closed=True)
     both = np.tile(q[:, None], 2), np.tile(seen[:, None], 2)
     table = circle(0.05).table().reshape(TABLE_SHAPE, order="F")
-    flat = np.array(function(*both, table, 1.0))[:, 0]
+    place = path_place(FIVE_BAR, 2).reshape(3, 3, order="F")
+    flat = np.array(function(*both, table, 1.0, place))[:, 0]
     points, poses = np.split(flat, [3 * counts.points])
     points = points.reshape(-1, 3)
     trace = np.linspace(np.zeros(3), points[TIP], 50)

@@ -21,6 +21,10 @@ KINDS = [
     for encoder in (False, True)
     for free in (False, True)
 ]
+KINDS += [
+    Kind(controller, encoder=True, delay=True, noise=True, observer=True)
+    for controller in ("path_following", "trajectory_tracking")
+]
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=repr)

@@ -14,13 +14,13 @@ from onpath.models.closed_loop.faults import fault_in
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.control.laws.path_following import far_from_path
-from onpath.models.paths.curves import ellipse
+from onpath.models.paths.curves import circle, ellipse
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from tests.support import pulls
-from tests.support.pulls import parameters_of, runs_untouched, troubled
+from tests.support.pulls import parameters_of, runs_untouched, troubled, untouched
 
 FOLLOWER = "path_following"
 RATES, COUNTS, NOISES = (100, 250, 1000), (0.0, 2000.0), (0.0, 1e-4)
@@ -68,6 +68,24 @@ def test_no_pull_of_many_stops_the_follower(
         return
     assert ROBOTS[robot].caution(parameters) is None
     check(robot, parameters, seed=2026, pulls=15 if robot == "flexible" else 60)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("robot", "radius", "changes"),
+    [
+        ("two_link_arm", 0.05, {"speed": 20.0, "control_rate": 250}),
+        ("five_bar", 0.1, {"control_rate": 1000}),
+    ],
+)
+def test_nor_at_a_great_speed_or_near_the_edge_of_the_workspace(
+    robot: str, radius: float, changes: dict[str, float]
+) -> None:
+    parameters = parameters_of(robot, encoder_counts=2000.0, sensor_noise=1e-4, **changes)
+    off = untouched(robot, parameters, FOLLOWER, circle(radius))
+    assert off is not None and off < 1e-3
+    for each in troubled(robot, parameters, FOLLOWER, 5, 24, circle(radius)):
+        assert each.fault is None and each.late < 1e-3
 
 
 @given(

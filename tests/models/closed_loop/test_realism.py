@@ -16,7 +16,7 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.delay import LONGEST
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loops import InterpretedLoop
-from onpath.models.closed_loop.sensing import measure
+from onpath.models.closed_loop.sensing import read
 from onpath.models.closed_loop.simulation import (
     FREE,
     first_state,
@@ -353,9 +353,7 @@ def test_strain_gauges_err_by_the_deflection_that_was_asked_for() -> None:
     kernel = kernel_for("flexible", parameters)
     state_symbol, state = kernel.state.symbols("state")
     settings_symbol, settings = kernel.settings.symbols("settings")
-    q, _, _ = measure(
-        robot.system, kind_of("path_following", parameters, CURVE, FREE), state, settings
-    )
+    q = read(robot.system, kind_of("path_following", parameters, CURVE, FREE), state, settings)
     measured = ca.Function("measured", [state_symbol, settings_symbol], [q])
     given = settings_vector(robot, kernel, parameters, CURVE, FREE)
     now = start("flexible", parameters, kernel)

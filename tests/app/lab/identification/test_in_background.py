@@ -11,6 +11,7 @@ import pytest
 from onpath.app.lab import commands as c
 from onpath.app.lab.identification import in_background
 from onpath.app.lab.identification.identify import Learned, learn
+from onpath.app.lab.identification.in_background import Identification
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.segments import HistoryCopy
@@ -49,7 +50,7 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowThread]:
 
 @pytest.fixture(scope="module")
 def store() -> Iterator[LoopCache]:
-    store = LoopCache()
+    store = LoopCache(at_once=True)
     yield store
     store.close()
 
@@ -57,6 +58,7 @@ def store() -> Iterator[LoopCache]:
 @pytest.fixture
 def lab(store: LoopCache) -> Lab:
     lab = Lab(store)
+    lab.identification = Identification()
     do(lab, c.SetParameter("error_M11", 30), c.SetParameter("speed", 6.0))
     run(lab, SECONDS)
     return lab
@@ -96,6 +98,8 @@ def test_what_was_learned_of_another_robot_is_not_used(lab: Lab, slow: SlowThrea
 
 def test_many_labs_are_identified_one_after_the_other(store: LoopCache, slow: SlowThread) -> None:
     labs = [Lab(store) for _ in range(3)]
+    for each in labs:
+        each.identification = Identification()
     do(labs[0], c.Identify())
     wait_for(lambda: slow.begun, LONGEST)
     for lab in labs:

@@ -11,11 +11,14 @@ import numpy as np
 import pytest
 
 import onpath
+from onpath.lessons.labels import parameter_help
+from onpath.lessons.words import Words
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.control.laws.contouring import contouring
 from onpath.models.control.laws.disturbance_observer import disturbance_observer
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.laws.virtual_constraint import virtual_constraint
+from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.studies.arena import run_under
 from onpath.models.studies.comparison import Contest, Outcome, compare
@@ -279,6 +282,24 @@ def test_with_a_payload_that_it_does_not_know_the_fastest_speed_is_too_fast() ->
             run = onpath.simulate(law=each, duration=4, **values)
             shares.append(100 * saturated(run, 1.0, limit))
     assert shares == pytest.approx(said, abs=1)
+
+
+def test_what_is_said_where_a_payload_is_set_is_what_it_does() -> None:
+    """What would hang less than 10 mm low without the integral is lifted by it; else 10 mm are."""
+    spec, most = specs(ROBOTS["seven_axes"].parameters)["payload"], 1e3 * INTEGRAL_REACH
+    for language in ("en", "de"):
+        told = parameter_help("payload", spec, Words(language))
+        assert stated("(?:would otherwise hang|als sonst) # mm", told) == [most]
+    for payload, at_most in ((0.45, 3.0), (3.0, 44.0)):
+        off = [
+            1e3 * onpath.simulate("seven_axes", payload=payload, duration=5, K3=k3).distance[3000:]
+            for k3 in (ROBOTS["seven_axes"].parameters().K3, 0.0)
+        ]
+        assert off[0].max() < at_most
+        if off[1].max() < most:
+            assert off[0].max() < off[1].max() / 2
+        else:
+            assert off[0].max() == pytest.approx(off[1].max() - most, abs=1.5)
 
 
 def upright(law: str, **values: Any) -> onpath.Run:

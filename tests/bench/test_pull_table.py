@@ -1,0 +1,43 @@
+"""The table of pulls in README.md is what pulls give. It takes minutes, so parts are drawn."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.pulls import COUNT, RATES, drawn, parameters, paths, shown
+
+NAMES = sorted(paths())
+
+
+def test_the_table_has_every_robot_and_says_where_none_is_run() -> None:
+    table = shown()
+    assert [*table] == [(robot, rate) for robot in ROBOTS for rate in RATES]
+    for (robot, rate), told in table.items():
+        assert told is None or told[1] <= COUNT * len(NAMES)
+        assert (told is None) == (ROBOTS[robot].caution(parameters(robot, rate)) is not None)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("rate", RATES)
+@pytest.mark.parametrize("robot", ROBOTS)
+def test_a_part_of_the_pulls_is_no_worse_than_the_table_says(robot: str, rate: int) -> None:
+    told = shown()[robot, rate]
+    if told is None:
+        return
+    stops, _, late = told
+    names = random.Random(f"{robot} {rate}").sample(NAMES, 2)
+    cell = drawn(robot, rate, names=names)
+    assert cell.stops <= stops
+    assert 1e3 * cell.late <= late + 0.1 * max(1.0, late)
+
+
+@pytest.mark.thorough
+def test_a_row_of_the_table_is_what_is_drawn() -> None:
+    """A row with stops: which runs do stop depends on the last bit, and so on the processor."""
+    for rate in RATES:
+        cell, told = drawn("cart_pendulum", rate), shown()["cart_pendulum", rate]
+        assert told is not None and len(cell.results) == told[1]
+        assert abs(cell.stops - told[0]) <= 2
