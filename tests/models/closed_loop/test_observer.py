@@ -190,7 +190,7 @@ def test_no_pull_stops_the_follower_and_it_is_back_within_twice_its_distance(
     for number, (path, curve) in enumerate(paths().items()):
         seeds = [{**SENSORS, "control_rate": rate, "seed": float(seed)} for seed in range(4)]
         alone = max(farthest(name, FOLLOWER, [(curve, each) for each in seeds]))
-        bound = max(2 * alone, 2 * NEAR[rate])
+        bound = max(2 * alone, NEAR[rate])
         for each in troubled(name, parameters, FOLLOWER, 100 * rate + number, PULLS, curve):
             assert each.fault is None, (path, each.trouble, each.fault)
             assert each.late <= bound, (path, each.trouble, each.late, alone)
