@@ -70,7 +70,7 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
 """Made with version 1, when K3 was 0 and acted in the tracker, too; and what they meant then."""
 VERSION_1 = ("five_bar", "two_link_arm", "flexible")
 """The robots that there were."""
-SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0}
+SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0, "observer_bound": 10.0}
 """Former values of what every robot has had since version 2."""
 
 
