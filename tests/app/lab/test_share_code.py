@@ -73,6 +73,7 @@ def test_codes_of_version_1_stay_readable() -> None:
         "tracker_integral": "on",
         "at_limit_for": "path_following",
         "observer_time": 0.0,
+        "observer_bound": 10.0,
     }
 
 
