@@ -63,6 +63,12 @@ def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
     return [each for each in verdicts if each.words]
 
 
+def way_of(task: Task, record: Record) -> int:
+    """The number of the way in which a task is passed, from 1; 0 if it has none that holds."""
+    ways = enumerate(task.way, 1)
+    return next((i for i, way in ways if verdict(way.when, record, ENGLISH).passed), 0)
+
+
 @singledispatch
 def verdict(check: Check, record: Record, words: Words) -> Verdict:
     """Whether a check is satisfied by what has happened.

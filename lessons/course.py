@@ -256,7 +256,7 @@ def _play_faults(table: Any, robot: str) -> Iterator[str]:
 def _reference_faults(reference: Reference, robot: str) -> Iterator[str]:
     if robot in ROBOTS:
         yield from fair_faults(reference, ROBOTS[robot])
-    for script in (reference.solution, reference.failure):
+    for script in (reference.solution, reference.failure, *reference.variant):
         yield from script_faults(script, robot)
 
 
@@ -312,7 +312,13 @@ def _asked(step: Step) -> dict[str, object]:
     """What a step asks, as in `_structure`."""
     blocks = [block for block in step.blocks if not isinstance(block, Text | Task)]
     return {
-        "tasks": [(task.id, task.check, len(task.hints), task.best) for task in step.tasks()],
+        "tasks": [
+            (
+                *(task.id, task.check, len(task.hints), task.best, task.exploratory),
+                [way.when for way in task.way],
+            )
+            for task in step.tasks()
+        ],
         "order of texts and questions": [type(block) for block in step.blocks],
         "right options": [
             [o.right for o in b.options] for b in blocks if isinstance(b, Choice | Quiz)

@@ -61,6 +61,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         answers, truths: of the predictions, by step.
         played: steps whose script has been run.
         tasks: ids of passed tasks -> best value so far, or 0 for tasks without one.
+        ways: the way in which a task was passed last, by task; see `lessons.checks.way_of`.
         hints: number of hints shown, by task.
         quiz: chosen options, by step and block.
         numbers: answers that are numbers, by step and block.
@@ -78,6 +79,7 @@ class Notes(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     truths: dict[Key, Truth] = {}
     played: Annotated[tuple[Key, ...], msgspec.Meta(max_length=1000)] = ()
     tasks: dict[Key, float] = {}
+    ways: dict[Key, Index] = {}
     hints: dict[Key, Index] = {}
     quiz: dict[Key, Index] = {}
     numbers: dict[Key, float] = {}

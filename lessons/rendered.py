@@ -53,7 +53,11 @@ def _(part: NumberQuestion | OpenQuestion) -> NumberQuestion | OpenQuestion:
 
 @rendered.register
 def _(part: Task) -> Task:
-    return replace(_html(part, "text", "passed"), hints=tuple(map(to_html, part.hints)))
+    return replace(
+        _html(part, "text", "passed"),
+        hints=tuple(map(to_html, part.hints)),
+        way=tuple(_html(way, "passed") for way in part.way),
+    )
 
 
 def _html(part: Any, *names: str) -> Any:

@@ -265,8 +265,9 @@ class Lesson(msgspec.Struct, frozen=True):
         return [task for step in self.steps for task in step.tasks()]
 
     def required_tasks(self) -> list[Task]:
-        """The tasks of all steps that are not optional."""
-        return [task for step in self.steps if not step.optional for task in step.tasks()]
+        """The tasks of all steps that are not optional, without those to be found by trying."""
+        steps = (step for step in self.steps if not step.optional)
+        return [task for step in steps for task in step.tasks() if not task.exploratory]
 
     def required_steps(self) -> int:
         """Number of the last step that is not optional, from 1."""

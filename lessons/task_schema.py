@@ -132,6 +132,18 @@ class Once(Bound, frozen=True, tag="once", tag_field="kind"):
 Check = Bound | Compare | Better | Event | Order | Setting | Only | Once
 
 
+class Way(Data, frozen=True):
+    """One way of passing a task, after which something else is said.
+
+    Attributes:
+        when: what holds at the moment when a task is passed in this way.
+        passed: as in `Task`.
+    """
+
+    when: Bound | Compare | Event | Order | Setting
+    passed: str
+
+
 class Task(Data, frozen=True):
     """What the student has to do, and how the lab checks it.
 
@@ -141,6 +153,9 @@ class Task(Data, frozen=True):
         hints: shown one at a time.
         best: a quantity of the follower to minimise; the student's best value is kept.
         passed: an explanation of why it worked, shown once the task is passed.
+        way: other explanations; the first whose condition holds is shown instead of `passed`.
+        exploratory: whether the solution is meant to be found by trying. Such a task counts
+            nothing in a grade, and students who draw at random may pass it.
     """
 
     id: str
@@ -149,16 +164,31 @@ class Task(Data, frozen=True):
     hints: tuple[str, ...] = ()
     best: str = ""
     passed: str = ""
+    way: tuple[Way, ...] = ()
+    exploratory: bool = False
+
+    @property
+    def evaluated(self) -> tuple[Check, ...]:
+        """Its checks, and the conditions of its ways."""
+        return (*self.check, *(way.when for way in self.way))
+
+    @property
+    def explanations(self) -> dict[int, str]:
+        """What is said once it is passed, by the number of the way; 0 is `passed`."""
+        texts = (self.passed, *(way.passed for way in self.way))
+        return {number: text for number, text in enumerate(texts) if text}
 
 
 class Reference(Data, frozen=True):
-    """Scripts for one task: one that solves it, and one that does not.
+    """Scripts for one task: some that solve it, and one that does not.
 
     Attributes:
+        variant: other solutions, as different as those of thoughtful students are.
         fair: controls with which the task may be passed besides those of the solution; see
             `lessons.cheating`.
     """
 
     solution: Script
     failure: Script
+    variant: tuple[Script, ...] = ()
     fair: tuple[str, ...] = ()

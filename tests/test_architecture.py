@@ -263,6 +263,15 @@ def test_public_parts_and_own_private_names_are_no_private_parts() -> None:
     assert private_parts(ast.parse(public)) == private_parts(ast.parse(own)) == []
 
 
+def test_files_of_pages_come_in_one_way() -> None:
+    """With the limits of file_uploads.py."""
+
+    def hears_uploads(file: Path) -> bool:
+        return ".on_upload(" in file.read_text("utf-8")
+
+    assert offenders(hears_uploads) == ["app/viser_adapter/file_uploads.py: True"]
+
+
 def test_rules_would_notice() -> None:
     bad = ast.parse("import threading\nfrom viser import x\ndef f():\n    import app.cli.main\n")
     assert packages(bad) == {"threading", "viser", "app"}

@@ -37,7 +37,7 @@ _STUDENT = ("number", "nickname")
 _WHERE = ("lesson", "title", "step", "kind")
 ANSWERS = (
     *(*_STUDENT, *_WHERE, "item", "result", "chosen", "right", "value", "text"),
-    *("sure", "reason", "why"),
+    *("sure", "reason", "why", "hints"),
 )
 SKETCHES = (*_STUDENT, *_WHERE, "time", "drawn")
 
@@ -68,7 +68,9 @@ def class_record(
     The sheet Answers has a row for each prediction, task and question of every lesson that a
     student has begun. `result` is "answered", "skipped", "open" (neither), "passed" (a task), or
     "unknown" (the options have changed since). `right` is 1 or 0; `chosen` and `reason` are the
-    letters of options; `value` is a number, and `text` the student's own words. The sheet Sketches
+    letters of options; `value` is a number, and `text` the student's own words. `hints` is the
+    number of a task's hints that were shown. `right` is empty for a task that is meant to be found
+    by trying, and so counts nothing. The sheet Sketches
     has the points of drawn curves, in the units of their axes.
 
     Args:
@@ -148,13 +150,15 @@ def _answers(lesson: Lesson, notes: Notes) -> Iterator[Row]:
     for index, step in enumerate(lesson.steps):
         for task in step.tasks():
             best = notes.tasks.get(task.id)
-            row = {
+            row: dict[str, str | int | float] = {
                 "step": index + 1,
                 "kind": "task",
                 "item": task.id,
-                "right": int(best is not None),
+                "result": "open" if best is None else "passed",
+                "hints": notes.hints.get(task.id, 0),
             }
-            row["result"] = "open" if best is None else "passed"
+            if not task.exploratory:
+                row["right"] = int(best is not None)
             yield {**row, **({"value": best} if task.best and best is not None else {})}
         yield from _questions(index, step, notes)
 

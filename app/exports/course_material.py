@@ -39,6 +39,11 @@ class AskedBlock:
     figure: str = ""
     solution: tuple[str, ...] = ()
 
+    @property
+    def exploratory(self) -> bool:
+        """Whether it is a task to be found by trying, which counts nothing in a grade."""
+        return isinstance(self.block, Task) and self.block.exploratory
+
 
 @dataclass(frozen=True, slots=True)
 class TaughtStep:

@@ -85,31 +85,34 @@ def import_libraries() -> None:
 
 
 class PathReader:
-    """Reads the files of one tab, one at a time.
+    """Reads the files of one tab, one at a time."""
 
-    Args:
-        language: of the remarks.
-    """
-
-    def __init__(self, language: str) -> None:
-        self._language, self._busy = language, False
+    def __init__(self) -> None:
+        self._busy = False
 
     def read(
         self,
         upload: Upload,
+        language: str,
         follow: Callable[[FollowCurve], None],
         refuse: Callable[[Exception | Message], None],
     ) -> None:
-        """Read a file in the background, and call one of the functions in another thread."""
+        """Read a file in the background, and call one of the functions in another thread.
+
+        Args:
+            language: of the remarks.
+            follow: takes the command that follows the path.
+            refuse: takes the reason if there is none.
+        """
         if self._busy:
-            refuse(Message("export.busy"))
+            refuse(Message("error.file_busy"))
             return
         self._busy = True
 
         def work() -> None:
             try:
                 process.call(STARTING, import_libraries)
-                found = process.call(SECONDS, read_upload, upload, self._language)
+                found = process.call(SECONDS, read_upload, upload, language)
                 if isinstance(found, FollowCurve):
                     follow(found)
                 else:

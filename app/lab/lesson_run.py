@@ -254,8 +254,8 @@ class LessonRun(LessonState):
         if self._player is not None and self._trace is not None:
             self._trace.follow(session)
         if self.step is not None and self.step.tasks():
-            for task, value in self._judge.follow(session, self.step.tasks(), self.words):
-                self._pass(task.id, value)
+            for task, value, way in self._judge.follow(session, self.step.tasks(), self.words):
+                self._pass(task.id, value, way)
 
     def truth(self, session: Session) -> Truth | None:
         """The actual curve of the predicted quantity, from now or from the last demonstration."""
@@ -265,10 +265,13 @@ class LessonRun(LessonState):
         self._trace.follow(session)
         return self._trace.truth()
 
-    def _pass(self, task: str, value: float) -> None:
-        best = self.notes.tasks.get(task)
+    def _pass(self, task: str, value: float, way: int) -> None:
+        notes = self.notes
+        best = notes.tasks.get(task)
         if best is None or value < best:
-            self.note(tasks={**self.notes.tasks, task: round(value, 3)})
+            self.note(tasks={**notes.tasks, task: round(value, 3)})
+        if way != notes.ways.get(task, 0):
+            self.note(ways={**notes.ways, task: way})
 
     def _go(self, index: int, lab: LessonLab) -> None:
         lesson = self.lesson

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.session import Session
-from onpath.lessons.checks import Verdict, judge, statistic
+from onpath.lessons.checks import Verdict, judge, statistic, way_of
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.record import Record
 from onpath.lessons.task_schema import Task, Window
@@ -29,8 +29,8 @@ class TaskJudge:
 
     def follow(
         self, session: Session, tasks: list[Task], words: Words
-    ) -> Iterator[tuple[Task, float]]:
-        """Judge the tasks, and yield those that are passed, with the value to be improved."""
+    ) -> Iterator[tuple[Task, float, int]]:
+        """Judge the tasks; yield those that are passed, the value to be improved, and the way."""
         record = record_of(session, self.begin, self._earlier.values)
         self._earlier.follow(record, tasks)
         for task in tasks:
@@ -40,7 +40,7 @@ class TaskJudge:
                 self.verdicts[task.id] = verdicts
             if passed:
                 self._passed[task.id] = record.run
-                yield task, _best(task, record)
+                yield task, _best(task, record), way_of(task, record)
 
 
 def _best(task: Task, record: Record) -> float:

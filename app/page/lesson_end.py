@@ -63,8 +63,9 @@ class EndedPart:
     def passed(self) -> list[bool]:
         """For each required task of these steps, whether it is passed."""
         steps = [self.chapter.lesson.steps[index] for index in self.steps]
-        steps = [step for step in steps if not step.optional]
-        return [task.id in self.chapter.notes.tasks for step in steps for task in step.tasks()]
+        here = {task.id for step in steps for task in step.tasks()}
+        required = [task.id for task in self.chapter.lesson.required_tasks() if task.id in here]
+        return [task in self.chapter.notes.tasks for task in required]
 
 
 def ended_parts(run: LessonView) -> list[EndedPart]:

@@ -132,7 +132,13 @@ def _part(lesson: Lesson, place: int, run: LessonView) -> StepPart | None:
         shown = None if html is None else msgspec.structs.replace(block, html=html)
         return None if shown is None else replace(part, block=shown)
     if isinstance(block, Task):
-        return replace(part, hints=notes.hints.get(block.id, 0), told=block.id in notes.tasks)
+        way = notes.ways.get(block.id, 0)
+        return replace(
+            part,
+            hints=notes.hints.get(block.id, 0),
+            way=way if way in block.explanations else 0,
+            told=block.id in notes.tasks,
+        )
     if isinstance(block, Quiz):
         unknown = run.is_unknown(key)
         return replace(
@@ -221,6 +227,8 @@ def _notes(run: LessonView) -> dict[str, Any]:
         "truths": {} if truth is None else {asked: curves_data(truth)},
         "played": dict.fromkeys(notes.played, True),
         "tasks": notes.tasks,
+        "ways": notes.ways,
+        "hints": notes.hints,
         "first": {},
         **here,
     }

@@ -81,6 +81,7 @@ class PanelFactory:
         words: Words,
         post: Post,
         exporter: Exporter,
+        files: PathReader,
         submit: Submit,
         scene: Scene,
         overlays: Overlays,
@@ -91,7 +92,7 @@ class PanelFactory:
         self._gui, self._words, self._post = gui, words, post
         self._exporter, self._submit = exporter, submit
         self._scene, self._context = scene, context
-        self._files = PathReader(words.language)
+        self._files = files
 
     def beside_strip(self, first: PageSnapshot) -> list[Part]:
         """Build all panels except those that the strip replaces; see assets/web/lab.ts."""

@@ -63,7 +63,7 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     curve = drawn_curve(robot, path)
     width = tube_width(curve)
     shown = SPREAD * min(width, WIDEST)
-    step = max(_round_step(shown / OFFSETS), LEAST_STEP)
+    step = _round_step(max(shown / OFFSETS, LEAST_STEP))
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
     frames = curve_frames(curve, theta)
     across = np.arange(1, floor(shown / step + 1e-9) + 1) * step

@@ -118,7 +118,7 @@ class LabServer:
         law: str = "",
         **listening: Any,
     ) -> None:
-        listening.setdefault("limits", Limits(max_upload_bytes=2 * path_upload.MOST_BYTES))
+        listening.setdefault("limits", Limits(max_upload_bytes=path_upload.MOST_BYTES))
         self._store, self._privacy_url = store, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
         self._origins: Sequence[str] = listening.get("allowed_origins", ())

@@ -29,6 +29,7 @@ class StepPart:
         lettered: whether the options have letters, of which a class may speak.
         told: whether the page has the answers, which it may show at the right time.
         hints: how many hints of a task are shown; None if the reader unfolds them.
+        way: the way in which a task was passed; None if the page's script decides that.
         remark: what is said above a question; may be empty.
         aside: what the student has said beside an answer, if anything.
     """
@@ -41,6 +42,7 @@ class StepPart:
     lettered: bool = False
     told: bool = True
     hints: int | None = None
+    way: int | None = None
     remark: str = ""
     aside: Markup | None = None
 

@@ -13,6 +13,7 @@ from viser.infra import ClientId, WebsockMessageHandler
 from websockets.asyncio.server import ServerConnection
 
 from onpath.app.common.error_log import log_error, log_warning
+from onpath.app.viser_adapter.file_uploads import FileUploads
 from onpath.app.viser_adapter.widget_validation import Refused, accepted_value
 
 OWN_FILES = 48  # open files besides the connections: database, pipes, modules
@@ -102,7 +103,9 @@ class MessageFilter:
         scope: WebsockMessageHandler,
         gui: viser.GuiApi,
         limits: Limits,
+        uploads: FileUploads,
     ) -> None:
+        self._uploads = uploads
         self._connections = server._websock_server._live_connections
         self._gui = gui
         self._limits = limits
@@ -129,9 +132,9 @@ class MessageFilter:
                     await self._update(client_id, widget, message)
                 return
             case wire.FileTransferStartUpload():
-                passes = self._takes_file(client_id, message)
+                passes = self._uploads.begins(self._gui, message)
             case wire.FileTransferPart():
-                passes = self._takes_part(message)
+                passes = self._uploads.takes(self._gui, message)
             case _:
                 passes = True
         if passes:
@@ -153,22 +156,6 @@ class MessageFilter:
             if accepted != asked and not widget._impl.removed:
                 truth = wire.GuiUpdateMessage(message.uuid, {"value": widget.value})
                 self._gui._websock_interface.queue_message(truth)
-
-    def _takes_file(self, client_id: ClientId, message: Any) -> bool:
-        widget: Any = self._gui._gui_input_handle_from_uuid.get(message.source_component_uuid)
-        under_way = self._gui._current_file_upload_states.values()
-        return (
-            isinstance(widget, viser.GuiUploadButtonHandle)
-            and not widget.disabled
-            and not any(state["client_id"] == client_id for state in under_way)
-            and 0 <= message.part_count <= message.size_bytes <= self._limits.max_upload_bytes
-        )
-
-    def _takes_part(self, message: Any) -> bool:
-        state = self._gui._current_file_upload_states.get(message.transfer_uuid)
-        if state is None:
-            return False
-        return state["transferred_bytes"] + len(message.content) <= state["total_bytes"]
 
 
 _warned: weakref.WeakSet[Any] = weakref.WeakSet()

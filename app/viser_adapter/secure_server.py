@@ -32,6 +32,7 @@ from onpath.app.viser_adapter.addresses import not_here, place_of, redirection, 
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.data_channel import FAMILY, SUBPROTOCOL, DataChannel
+from onpath.app.viser_adapter.file_uploads import FileUploads
 from onpath.app.viser_adapter.message_event import let_threads_send
 from onpath.app.viser_adapter.message_filter import Limits, MessageFilter
 from onpath.app.viser_adapter.page_scripts import add_scripts
@@ -134,11 +135,12 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
     for message in _SHARE_TUNNEL:
         websock.unregister_handler(message)
     _log_errors_of_callbacks(server)
+    uploads = FileUploads(limits.max_upload_bytes)
 
     def guard(connection: WebsockClientConnection) -> None:
         let_threads_send(connection)
         handler: Any = connection._incoming_handlers[wire.GuiUpdateMessage][0]
-        of_client = MessageFilter(server, connection, handler.__self__, limits)
+        of_client = MessageFilter(server, connection, handler.__self__, limits, uploads)
         client = ClientId(connection.client_id)
 
         def handle(message: Any) -> None:
@@ -149,7 +151,7 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
             secured.handle = handle
 
     let_threads_send(websock)
-    of_server = MessageFilter(server, websock, server.gui, limits)
+    of_server = MessageFilter(server, websock, server.gui, limits, uploads)
     websock.on_client_connect(guard)
 
 

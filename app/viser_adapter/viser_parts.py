@@ -26,17 +26,17 @@ TOUCHED = {
         " _snapshot_container_context _websock_interface print_threadpool_errors svg_from_icon"
     ),
     "_gui_handles.py": (
-        "_impl _queue_update parent_container_id print_task_error removed svg_from_icon sync_cb"
-        " trigger_cb update_cb"
+        "UploadedFile _impl _queue_update parent_container_id print_task_error removed"
+        " svg_from_icon sync_cb trigger_cb update_cb"
     ),
     "_icons.py": "ICONS_DIR svg_from_icon",
     "_messages.py": (
-        "CommandTriggerMessage FileTransferPart FileTransferStartUpload GuiUpdateMessage HotkeyKey"
-        " ImageMessage ImageProps KeyModifier LocalStorageGetItemRequestMessage"
-        " LocalStorageGetItemResponseMessage Message SceneNodeClickMessage SceneNodeDragMessage"
-        " SceneNodeUpdateMessage SetCameraFovMessage SetCameraLookAtMessage"
-        " SetCameraPositionMessage SetCameraUpDirectionMessage SetPositionMessage"
-        " ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
+        "CommandTriggerMessage FileTransferPart FileTransferPartAck FileTransferStartUpload"
+        " GuiUpdateMessage HotkeyKey ImageMessage ImageProps KeyModifier"
+        " LocalStorageGetItemRequestMessage LocalStorageGetItemResponseMessage Message"
+        " SceneNodeClickMessage SceneNodeDragMessage SceneNodeUpdateMessage SetCameraFovMessage"
+        " SetCameraLookAtMessage SetCameraPositionMessage SetCameraUpDirectionMessage"
+        " SetPositionMessage ShareUrlDisconnect ShareUrlRequest ViewerCameraMessage"
     ),
     "_scene_api.py": (
         "_children_from_node_name _encode_image_binary _handle_from_node_name _owner_id"

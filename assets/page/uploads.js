@@ -1,9 +1,9 @@
-// Sends only the beginning of a file that is too large, so that the lab can refuse it with a message.
-// If all of it were sent, the lab would silently drop the parts, or close the connection.
+// Sends only the beginning of a file that is too large. The lab refuses it with a message; if all of it were
+// sent, the lab would close the connection.
 (() => {
   "use strict";
 
-  const MOST = 1_500_000; // bytes; more than any file that is read, less than the lab receives
+  const MOST = 1_500_000; // bytes; more than any file that is read
 
   document.addEventListener("change", (event) => {
     const input = event.target;

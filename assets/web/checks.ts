@@ -38,6 +38,11 @@ export function judge(checks: Check[], record: RunRecord, words: Words): Verdict
     return checks.map(check => verdict(check, record, words)).filter(each => each.words)
 }
 
+/** The number of the way in which a task is passed, from 1; 0 if it has none that holds. */
+export function wayOf(ways: Check[], record: RunRecord, words: Words): number {
+    return ways.findIndex(check => verdict(check, record, words).passed) + 1
+}
+
 function verdict(check: Check, record: RunRecord, words: Words): Verdict {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)

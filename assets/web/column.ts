@@ -58,6 +58,7 @@ class RemoteStudent implements Student {
     }
     chooses(question: string, option: number): void { this.engine.send({ do: "AnswerQuiz", block: placeOf(question), option }) }
     gives(question: string, given: number): void { this.engine.send({ do: "AnswerNumber", block: placeOf(question), given }) }
+    reads(): void {} // the server shows the hints, and so knows
     writes(question: string, typed: string): void { this.engine.send({ do: "AnswerInWords", block: placeOf(question), typed }) }
     result({ id }: TaskData): Result | null {
         const verdicts = this.verdicts[id]

@@ -4,7 +4,7 @@ import type { StepData } from "./lesson_data"
 import { given, type Notes } from "./notes"
 import { accepted } from "./own"
 
-/** Shares, from 0 to 1; optional steps do not count. */
+/** Shares, from 0 to 1; optional steps and tasks to be found by trying do not count. */
 export interface Grade {
     /** The share of parts that are done: steps opened, runs seen to their end, predictions
      * committed, questions answered, tasks passed. */
@@ -34,7 +34,7 @@ export function gradeOf(steps: StepData[], notes: Notes): Grade {
             else if (block.kind === "open") parts.push(key in notes.written)
             else if (block.kind === "quiz") judged(first !== undefined, first === block.right)
             else if (block.kind === "number") judged(first !== undefined, first !== undefined && accepted(first, block))
-            else if (block.kind === "task" && block.checks) judged(block.id in notes.tasks, block.id in notes.tasks)
+            else if (block.kind === "task" && block.checks && !block.exploratory) judged(block.id in notes.tasks, block.id in notes.tasks)
         })
     })
     return { progress: share(parts) ?? 1, score: begun ? share(right) : null }

@@ -99,6 +99,10 @@ export interface TaskData {
     id: string
     best: string
     checks?: Check[]
+    /** Conditions of the ways in which it may be passed; see lessons/task_schema.py. */
+    ways?: Check[]
+    /** Whether it counts nothing in a grade. */
+    exploratory?: boolean
 }
 
 export interface SketchData {

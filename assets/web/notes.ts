@@ -27,6 +27,10 @@ export interface Notes {
     truths: Record<string, Curves>
     played: Record<string, boolean>
     tasks: Record<string, number>
+    /** The way in which each task was passed last, if it is not the usual one, 0. */
+    ways: Record<string, number>
+    /** Number of hints that were read, by task. */
+    hints: Record<string, number>
     quiz: Record<string, number>
     /** First answers to quizzes and questions for numbers, after which the page shows the right ones. */
     first: Record<string, number>
@@ -37,7 +41,7 @@ export interface Notes {
 const FORMAT = "onpath-progress-1"
 
 export function noNotes(): Notes {
-    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, quiz: {}, first: {}, numbers: {}, written: {} }
+    return { step: 0, seen: 0, answers: {}, truths: {}, played: {}, tasks: {}, ways: {}, hints: {}, quiz: {}, first: {}, numbers: {}, written: {} }
 }
 
 export function notesOf(progress: Progress, lesson: string): Notes {
@@ -103,6 +107,6 @@ function isNotes(read: unknown): read is Partial<Notes> {
     const curves = fields({ times: numbers, tracker: numbers, follower: numbers })
     return fields({
         step: place, seen: place, answers: every(answer), truths: every(curves), played: every(flag),
-        tasks: every(number), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
+        tasks: every(number), ways: every(place), hints: every(place), quiz: every(place), first: every(number), numbers: every(number), written: every(text),
     })(read)
 }

@@ -1,6 +1,6 @@
 // What a student has done in a lesson, and whether it is right.
 
-import { judge, statistic, type Verdict } from "./checks"
+import { judge, statistic, wayOf, type Verdict } from "./checks"
 import { gradeOf } from "./grade"
 import type { PageData, TaskData } from "./lesson_data"
 import { keep, notesOf, type Answer, type Curves, type Notes } from "./notes"
@@ -19,6 +19,8 @@ export interface Student {
     chooses(question: string, option: number): void
     gives(question: string, number: number): void
     writes(question: string, text: string): void
+    /** A hint of a task is read, the first of which is number 1. */
+    reads(task: string, hint: number): void
     /** A run was seen to its end; `asked` is the step of the prediction that it shows. */
     sees(step: number, asked: number, truth: Curves): void
     /** How far a task is done in the present run; null if that is unknown. */
@@ -74,19 +76,27 @@ export class LocalStudent implements Student {
         this.save()
     }
 
+    reads(task: string, hint: number): void {
+        const { hints } = this.notes
+        if (hint <= (hints[task] ?? 0)) return
+        hints[task] = hint
+        this.save()
+    }
+
     sees(step: number, asked: number, truth: Curves): void {
         this.notes.truths[String(asked)] = truth
         this.notes.played[String(step)] = true
         this.save()
     }
 
-    result({ checks, id, best }: TaskData): Result | null {
+    result({ checks, ways, id, best }: TaskData): Result | null {
         if (!checks || !this.recorded) return null
         const record = this.recorded.record()
         const verdicts = judge(checks, record, this.page.words)
         if (verdicts.every(verdict => verdict.passed)) {
             const all = record.times.map(() => true)
-            this.pass(id, best ? (statistic(record, "follower", best, "max", all) ?? 0) : 0)
+            const value = best ? (statistic(record, "follower", best, "max", all) ?? 0) : 0
+            this.pass(id, value, wayOf(ways ?? [], record, this.page.words))
         }
         return { verdicts, run: record.run }
     }
@@ -98,11 +108,14 @@ export class LocalStudent implements Student {
         this.changed()
     }
 
-    /** A task is passed, with a value of which the least is kept. */
-    private pass(task: string, value: number): void {
-        const { tasks } = this.notes
-        if (tasks[task] !== undefined && value >= tasks[task]) return
-        tasks[task] = Math.round(1e3 * value) / 1e3
+    /** A task is passed in a way, with a value of which the least is kept. */
+    private pass(task: string, value: number, way: number): void {
+        const { tasks, ways } = this.notes
+        const worse = tasks[task] !== undefined && value >= tasks[task]
+        if (worse && way === (ways[task] ?? 0)) return
+        if (!worse) tasks[task] = Math.round(1e3 * value) / 1e3
+        if (way) ways[task] = way
+        else delete ways[task]
         this.save()
     }
 }

@@ -18,6 +18,10 @@ export class Task {
         private readonly student: Student,
         private readonly passed: () => void,
     ) {
+        for (const hint of element.querySelectorAll<HTMLDetailsElement>("[data-hint]"))
+            hint.addEventListener("toggle", () => {
+                if (hint.open) student.reads(data.id, Number(hint.dataset["hint"]))
+            })
         this.show([])
     }
 
@@ -35,14 +39,16 @@ export class Task {
         const { page, element, data } = this
         const best = this.student.notes.tasks[data.id]
         const passed = best === undefined ? "" : data.best ? `: ${localized(general(best, 3), page)}` : " "
-        const text = JSON.stringify([verdicts, passed])
+        const way = this.student.notes.ways[data.id] ?? 0
+        const text = JSON.stringify([verdicts, passed, way])
         if (text === this.shown) return
         this.shown = text
         const lines = verdicts.map(verdict => made("li", verdict.passed ? "right" : "", `${verdict.passed ? "✓" : "○"} ${verdict.words}`))
         if (passed) lines.push(made("li", "right", `✓ ${said(page, "lesson.passed")}${passed.trim()}`))
         element.querySelector(".verdicts")!.replaceChildren(...lines)
-        const why = element.querySelector<HTMLDetailsElement>(".after")
-        if (why) why.hidden = !passed
-        if (why && passed) why.open = true
+        const whys = [...element.querySelectorAll<HTMLDetailsElement>(".after")]
+        const told = passed ? whys.find(each => Number(each.dataset["way"]) === way) ?? whys[0] : undefined
+        for (const each of whys) each.hidden = each !== told
+        if (told) told.open = true
     }
 }

@@ -77,7 +77,7 @@ def task_faults(task: Task, robot: str) -> Iterator[str]:
         yield f"task {task.id!r} has no check"
     if task.best:
         yield from one_of(task.best, QUANTITIES, "quantity")
-    for check in task.check:
+    for check in task.evaluated:
         yield from _check_faults(check, ROBOTS.get(robot))
 
 

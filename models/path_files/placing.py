@@ -100,8 +100,6 @@ def rounded(points: Array, closed: bool, radius: float) -> Array:
     if closed and len(points) > 1 and np.linalg.norm(points[0] - points[-1]) < FLAT:
         points = points[:-1]
     corners = _corners(points, closed)
-    if len(corners) > CORNERED:
-        raise CodedError("error.file_corners", count=len(corners), most=CORNERED)
     if len(corners) < 3:
         return corners
     before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
@@ -132,12 +130,23 @@ def _arc(a: Array, corner: Array, b: Array, radius: float) -> list[Array]:
 
 
 def _corners(points: Array, closed: bool) -> Array:
-    """The points without those on straight lines between others, by Ramer, Douglas and Peucker."""
+    """The points without those on straight lines between others, by Ramer, Douglas and Peucker.
+
+    Raises:
+        CodedError: they are more than `CORNERED`.
+    """
     if closed and len(points) > 2:
         far = int(np.linalg.norm(points - points[0], axis=1).argmax())
         halves = points[: far + 1], np.vstack([points[far:], points[:1]])
-        return np.vstack([_simplified(half)[:-1] for half in halves])
+        found = np.vstack([_simplified(half)[:-1] for half in halves])
+        _check_corners(len(found))
+        return found
     return _simplified(points)
+
+
+def _check_corners(count: int) -> None:
+    if count > CORNERED:
+        raise CodedError("error.file_corners", most=CORNERED)
 
 
 def _simplified(points: Array) -> Array:
@@ -156,6 +165,7 @@ def _simplified(points: Array) -> Array:
         if distance[farthest] > FLAT:
             middle = begin + 1 + farthest
             kept.add(middle)
+            _check_corners(len(kept))  # before it takes long: the time goes with their number
             waiting += [(begin, middle), (middle, end)]
     return points[sorted(kept)]
 

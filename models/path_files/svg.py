@@ -149,7 +149,7 @@ def _continuous(path: Any, line: int) -> Iterator[Array]:
     """The parts of a path without gaps, as complex points."""
     from svgpathtools import Line
 
-    part = list[complex]()
+    part, count = list[complex](), 0
     steps = np.arange(1, CURVED + 1) / CURVED
     for segment in path:
         if part and abs(segment.start - part[-1]) > 1e-9 * max(1.0, abs(part[-1])):
@@ -158,6 +158,8 @@ def _continuous(path: Any, line: int) -> Iterator[Array]:
         if not part:
             part.append(complex(segment.start))
         between = (1.0,) if isinstance(segment, Line) else steps
+        count += len(between)
+        check_count(count, line)
         with np.errstate(all="ignore"):
             part += [complex(segment.point(float(t))) for t in between]
         if not np.isfinite(part[-1]):

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from onpath.models.arrays import Array
+from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.curves import Curve
 
 SAMPLES = 240
@@ -50,7 +51,12 @@ class CurveFrames:
 
 
 def tube_width(curve: Curve) -> float:
-    """W, the radius of the largest tube with a unique closest point, [m]; infinite for a line."""
+    """W, the radius of the largest tube with a unique closest point, [m]; infinite for a line.
+
+    It is 0 for a path that crosses itself.
+    """
+    if any(each.check == "crosses" for each in ambiguities(curve)):
+        return 0.0
     theta = _compared(curve)
     points, tangents = curve.at(theta), _tangents(curve, theta)
     gaps = points - points[:, None]

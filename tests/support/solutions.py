@@ -1,4 +1,4 @@
-"""Gestures that pass every task of the course, as its last hint says."""
+"""Gestures that pass every task of the course."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TWO_HOLDS = (HOLD, Wait(2.2), LET_GO, Wait(2), HOLD, Wait(2.2), LET_GO, Wait(3.2
 SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
     "01-path-or-timetable": {
         "hold-two-seconds": (Enter("K1", 600), Enter("K2", 50), Key("h"), Wait(3), Key("h")),
-        "thirty-times": (Enter("K1", 1600), Enter("K2", 80), HOLD, Wait(3), LET_GO),
+        "thirty-times": (Enter("K1", 800), Enter("K2", 57), HOLD, Wait(3), LET_GO),
         "push-across": (Key("d", 6), Wait(1), Key("x"), Wait(2)),
     },
     "01b-let-the-clock-wait": {
@@ -29,7 +29,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         ),
     },
     "02-what-is-the-error": {
-        "half-a-round-late": (RESET, Wait(1), HOLD, Wait(1.3), LET_GO, Wait(2)),
+        "half-a-round-late": (RESET, Wait(1), HOLD, Wait(1.9), LET_GO, Wait(2)),
         "the-other-side": (Pull(-70, 0, seconds=1), Wait(2)),
         "deeper-than-deep": (Enter("Target", 1.57), Wait(2), Key("s", 12), Wait(0.5), Key("x")),
     },
@@ -39,7 +39,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         "carry": (Enter("K1", 1600), Enter("K2", 80), Enter("K5", 30), Wait(4)),
     },
     "04-across-and-along": {
-        "rail": (Enter("K1", 1600), Enter("K2", 80), RESET, Key("w", 5), Wait(2), Key("x")),
+        "rail": (Enter("K1", 900), Enter("K2", 60), RESET, Key("w", 5), Wait(2), Key("x")),
         "spring-board": (
             *(Enter("K1", 100), Enter("K2", 20), Enter("K4", 400), Enter("K5", 40)),
             *(RESET, Key("d", 4), Wait(1), Key("x")),
@@ -58,7 +58,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
             *(Slide("Target", 3.1), Wait(2), Slide("Target", 0), Wait(2)),
         ),
         "obstruction": (
-            *(Press("run round the circle"), Enter("K1", 2500), Enter("K2", 100), RESET),
+            *(Press("run round the circle"), Enter("K1", 2000), Enter("K2", 90), RESET),
             *(Wait(1), HOLD, Wait(2.2), LET_GO, Wait(2)),
         ),
     },
@@ -72,8 +72,8 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         ),
     },
     "06b-friction-and-the-integral": {
-        "lower-the-jumps": (Enter("K1", 1600), Enter("K2", 80), Wait(8)),
-        "get-it-going": (Enter("K5", 30), Wait(4)),
+        "lower-the-jumps": (Enter("K1", 1000), Enter("K2", 63), Wait(8)),
+        "get-it-going": (Enter("K5", 20), Wait(4)),
     },
     "07-flexible-link": {
         "choose-alpha": (Enter("α", 0.7), Wait(4)),

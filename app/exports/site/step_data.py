@@ -92,7 +92,8 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
         "lengths": [1e3 * curve.length() for curve in choice.paths.values()],
         "paths": list(choice.paths),
     }
-    names = [c.name for task in step.tasks() for c in task.check if isinstance(c, Setting)]
+    checks = [check for task in step.tasks() for check in task.evaluated]
+    names = [check.name for check in checks if isinstance(check, Setting)]
     values = values_of(parameters)
     known = {name: values[name] for name in (*names, *choice.sliders) if name in values}
     return {**known, **scene}

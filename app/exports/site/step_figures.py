@@ -83,7 +83,7 @@ class StepFigure:
                 return False
             if not set(action.set or {}) <= within_reach or action.only:
                 return False
-        measured = {getattr(check, "quantity", "distance") for check in task.check}
+        measured = {getattr(check, "quantity", "distance") for check in task.evaluated}
         return self.script(reference.solution) is not None and measured <= set(self.quantities)
 
     @property

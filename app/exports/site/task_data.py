@@ -60,8 +60,12 @@ def task_data(
         parameters, laws: parameters and laws of the step's set-up.
     """
     robots = robot_names(laws, words)
-    checks = [check_data(check, parameters, robots, words) for check in task.check]
-    return {"id": task.id, "best": task.best, "checks": checks}
+    checks, ways = (
+        [check_data(check, parameters, robots, words) for check in some]
+        for some in (task.check, [way.when for way in task.way])
+    )
+    data = {"id": task.id, "best": task.best, "checks": checks, "ways": ways}
+    return data | ({"exploratory": True} if task.exploratory else {})
 
 
 def check_data(

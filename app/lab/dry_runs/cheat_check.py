@@ -1,17 +1,22 @@
-"""Tries to pass every task without doing what it asks; see `onpath.lessons.cheating`."""
+"""Tries to pass every task without doing what it asks, or without understanding it.
+
+See `onpath.lessons.cheating` and `onpath.lessons.students`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from onpath.app.lab.advance_together import advance_together
+from onpath.app.lab.advance_together import Frame, advance_together
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.dry_runs.course_check import judged, lab_at, line_of_heading
-from onpath.app.lab.lab import Lab
+from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.lessons.action_schema import Script
 from onpath.lessons.cheating import Cheat, cheats
 from onpath.lessons.checks import verdict
 from onpath.lessons.course import REFERENCE, Course, read_references
@@ -19,7 +24,8 @@ from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.problems import Problem
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson, Step
-from onpath.lessons.task_schema import Event, Only, Setting, Task
+from onpath.lessons.students import MOST_PASS, STUDENTS, random_students, thoughtless
+from onpath.lessons.task_schema import Event, Only, Reference, Setting, Task, Window
 from onpath.lessons.words import DEFAULT, ENGLISH
 
 FRAME = 1 / 30  # [s]
@@ -29,14 +35,72 @@ TOGETHER = 48
 
 
 @dataclass(frozen=True, slots=True)
-class Attempt:
-    """A cheat at a task, and the file that says what is fair."""
+class Asked:
+    """A task, and the file with its reference solutions."""
 
     lesson: Lesson
-    step: Step
+    index: int
     task: Task
-    cheat: Cheat
+    reference: Reference
     file: Path
+
+    @property
+    def step(self) -> Step:
+        """The step of the task."""
+        return self.lesson.steps[self.index]
+
+    def problem(self, text: str) -> Problem:
+        """A fault of the task, at its solution."""
+        heading = f"{self.task.id}.solution"
+        line = line_of_heading(heading, self.file)
+        return Problem(str(self.file), line, f"task {self.task.id!r} {text}")
+
+
+@dataclass(frozen=True, slots=True)
+class Passes:
+    """Who passes a task without having understood it.
+
+    Attributes:
+        random: how many of the students who draw at random.
+        students: how many there are.
+        thoughtless: what was done by the others who pass, in words.
+    """
+
+    asked: Asked
+    random: int
+    students: int
+    thoughtless: Sequence[str]
+
+    def __str__(self) -> str:
+        where = f"{self.asked.lesson.name} {self.asked.task.id}"
+        trying = ", meant to be found by trying" * self.asked.task.exploratory
+        return f"{where}: {self.random} of {self.students} random students pass{trying}"
+
+    def problems(self) -> Iterator[Problem]:
+        """What is wrong with the task; nothing if it is meant to be found by trying."""
+        if self.asked.task.exploratory:
+            return
+        rest = "Give it a price, such as a bound on the torque, or mark it as `exploratory`"
+        if self.random > MOST_PASS * self.students / STUDENTS:
+            who = f"{self.random} of {self.students} students who draw at random"
+            yield self.asked.problem(f"is passed by {who}. {rest}")
+        if self.thoughtless:
+            what = "; ".join(self.thoughtless[:3])
+            yield self.asked.problem(f"is passed with {what}, in place of its settings. {rest}")
+
+
+def asked_tasks(course: Course, folder: Path) -> Iterator[Asked]:
+    """All tasks of a course.
+
+    Args:
+        folder: contains the lessons' own folders.
+    """
+    for name in course.lessons:
+        lesson, file = course.lesson(name, DEFAULT), folder / name / REFERENCE
+        references = read_references(lesson, file)[0]
+        for index, step in enumerate(lesson.steps):
+            for task in step.tasks():
+                yield Asked(lesson, index, task, references[task.id], file)
 
 
 def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
@@ -45,70 +109,91 @@ def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Pro
     Args:
         course, folder, store: see `course_check.play_course`.
     """
-    ordered = sorted(_attempts(course, folder), key=lambda each: each.cheat.words)
-    passed = dict[tuple[Path, str, str], Attempt]()  # the first with each control
-    for begin in range(0, len(ordered), TOGETHER):  # attempts with the same loops are adjacent
-        for each in _passed(ordered[begin : begin + TOGETHER], store):
-            passed.setdefault((each.file, each.task.id, each.cheat.control), each)
-    for (file, task, control), each in sorted(passed.items(), key=lambda item: item[0]):
-        yield Problem(
-            str(file),
-            line_of_heading(f"{task}.solution", file),
-            f"task {task!r} is passed with {each.cheat.words}. Add a check to the task, or,"
-            f" if that is what it asks for, {control!r} to its list `fair`",
+    attempts = [
+        (asked, cheat)
+        for asked in asked_tasks(course, folder)
+        for cheat in cheats(asked.lesson, asked.index, asked.task, asked.reference)
+    ]
+    attempts.sort(key=lambda each: each[1].words)  # those with the same loops are adjacent
+    trials = ((asked, cheat.script) for asked, cheat in attempts)
+    found = dict[tuple[Path, str, str], tuple[Asked, Cheat]]()  # the first with each control
+    for (asked, cheat), passed in zip(attempts, passes(trials, store), strict=True):
+        if passed:
+            found.setdefault((asked.file, asked.task.id, cheat.control), (asked, cheat))
+    for (_, _, control), (asked, cheat) in sorted(found.items(), key=lambda each: each[0]):
+        yield asked.problem(
+            f"is passed with {cheat.words}. Add a check to the task, or,"
+            f" if that is what it asks for, {control!r} to its list `fair`"
         )
 
 
-def _attempts(course: Course, folder: Path) -> Iterator[Attempt]:
-    for name in course.lessons:
-        lesson, file = course.lesson(name, DEFAULT), folder / name / REFERENCE
-        references = read_references(lesson, file)[0]
-        for index, step in enumerate(lesson.steps):
-            for task in step.tasks():
-                for cheat in cheats(lesson, index, task, references[task.id]):
-                    yield Attempt(lesson=lesson, step=step, task=task, cheat=cheat, file=file)
+def passes_of(asked: Asked, store: LoopCache, count: int = STUDENTS) -> Passes:
+    """Who passes a task without having understood it.
+
+    Args:
+        count: of the students who draw at random, the first of whom play.
+    """
+    about = asked.lesson, asked.index, asked.task, asked.reference.solution
+    tried, drawn = dict(thoughtless(*about)), list(random_students(*about, count))
+    scripts = [*tried.values(), *drawn]
+    passed = list(passes(((asked, script) for script in scripts), store))
+    words = [what for what, did in zip(tried, passed, strict=False) if did]
+    return Passes(asked, sum(passed[len(tried) :]), count, words)
 
 
-def _passed(attempts: Iterable[Attempt], store: LoopCache) -> Iterator[Attempt]:
-    """The attempts that pass; all are played together."""
-    trials = [_Trial(attempt, store) for attempt in attempts]
-    while trials:
-        for _ in range(LOOK):
-            for trial in trials:
-                trial.lab.drain()
-            advance_together(trial.lab.frame(FRAME) for trial in trials)
-        for trial in trials:
-            trial.look()
-        yield from (trial.attempt for trial in trials if trial.passed)
-        trials = [trial for trial in trials if not trial.over]
+def passes(trials: Iterable[tuple[Asked, Script]], store: LoopCache) -> Iterator[bool]:
+    """Whether each script passes its task; many are played together."""
+    waiting = list(trials)
+    for begin in range(0, len(waiting), TOGETHER):
+        batch = [_Trial(*each, store) for each in waiting[begin : begin + TOGETHER]]
+        playing = batch
+        while playing:
+            for _ in range(LOOK):
+                advance_together(trial.frame() for trial in playing)
+            for trial in playing:
+                trial.look()
+            playing = [trial for trial in playing if not trial.over]
+        yield from (trial.passed for trial in batch)
 
 
 class _Trial:
-    """An attempt that is being played.
+    """A script that is being played. A command that the lab refuses has no effect.
 
     Attributes:
         passed: whether the task is passed.
         over: whether the attempt has ended.
     """
 
-    def __init__(self, attempt: Attempt, store: LoopCache) -> None:
-        self.attempt, self.passed, self.over = attempt, False, False
-        self.lab: Lab = lab_at(attempt.lesson, attempt.step, store)
-        self._earlier, self._begin = EarlierRun(), Beginning.now(self.lab.session)
-        script = attempt.cheat.script
+    def __init__(self, asked: Asked, script: Script, store: LoopCache) -> None:
+        self._task, self.passed, self.over = asked.task, False, False
+        self._lab: Lab = lab_at(asked.lesson, asked.step, store)
+        self._earlier, self._begin = EarlierRun(), Beginning.now(self._lab.session)
         self._last = max((action.at for action in script.do), default=0.0)
         changes = [action.at for action in script.do if action.what not in ("hold", "pull")]
         self._settled = max(changes, default=0.0)
-        self.lab.script, self.lab.session.running = player_of(script), True
+        windows = [check for check in asked.task.check if isinstance(check, Window)]
+        self._least = max((check.least for check in windows), default=0.0)
+        self._player, self._lab.session.running = player_of(script), True
+
+    def frame(self) -> Frame:
+        """A frame of the lab, after the commands that are due."""
+        self._lab.drain()
+        self.over = self._player.play(self._lab.session, self._ask)
+        return self._lab.frame(FRAME)
 
     def look(self) -> None:
-        """Judge the task; a control that the lab refuses, or a robot that stops, ends it."""
-        lab, task = self.lab, self.attempt.task
-        refused = lab.message_level == "warning"
-        record = record_of(lab.session, self._begin)
+        """Judge the task; the attempt ends when it is passed, or cannot be any more."""
+        session, task = self._lab.session, self._task
+        if session.time < self._least and session.run_number == self._begin.run:
+            return  # nothing has lasted long enough
+        record = record_of(session, self._begin)
         verdicts = judged(task, record, self._earlier, ENGLISH)
-        self.passed = not refused and all(verdict.passed for verdict in verdicts)
-        self.over = self.passed or refused or lab.script is None or self._is_lost(record)
+        self.passed = all(verdict.passed for verdict in verdicts)
+        self.over = self.over or self.passed or self._is_lost(record)
+
+    def _ask(self, command: Command) -> None:
+        with suppress(ValueError):  # it is refused
+            command.apply(self._lab)
 
     def _is_lost(self, record: Record) -> bool:
         """Whether a check fails that only another action could satisfy."""
@@ -116,5 +201,5 @@ class _Trial:
             return False
         final = Setting | Only if record.end > self._settled else ()
         final = Setting | Only | Event if record.end > self._last else final
-        checks = [check for check in self.attempt.task.check if isinstance(check, final)]
+        checks = [check for check in self._task.check if isinstance(check, final)]
         return not all(verdict(check, record, ENGLISH).passed for check in checks)

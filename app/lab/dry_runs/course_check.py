@@ -67,16 +67,17 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
     """Play a script to its end and yield the verdicts on a task, if any, ten times a second.
 
     Raises:
-        ValueError: the lab refuses a command of the script; the message says why.
+        ValueError: the lab refuses a command of the script, or a path; the message says why. A
+            note on what it does all the same is no refusal.
     """
     session, words, earlier = lab.session, Words(), EarlierRun()
     begin = Beginning.now(session)
-    lab.script, session.running = player_of(script), True
+    lab.script, session.running = (player := player_of(script)), True
     for _ in range(round(3 * script.seconds / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
             lab.drain()
             lab.advance(session.rate * FRAME)
-        if lab.message_level == "warning":
+        if session.editor.faults or (lab.script is None and not player.finished):
             raise ValueError(lab.message)
         yield [] if task is None else judged(task, record_of(session, begin), earlier, words)
         if lab.script is None:
@@ -139,11 +140,13 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[
             if task.id not in references:
                 continue  # reported by read_references
             scripts = references[task.id]
-            for what, script in (("solution", scripts.solution), ("failure", scripts.failure)):
-                fault = _fault(lesson, step, script, task, store, what == "solution")
-                if fault:
-                    heading = f"{task.id}.{what}"
-                    yield Problem(str(file), line_of_heading(heading, file), f"{heading} {fault}")
+            variants = [("variant", script) for script in scripts.variant]
+            others = ("solution", scripts.solution), ("failure", scripts.failure)
+            for number, (what, script) in enumerate((*variants, *others), 1):
+                if fault := _fault(lesson, step, script, task, store, what != "failure"):
+                    heading, count = f"{task.id}.{what}", f" {number}" * (what == "variant")
+                    line = line_of_heading(heading, file)
+                    yield Problem(str(file), line, f"{heading}{count} {fault}")
 
 
 def _fault(
@@ -163,6 +166,6 @@ def _fault(
 
 
 def line_of_heading(heading: str, file: Path) -> int:
-    """The line of `[heading]` in a TOML file; 1 if there is none."""
-    lines = read_text(file).split("\n")
-    return next((i for i, line in enumerate(lines, 1) if line.strip() == f"[{heading}]"), 1)
+    """The line of `[heading]` or the first `[[heading]]` in a TOML file; 1 if there is none."""
+    lines, headings = read_text(file).split("\n"), (f"[{heading}]", f"[[{heading}]]")
+    return next((i for i, line in enumerate(lines, 1) if line.strip() in headings), 1)

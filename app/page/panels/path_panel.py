@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import viser
@@ -24,6 +23,7 @@ from onpath.app.page.panels.widgets import (
     put_number,
     refused,
 )
+from onpath.app.viser_adapter.file_uploads import take_files
 from onpath.lessons.labels import parameter_heading, parameter_help, path_label
 from onpath.lessons.words import Words
 from onpath.models.control.rank_test import rank_map
@@ -177,7 +177,7 @@ class PathPanel:
             said.content = ""
             post(command)
 
-        async def uploaded(_: viser.GuiEvent[Any]) -> None:
+        def take(name: str, content: bytes) -> None:
             said.content = note(words("design.reading"))
             placing = Placing(
                 fit=size.value / 1e3 or None,
@@ -185,17 +185,16 @@ class PathPanel:
                 radius=radius.value / 1e3 or RADIUS,
                 closed=False if opened.value else None,
             )
-            file = button.value
             upload = Upload(
-                name=file.name,
-                content=file.content,
+                name=name,
+                content=content,
                 placing=placing,
                 robot=key.robot,
                 parameters=parameters_of(self._latest),
             )
-            files.read(upload, follow, refuse)
+            files.read(upload, words.language, follow, refuse)
 
-        button.on_upload(uploaded)
+        take_files(button, take, refuse)
 
     def _add_coordinates(self, gui: viser.GuiApi, post: Post, names: tuple[str, str]) -> None:
         """Add number inputs for the selected point's coordinates."""

@@ -19,10 +19,13 @@ def lesson_titles(course: Course, words: Words) -> dict[str, str]:
 
 def step_label(lesson: Lesson, index: int, words: Words, large: bool = False) -> str:
     """A step, by number, kind and title; for a projector without the title, which may tell what
-    will happen."""
+    will happen. A teacher also reads that a task is meant to be found by trying."""
     step = lesson.steps[index]
     label = f"{index + 1}. {words(f'kind.{step.kind}')}"
-    return label if large else f"{label}: {step.title}"
+    if large:
+        return label
+    exploratory = any(task.exploratory for task in step.tasks())
+    return f"{label}: {step.title}" + f" ({words('guide.exploratory')})" * exploratory
 
 
 def step_titles(lesson: Lesson, words: Words) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import threading
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -16,6 +17,7 @@ from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.lessons.words import ENGLISH
+from onpath.models.errors import Message
 from onpath.models.path_files.placing import ROUND, Placing
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -40,6 +42,11 @@ HOSTILE = {
         HEAD + b'<path d="M0 0' + b"q1 1 2 0" * 50_000 + b'"/></svg>',
         "a.svg",
         "more than|too long",
+    ),
+    "many cubic pieces": (
+        HEAD + b'<path d="M0 0' + b"c0 1 1 1 2 0" * 80_000 + b'"/></svg>',
+        "a.svg",
+        "more than",
     ),
     "deeply nested": (HEAD + b"<g>" * 100_000, "a.svg", "in each other"),
     "transforms of transforms": (
@@ -75,7 +82,7 @@ def answer(content: bytes, name: str, placing: Placing = SIZED) -> Any:
         done.set()
 
     upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
-    PathReader("en").read(upload, take, take)
+    PathReader().read(upload, "en", take, take)
     assert done.wait(WAIT)
     return found[0]
 
@@ -90,6 +97,21 @@ def test_a_hostile_file_is_refused_in_words_and_the_next_one_is_read(case: str) 
     assert re.search(words, text), text
     good = answer(b"0,0\n4,0\n4,3\n0,3\n", "a.csv")
     assert isinstance(good, c.FollowCurve)
+
+
+CORNERS = b"0,0\n1,1\n0,1\n" * 11_000
+
+
+@pytest.mark.parametrize("case", ["many cubic pieces", "corners"])
+def test_what_is_dear_is_refused_long_before_the_time_is_over(case: str) -> None:
+    """Within 5 s of processor time; each took more than 15 s."""
+    content, name, words = HOSTILE.get(case, (CORNERS, "a.csv", "too many corners"))
+    placing = Placing(fit=0.1, corners=ROUND)
+    upload = Upload(name, content, placing, FIVE_BAR.name, FIVE_BAR.parameters())
+    begun = time.process_time()
+    refusal = path_upload.read_upload(upload, "en")
+    assert time.process_time() - begun < 5.0
+    assert isinstance(refusal, Message) and re.search(words, refusal.text())
 
 
 @pytest.mark.thorough
@@ -118,7 +140,7 @@ def fail(_upload: Upload, _language: str) -> None:
 
 
 def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    reader, found, done = PathReader("en"), list[Any](), threading.Event()
+    reader, found, done = PathReader(), list[Any](), threading.Event()
     hold = threading.Event()
 
     class Slow:
@@ -128,9 +150,9 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
 
     monkeypatch.setattr(path_upload, "process", Slow())
     upload = Upload("a.csv", b"0,0", Placing(), FIVE_BAR.name, FIVE_BAR.parameters())
-    reader.read(upload, lambda _: done.set(), found.append)
-    reader.read(upload, found.append, found.append)
-    assert [message.code for message in found] == ["export.busy"]
+    reader.read(upload, "en", lambda _: done.set(), found.append)
+    reader.read(upload, "en", found.append, found.append)
+    assert [message.code for message in found] == ["error.file_busy"]
     hold.set()
     assert done.wait(WAIT)
 

@@ -171,6 +171,15 @@ def test_the_value_of_a_version_is_that_before_the_next_change(
     assert [change.since for change in CHANGES] == sorted(change.since for change in CHANGES)
 
 
+def test_a_gain_of_a_law_whose_default_has_changed_keeps_its_value() -> None:
+    old = from_data({"defaults": 3, "benches": {"five_bar": {"parameters": {"observer_rate": 9}}}})
+    assert old.robots["five_bar"].parameters["observer_bound"] == 10.0
+    assert (
+        "observer_bound"
+        not in from_data({"defaults": DEFAULTS}).robots.get("five_bar", RobotSetup()).parameters
+    )
+
+
 def test_a_share_code_of_a_newer_version_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stored, "DEFAULTS", DEFAULTS + 1)
     code = encode(Setup())

@@ -91,7 +91,7 @@ CASES = [(name, field) for name, each in page_commands().items() for field in na
 
 
 @pytest.mark.parametrize(("name", "field"), CASES)
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(
     text=st.text(st.characters(codec="utf-8"), max_size=MOST_TEXT),
     index=st.integers(1000, 10**9) | st.integers(-(10**9), -1),
@@ -247,7 +247,7 @@ def bounded_after(course: Course, sequence: list[c.Command]) -> None:
     assert_bounded(lab)
 
 
-@settings(max_examples=8, deadline=None)
+@settings(max_examples=5, deadline=None)
 @given(st.lists(ANY, min_size=10, max_size=40))
 def test_what_is_stored_stays_below_its_bound(course: Course, sequence: list[c.Command]) -> None:
     bounded_after(course, sequence)

@@ -20,6 +20,8 @@ import pytest
 import viser
 import websockets.sync.client
 import zstandard
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from viser import _messages
 from viser.infra import _infra
 from websockets.asyncio.messages import Assembler
@@ -28,7 +30,8 @@ from websockets.typing import Origin, Subprotocol
 
 from onpath.app.common import error_log
 from onpath.app.common.allowance import Allowance
-from onpath.app.viser_adapter import secure_connection
+from onpath.app.viser_adapter import file_uploads, secure_connection
+from onpath.app.viser_adapter.file_uploads import take_files
 from onpath.app.viser_adapter.message_filter import MessageFilter
 from onpath.app.viser_adapter.secure_server import Limits, PortInUse, make_server
 from tests.support import waiting
@@ -569,41 +572,160 @@ def test_a_brisk_but_honest_client_is_served(monkeypatch: pytest.MonkeyPatch) ->
 # Uploads and the share tunnel.
 
 
-def upload(browser: Browser, content: bytes, *, into: str = "upload", size: int = -1) -> None:
-    source = browser.lab.widgets[browser.id][into]._impl.uuid
-    size = len(content) if size < 0 else size
-    ids = {"source_component_uuid": source, "transfer_uuid": f"{into}{size}"}
-    file = {"filename": "x", "mime_type": "text/plain", "part_count": 1, "size_bytes": size}
-    browser.send("FileTransferStartUpload", **ids, **file)
-    browser.send("FileTransferPart", **ids, part_index=0, content=content)
+def parts_of(content: bytes, count: int) -> list[bytes]:
+    size = -(-len(content) // max(count, 1))
+    return [content[i * size : (i + 1) * size] for i in range(count)]
+
+
+class Sender:
+    """A page that sends files, and what its upload button took and refused."""
+
+    def __init__(self, lab: Lab) -> None:
+        self.browser, self.sent = Browser(lab), 0
+        self.taken, self.refused = list[bytes](), list[str]()
+        self.button = lab.widgets[self.browser.id]["upload"]
+        take_files(
+            self.button,
+            lambda _, content: self.taken.append(content),
+            lambda reason: self.refused.append(reason.code.removeprefix("error.file_")),
+        )
+
+    def begin(self, size: int, count: int, into: Any = None) -> dict[str, str]:
+        """Announce a file; returns what its parts name."""
+        self.sent += 1
+        source = (into or self.button)._impl.uuid
+        ids = {"source_component_uuid": source, "transfer_uuid": f"file {self.sent}"}
+        file = {"filename": "x" * 300, "mime_type": "text/plain"}
+        start = {**ids, **file, "part_count": count, "size_bytes": size}
+        self.browser.send("FileTransferStartUpload", **start)
+        return ids
+
+    def upload(self, content: bytes, count: int = 1) -> None:
+        """Send a file, as viser's page does."""
+        ids = self.begin(len(content), count)
+        for index, part in enumerate(parts_of(content, count)):
+            self.browser.send("FileTransferPart", **ids, part_index=index, content=part)
+
+    def under_way(self) -> int:
+        """The files of this page that the server holds parts of."""
+        self.browser.settle()
+        client = self.browser.lab.server.get_clients()[self.browser.id]
+        return len(client.gui._current_file_upload_states)
+
+
+@pytest.fixture
+def files(monkeypatch: pytest.MonkeyPatch) -> Iterator[Lab]:
+    """A lab that takes files of up to 1,000 bytes, any number in a row."""
+    monkeypatch.setattr(file_uploads, "FILES", 10_000)
+    lab = Lab(limits=Limits(max_upload_bytes=1000))
+    yield lab
+    lab.server.stop()
 
 
 @pytest.mark.usefixtures("no_errors")
-def test_uploads_are_refused(lab: Lab, attacker: Browser, bystander: Browser) -> None:
-    upload(attacker, b"abc")
-    upload(attacker, b"abc", into="slider")
-    attacker.settle()
-    assert lab.heard(attacker) == []
-    assert lab.widgets[attacker.id]["slider"].value == TRUE_VALUES["slider"]
+def test_no_file_is_taken_unless_the_server_wants_files(lab: Lab) -> None:
+    sender = Sender(lab)
+    sender.upload(b"abc")
+    sender.begin(3, 1, into=lab.widgets[sender.browser.id]["slider"])
+    assert sender.under_way() == 0
+    assert sender.taken == [] and sender.refused == ["size"]
 
 
-def test_uploads_within_the_limit_when_allowed() -> None:
-    lab = Lab(limits=Limits(max_upload_bytes=10))
-    browser = Browser(lab)
-    upload(browser, b"abc", into="slider")
-    upload(browser, b"x" * 11)
-    upload(browser, b"0123456789")
-    browser.settle()
-    ((name, file),) = wait_for(lambda: lab.heard(browser))  # viser calls back in a thread
-    assert (name, file.content) == ("upload", b"0123456789")
-    upload(browser, b"more than it said", size=2)
-    upload(browser, b"abc")
-    browser.settle()
-    assert len(lab.heard(browser)) == 1
-    (transfer,) = lab.server.get_clients()[browser.id].gui._current_file_upload_states.values()
-    assert transfer["parts"] == {}
-    browser.socket.close()
+def test_a_file_is_taken_whole_and_one_that_is_not_as_announced_is_refused(files: Lab) -> None:
+    sender = Sender(files)
+    sender.upload(b"0123456789", 3)
+    wait_for(lambda: sender.taken)
+    sender.upload(b"x" * 1001)
+    sender.upload(b"x" * 900, file_uploads.MOST_PARTS + 1)
+    ids = sender.begin(2, 1)
+    sender.browser.send("FileTransferPart", **ids, part_index=0, content=b"more than it said")
+    ids = sender.begin(20, 2)
+    for index in (0, 0):
+        sender.browser.send("FileTransferPart", **ids, part_index=index, content=b"0123456789")
+    assert sender.under_way() == 0
+    assert sender.taken == [b"0123456789"]
+    assert sender.refused == ["size", "incoherent", "incoherent", "incoherent"]
+    sender.upload(b"", 0)
+    wait_for(lambda: len(sender.taken) == 2)
+    assert sender.button.value.content == b""  # nothing is kept
+
+
+def test_a_second_file_waits_for_the_first_which_has_limited_time(
+    files: Lab, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(file_uploads, "SECONDS", 0.3)
+    sender = Sender(files)
+    sender.begin(10, 2)
+    sender.upload(b"abc")
+    wait_for(lambda: sender.refused == ["busy", "late"])
+    assert sender.under_way() == 0
+    sender.upload(b"abc")
+    wait_for(lambda: sender.taken == [b"abc"])
+
+
+def test_files_have_a_rate_and_a_size_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(file_uploads, "FILES_PER_SECOND", 0.0)
+    monkeypatch.setattr(file_uploads, "MOST_TOGETHER", 1500)
+    lab = Lab(limits=Limits(max_upload_bytes=1000))
+    one, other = Sender(lab), Sender(lab)
+    one.begin(1000, 1)
+    assert one.under_way() == 1
+    other.begin(1000, 1)
+    assert other.under_way() == 0 and other.refused == ["often"]
+    one.browser.socket.close()
+    wait_for(lambda: one.browser.id not in lab.server.get_clients())
+    for k in range(file_uploads.FILES + 3):
+        other.upload(b"%d" % k)
+    other.browser.settle()
+    wait_for(lambda: len(other.taken) == file_uploads.FILES)
+    assert other.refused == ["often"] * 4
     lab.server.stop()
+
+
+FILE_MESSAGES = st.lists(
+    st.one_of(
+        st.tuples(st.just("begin"), st.integers(-3, 1100), st.integers(-1, 70)),
+        st.tuples(st.just("part"), st.integers(0, 4), st.integers(-1, 5), st.integers(0, 600)),
+        st.tuples(st.just("file"), st.binary(max_size=1000), st.integers(1, 4)),
+    ),
+    min_size=1,
+    max_size=12,
+)
+
+
+@pytest.fixture
+def brief(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file has a fifth of a second."""
+    monkeypatch.setattr(file_uploads, "SECONDS", 0.2)
+
+
+@pytest.mark.usefixtures("brief")
+@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
+@given(FILE_MESSAGES)
+def test_whatever_is_sent_only_whole_files_arrive_and_the_next_one_can_be_sent(
+    files: Lab, messages: list[tuple[Any, ...]]
+) -> None:
+    """Parts in any order, of any size, of files that were announced or not, or never end."""
+    sender, honest = Sender(files), list[bytes]()
+    known: list[dict[str, str]] = [{"source_component_uuid": "x", "transfer_uuid": "y"}]
+    for kind, *values in messages:
+        if kind == "begin":
+            known.append(sender.begin(*values))
+        elif kind == "part":
+            which, index, size = values
+            ids = known[which % len(known)]
+            sender.browser.send("FileTransferPart", **ids, part_index=index, content=b"p" * size)
+        else:
+            content, count = values
+            sender.upload(content, count if content else 0)
+            honest.append(content)
+        assert sender.under_way() <= 1
+    assert all(set(each) <= {ord("p")} or each in honest for each in sender.taken)
+    wait_for(lambda: not sender.under_way())
+    sender.upload(b"at last")
+    wait_for(lambda: b"at last" in sender.taken)
+    assert sender.under_way() == 0
+    sender.browser.socket.close()
 
 
 def test_no_client_opens_a_share_tunnel(

@@ -66,6 +66,10 @@ def test_along_a_normal_the_closest_point_stays_up_to_the_local_width_and_no_fur
     assert min(left.min(), right.min()) >= tube_width(curve) * (1 - 1e-3)
 
 
+def test_a_path_that_crosses_itself_has_none() -> None:
+    assert tube_width(presets()["figure of eight"].curve) == 0.0
+
+
 def test_an_admitted_path_has_the_tube_that_its_check_asks_for() -> None:
     for name, curve in CURVES.items():
         assert (tube_width(curve) >= 0.98 * TUBE) == (name in PROPER), name

@@ -210,7 +210,9 @@ def test_many_mangled_files_are_robots_or_refused_in_a_line(
     robot_or_line(tmp_path / "arm.xml", data, Options(tip=tip, armature=0.01))
 
 
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=5000)
+@settings(
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=5000, max_examples=40
+)
 @given(mangled(mjcf_seeds()))
 def test_the_check_takes_any_file(tmp_path: Path, data: bytes) -> None:
     """It writes out a model, or refuses the file by its line."""
