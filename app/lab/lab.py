@@ -27,7 +27,7 @@ from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
-from onpath.models.control.forecast import forecasts
+from onpath.models.control.forecast import UNMODELLED, forecasts, unmodelled
 from onpath.models.control.settable import changed
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -298,7 +298,8 @@ class Lab:
         if text := self.fault_words("say.stopped"):
             self.message, self.message_level = text, "error"
         elif self._caution is not None:
-            self.message, self.message_level = self.words.sentence(self._caution), "warning"
+            self.message = self.words.sentence(self._caution)
+            self.message_level = "info" if self._caution == UNMODELLED else "warning"
 
     def remark(self, message: str) -> None:
         """Show a message, unless a robot is stopped, which is more important."""
@@ -327,9 +328,11 @@ class Lab:
         """
         session, robot = self.session, self.session.robot
         caution = session.entry.caution(session.parameters)
-        if caution or robot.system.n == robot.system.m or robot.system.modes or self.locked:
+        if caution or self.locked:
             return caution
         path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
+        if robot.system.n == robot.system.m or robot.system.modes:
+            return unmodelled(robot, laws, session.parameters)
         inputs = robot, laws, session.parameters, path
         if self._forecast is None or self._forecast[0] != inputs:
             q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))

@@ -1345,6 +1345,7 @@ caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Rob
 forecast-singular = die Entkopplungsmatrix ist am Start singulär: Dort können die Motoren den Ausgang aus der Ruhe nicht in jede Richtung beschleunigen, sodass es für das, was das Regelgesetz verlangt, keine Drehmomente gibt
 forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne Motor setzen sich in Bewegung, was immer die Motoren tun
 forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der Bahn bleibt, wächst die Bewegung der Koordinaten ohne Motor, anfangs alle { $time } s auf das Zehnfache (Exponent { $rate } 1/s)
+forecast-unmodelled = die Bahnfolgeregelung kann hier weiter von ihrer Bahn abkommen als die Nachlaufregelung: Ihre Geschwindigkeiten kommen aus dem Modell des Reglers, und es gibt einen Fehler darin, eine Nutzlast, Reibung, Rechenzeit oder eine Drehmomentgrenze
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
 cause-limit = die Motoren waren an ihrer Grenze von { $limit } { $unit } (anheben oder langsamer fahren)

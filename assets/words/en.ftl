@@ -991,6 +991,7 @@ caution-flexible = With { $rate } control actions a second, the flexible link is
 forecast-singular = the decoupling matrix is singular at the start: from rest there, the motors cannot accelerate the output in every direction, so that no torques give the motion that the law asks for
 forecast-no_rest = the robot cannot rest at the start: its coordinates without a motor begin to move, whatever the motors do
 forecast-unstable = the zero dynamics are unstable: while the output stays on the path, the motion of the coordinates without a motor grows, at first tenfold every { $time } s (exponent { $rate } 1/s)
+forecast-unmodelled = path following may get farther from its path than the tracker here: its velocities come from the controller's model, and there is an error in it, a payload, friction, a delay or a torque limit
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
 cause-limit = the motors were at their limit of { $limit } { $unit } (raise it, or lower the speed)

@@ -43,9 +43,10 @@ BENT_OR_UNSTABLE = Message("stop.bent_or_unstable")
 # The tip is light and soft (15 N/m): stiff springs, with forces held over a tick, would chatter.
 _SOFT = SpringLimits(500.0, 4.0, 5.0)
 SOFT_GRIP = Grip(hand=SpringLimits(100.0, 2.0, 1.0), hold=_SOFT, wall=_SOFT)
-SLOWEST = {"composite": (200, 500), "redefined": (500, 500)}
-"""Lowest control rates at which the robot follows its circle with the default gains, [Hz]: with
-exact sensing, and with encoders or noise."""
+SLOWEST = {"composite": 200, "redefined": 500}
+"""Lowest control rates at which the robot follows its circle with the default gains, [Hz]."""
+SLOWEST_FILTERED = 500
+"""The same with encoders or noise and without an observer."""
 PIECES = 10  # straight bars that represent the bent link
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 DRAWING = Drawing(
@@ -226,8 +227,9 @@ def critical_alpha(parameters: Parameters, joints: Array) -> float:
 def caution(parameters: Parameters) -> Message | None:
     """`RobotEntry.caution`: the control may be too slow for the link's vibration."""
     chosen = own_parameters(FlexibleParameters, parameters)
-    exact, measured = SLOWEST[chosen.law]
-    slowest = measured if chosen.encoder_counts > 0 or chosen.sensor_noise > 0 else exact
+    measured = chosen.encoder_counts > 0 or chosen.sensor_noise > 0
+    filtered = measured and chosen.observer_time == 0
+    slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.law]
     if chosen.control_rate >= slowest:
         return None
     return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})

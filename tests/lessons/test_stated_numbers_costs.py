@@ -39,7 +39,8 @@ SPOILERS: dict[str, dict[str, Any]] = {
     "b1 50 % too small": {"error_b1": -50},
     "dry friction of 0.05 N m": {"coulomb": 0.05},
     "control at 100 Hz, not 1000": {"control_rate": 100},
-    "encoders with 2000 steps a turn": {"encoder_counts": 2000},
+    "encoders with 2000 steps a turn": {"encoder_counts": 2000, "observer_time": 0.0},
+    "the same encoders, with the observer": {"encoder_counts": 2000},
     "torque limit of 0.3 N m": {"torque_limit": 0.3},
     "torque limit of 0.2 N m": {"torque_limit": 0.2},
 }
@@ -146,7 +147,7 @@ def test_largest_damping_is_where_the_poles_say() -> None:
 def test_the_integral_learns_and_what_it_learns() -> None:
     spoilers: dict[str, dict[str, Any]] = {
         "M11, M22 too light by 40 %": {"error_M11": -40, "error_M22": -40},
-        "encoders, 2000 steps": {"encoder_counts": 2000},
+        "encoders, 2000 steps, no observer": {"encoder_counts": 2000, "observer_time": 0.0},
         "dry friction 0.05 N m": {"coulomb": 0.05},
     }
     for row, spoiler in spoilers.items():
@@ -254,6 +255,7 @@ def test_path_with_two_gentle_bulges() -> None:
         "coulomb": 0.02,
         "control_rate": 200,
         "encoder_counts": 4000,
+        "observer_time": 0.0,
     }
     gentle, hard = (
         play(

@@ -383,7 +383,7 @@ def test_what_a_step_of_the_encoder_looks_like() -> None:
 
 @pytest.mark.parametrize("place", ["0", "3.14"])
 def test_gain_at_rest(place: str) -> None:
-    cheap: dict[str, Any] = {"encoder_counts": 1000, "task": "position", **PD}
+    cheap: dict[str, Any] = {"encoder_counts": 1000, "observer_time": 0.0, "task": "position", **PD}
     rest = [
         play(8.0, [], target=float(place), K1=k1, K2=k2, **cheap)
         for k1, k2 in ((400, 40), (1600, 80), (2500, 200))

@@ -69,7 +69,7 @@ class Result:
 
 
 @lru_cache(maxsize=4)
-def _loop(robot: Robot, kind: Kind) -> ManyLoop:
+def loop_of(robot: Robot, kind: Kind) -> ManyLoop:
     return fastest_batch(build_kernel(robot.system, robot.frame, kind, robot.substeps, robot.grip))
 
 
@@ -90,7 +90,7 @@ def untouched(
 ) -> float | None:
     """Largest distance of a robot that nobody touches, [m], from 1 s on; None if it stops."""
     robot = ROBOTS[name].make(parameters)
-    loop, start = _loop(robot, kind_of(law, parameters, curve)), _begin(robot, curve, 0.0)
+    loop, start = loop_of(robot, kind_of(law, parameters, curve)), begin_at(robot, curve, 0.0)
     layouts = loop.layouts
     settings = settings_vector(robot, layouts, parameters, curve, FREE)
     ticks = round(seconds / time_step(parameters))
@@ -109,10 +109,10 @@ def troubled(
     rng = np.random.default_rng(seed)
     robot = ROBOTS[name].make(parameters)
     curve = path if isinstance(path, Curve) else presets()[path].curve
-    loop, dt = _loop(robot, kind_of(law, parameters, curve)), time_step(parameters)
+    loop, dt = loop_of(robot, kind_of(law, parameters, curve)), time_step(parameters)
     layouts, table, ticks = loop.layouts, curve.table(), round(STEP / dt)
     troubles = [_trouble(rng, robot, curve) for _ in range(count)]
-    begins = [_begin(robot, curve, float(theta)) for theta in rng.uniform(-3, 3, count)]
+    begins = [begin_at(robot, curve, float(theta)) for theta in rng.uniform(-3, 3, count)]
     states = np.stack([first_state(robot, layouts, curve, begin) for begin in begins])
     settings = [settings_vector(robot, layouts, parameters, curve, FREE) for _ in troubles]
     for number, own in enumerate(settings):
@@ -148,7 +148,7 @@ def troubled(
     return [Result(trouble, fault, far, after) for trouble, fault, far, after in found]
 
 
-def _begin(robot: Robot, curve: Curve, theta: float) -> Array:
+def begin_at(robot: Robot, curve: Curve, theta: float) -> Array:
     return robot.rest(robot.frame.lift(curve.at(np.array(theta))))
 
 

@@ -135,7 +135,7 @@ def test_from_anywhere_inside_it_comes_back_by_the_level_set(
 ) -> None:
     parameters = parameters_of(robot, across="level_set")
     made, curve = ROBOTS[robot].make(parameters), ellipse((0.07, 0.04))
-    loop = pulls._loop(made, kind_of(FOLLOWER, parameters, curve))
+    loop = pulls.loop_of(made, kind_of(FOLLOWER, parameters, curve))
     begin = made.rest(made.frame.lift(share * curve.at(np.array(angle))))
     state = pulls.first_state(made, loop.layouts, curve, begin)
     own = pulls.settings_vector(made, loop.layouts, parameters, curve, pulls.FREE)
@@ -149,9 +149,9 @@ def test_from_anywhere_inside_it_comes_back_by_the_level_set(
 def test_no_integral_moves_the_balance_by_more_than_its_bound(law: str) -> None:
     parameters = parameters_of("five_bar", tracker_integral="on")
     robot, curve = ROBOTS["five_bar"].make(parameters), presets()["circle"].curve
-    loop = pulls._loop(robot, kind_of(law, parameters, curve))
+    loop = pulls.loop_of(robot, kind_of(law, parameters, curve))
     rng, layouts = np.random.default_rng(5), loop.layouts
-    begin = pulls._begin(robot, curve, 0.3)
+    begin = pulls.begin_at(robot, curve, 0.3)
     state = pulls.first_state(robot, layouts, curve, begin)
     own = pulls.settings_vector(robot, layouts, parameters, curve, pulls.FREE)
     full = False

@@ -16,6 +16,7 @@ from onpath.models.control.forecast import (
     SINGULAR,
     forecast,
     growth_rate,
+    unmodelled,
 )
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.rank_test import rank_number
@@ -210,3 +211,25 @@ def test_a_chain_with_passive_joints_runs_or_is_refused_in_words(shape: Shape, l
     if steady and rank_number(chain, own, q) > 0.05 and (growth_rate(chain, own, q) or 1) < -0.5:
         assert log.stopped_at is None
         assert np.abs(log.fields["q"] - q).max() < 1.0
+
+
+# Behind an observer
+
+SENSORS = {"encoder_counts": 2000.0, "sensor_noise": 1e-4}
+UNMODELLED = [{"error_M22": 30.0}, {"payload": 0.1}, {"coulomb": 0.02}, {"delay": 0.3}]
+
+
+def doubted(laws: tuple[str, ...] = (FOLLOW,), **changes: float) -> bool:
+    parameters = replace(ROBOTS["five_bar"].parameters(), **changes)
+    return unmodelled(ROBOTS["five_bar"].make(parameters), laws, parameters) is not None
+
+
+@pytest.mark.parametrize("changes", UNMODELLED)
+def test_what_an_observer_does_not_know_is_said_where_there_is_one(
+    changes: dict[str, float],
+) -> None:
+    assert doubted(**changes, **SENSORS)
+    assert not doubted(**changes)
+    assert not doubted(**SENSORS)
+    assert not doubted(**changes, **SENSORS, observer_time=0.0)
+    assert not doubted(("trajectory_tracking",), **changes, **SENSORS)
