@@ -42,11 +42,12 @@ class CheckLessons:
     folder: Annotated[Path | None, tyro.conf.Positional] = None
     """Folder of lessons, or of one lesson; by default the built-in ones."""
     cheat: bool = False
-    """Try to pass every task without what it asks, which takes minutes."""
+    """Try to pass every task without what it asks, and say how many random students pass it. This
+    takes minutes."""
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
-        from onpath.app.lab.dry_runs.cheat_check import cheat_faults
+        from onpath.app.lab.dry_runs.cheat_check import asked_tasks, cheat_faults, passes_of
         from onpath.app.lab.dry_runs.course_check import play_course
         from onpath.app.lab.dry_runs.sentence_check import unplayed
         from onpath.app.lab.loops.loop_cache import LoopCache
@@ -58,6 +59,9 @@ class CheckLessons:
             problems = list(play_course(course, folder, store))
             if self.cheat:
                 problems += cheat_faults(course, folder, store)
+                for asked in asked_tasks(course, folder):
+                    print(found := passes_of(asked, store), flush=True)
+                    problems += found.problems()
         if not problems and (count := unplayed(course, folder)):
             says = _count(count, "sentence")
             print(f"note: {says} about the lab that no mark plays; see lessons/README.md")

@@ -82,6 +82,7 @@ class Session:
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = self.resumes = True
         self.lacks_loops = self.has_to_step = False
+        self._is_bent = False  # whether the path has already been bent for the next ticks
         self.viewing: float | None = None
         self.rate = 1.0
         self.copy = True
@@ -202,10 +203,11 @@ class Session:
         if ready and self.has_to_step:
             self.has_to_step = False
             return self.frame_of(self._step_ticks)
-        if not ready or not self.running:
+        if not self.running:
             self._owed = 0.0
             if self.viewing is None:
                 self._bend_paused(seconds)
+        if not ready or not self.running:
             return NO_FRAME
         dt = time_step(self.parameters)
         owed = self._owed + seconds
@@ -224,8 +226,9 @@ class Session:
         """
         parameters, editor, runs = self.parameters, self.editor, list(self.runs.values())
         dt, profile = time_step(parameters), profile_of(parameters)
-        if ticks:
+        if ticks and not self._is_bent:
             self._bend(ticks * dt)
+        self._is_bent = False
         curve, table, pushes = editor.curve, editor.table, self.forces.pushes
         while ticks > 0:
             now = round(self.time / dt)
@@ -236,6 +239,7 @@ class Session:
             going = [run for run in runs if run.diverged is None]
             moving = [(run, loop) for run in going if (loop := run.loop()) is not None]
             if len(moving) < len(going):  # the path has just become another kind of curve
+                self._is_bent = True
                 return
             self.law_changes.remark_on(moving)
             part = Ticks(

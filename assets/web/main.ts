@@ -2,7 +2,7 @@
 // the page of the lab, which has no data of its own.
 
 import { made, refused } from "./controls"
-import { judge } from "./checks"
+import { judge, wayOf } from "./checks"
 import { Figure } from "./figure"
 import type { FigureData } from "./figure_data"
 import { gradeOf } from "./grade"
@@ -49,7 +49,7 @@ function showPage(page: PageData): void {
     const local = new LocalProgress(tell)
     const progress = (page.scorm && ScormProgress.found(page.scorm, tell)) || local
     const site = page.lesson ? new Player(page, progress) : new StartPage(page, local)
-    Object.assign(window, { site, judge, gradeOf, packed, unpacked, shapesOf }) // for tests
+    Object.assign(window, { site, judge, wayOf, gradeOf, packed, unpacked, shapesOf }) // for tests
 }
 
 const source = document.getElementById("data")

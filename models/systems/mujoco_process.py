@@ -19,6 +19,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import SimpleNamespace
 from typing import Any
+from zipfile import BadZipFile
 
 import msgspec
 import numpy as np
@@ -27,7 +28,7 @@ from onpath.models.errors import CodedError
 from onpath.models.systems.xml_elements import shown
 
 SECONDS = 30  # [s] of processor time
-PATIENCE = 300.0  # [s] until the answer, on a busy machine
+PATIENCE = 120.0  # [s] until the answer, on a busy machine
 MEMORY = 2 << 30  # [B]
 NAMED = {"body": "nbody", "joint": "njnt", "site": "nsite", "key": "nkey"}
 """Kinds of elements whose names are read, and what counts them."""
@@ -71,7 +72,7 @@ def read_model(
     """
     if find_spec("mujoco") is None:
         raise CodedError("robot_file.mujoco")
-    path = os.pathsep.join(filter(None, sys.path))
+    path = os.pathsep.join(map(os.path.abspath, filter(None, sys.path)))
     threads = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
     try:
         ended = subprocess.run(
@@ -92,7 +93,7 @@ def read_model(
         if error.returncode == -getattr(signal, "SIGXCPU", 0):
             raise CodedError("robot_file.mujoco_slow", file=file, seconds=seconds) from None
         raise CodedError("robot_file.mujoco_ended", file=file) from None
-    except (OSError, ValueError, KeyError, EOFError):  # it has ended in the middle of its answer
+    except (OSError, ValueError, KeyError, EOFError, BadZipFile):  # it ended within its answer
         raise CodedError("robot_file.mujoco_ended", file=file) from None
     if told["refused"]:
         raise CodedError("robot_file.mjcf", file=file, reason=_one_line(told["refused"]))

@@ -14,10 +14,11 @@ import pytest
 from onpath.app.exports.site.task_data import check_data, check_words
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.assets import asset_path
-from onpath.lessons.checks import verdict
+from onpath.lessons.checks import verdict, way_of
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.record import Record
 from onpath.lessons.sides import robot_names
+from onpath.lessons.task_schema import Only, Task, Way
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.control.laws.own import OWN, short_name
 from onpath.models.control.sides import DEFAULT_LAWS
@@ -187,6 +188,29 @@ def test_checks_say_and_decide_what_the_lab_s_do(
     for i in range(0, records, 500):
         text = json.dumps({"cases": cases[i : i + 500], "words": check_words(words)})
         assert judging.evaluate(JUDGE_ALL, text) == expected[i : i + 500]
+
+
+WAYS_OF_ALL = """text => {
+    const {cases, words} = JSON.parse(text)
+    return cases.map(({ways, record}) => wayOf(ways, record, words))
+}"""
+
+
+def test_a_task_is_passed_in_the_way_that_the_lab_says(judging: Page) -> None:
+    rng, cases, expected = np.random.default_rng(21), list[Any](), list[int]()
+    for _ in range(RECORDS // 10):
+        record = some_record(rng)
+        checks = [
+            each for each in (some_check(rng) for _ in range(3)) if not isinstance(each, Only)
+        ]
+        names = robot_names(record.laws, ENGLISH)
+        ways = [check_data(check, record.parameters, names, ENGLISH) for check in checks]
+        cases.append({"ways": ways, "record": as_data(record)})
+        task = Task(id="a", text="", check=(), way=tuple(Way(check, "") for check in checks))
+        expected.append(way_of(task, record))
+    assert {0, 1, 2} <= set(expected)
+    text = json.dumps({"cases": cases, "words": check_words(ENGLISH)})
+    assert judging.evaluate(WAYS_OF_ALL, text) == expected
 
 
 def as_data(record: Record) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from onpath.lessons.progress import Answer, Notes, Progress
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import MADE, record, sheets
 
-NUMBERS = {"number", "step", "right", "value", "time", "drawn"}
+NUMBERS = {"number", "step", "right", "value", "time", "drawn", "hints"}
 STARTS = "=+-@|%\t\r\n;,\"'\uff1d\u2212"
 hostile = st.builds(
     lambda parts: "".join(parts),
@@ -52,6 +52,7 @@ def test_a_column_has_one_type_and_a_lesson_its_title(course: Course) -> None:
         second={"3": Answer()},
         asked_again=("3",),
         tasks={"hold": 0.0},
+        hints={"hold": 2},
     )
     members = [
         Member(1, "=1+1", Progress(notes={name: notes})),
@@ -71,6 +72,8 @@ def test_a_column_has_one_type_and_a_lesson_its_title(course: Course) -> None:
     assert [(row["result"], row["chosen"]) for row in first] == [("answered", "B"), ("open", "")]
     second = [row for row in found["Answers"] if row["kind"] == "second"]
     assert [row["result"] for row in second] == ["skipped", "open"]
+    tasks = [row for row in found["Answers"] if row["kind"] == "task"]
+    assert [(row["right"], row["hints"]) for row in tasks] == [(1, 2), (0, 0)]
     title = course.lesson(name, "en").front.title
     assert {row["title"] for row in found["Answers"]} == {title}
     about = {row["of"]: row["is"] for row in found["About"]}

@@ -68,7 +68,7 @@ def concept_questions(language: str) -> list[Quiz]:
 def texts(block: Block) -> list[str]:
     """What the guide says of a block."""
     if isinstance(block, Task):
-        return [block.text, block.passed]
+        return [block.text, *block.explanations.values()]
     if isinstance(block, Sketch):
         return [block.question, block.usual, block.answer, block.ask, "data:image/svg+xml"]
     if isinstance(block, NumberQuestion | OpenQuestion):

@@ -16,10 +16,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import PATIENCE, Lab
 from onpath.app.lab.loops import loop_cache
 from onpath.app.lab.loops.loop_cache import MOST, MOST_SOON, Key, LoopCache
 from onpath.app.server.warm_up import LATER, warm_up
+from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.course import NO_LESSONS
 from onpath.models.closed_loop import simulation
 from onpath.models.closed_loop.kernel import Kernel
@@ -33,6 +35,7 @@ from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
+from onpath.models.systems.robots import Robot
 from tests.support.lab import FRAME, assert_sound, do, finish, new_lab, run, states
 from tests.support.suitable_laws import laws_for
 from tests.support.waiting import wait_for
@@ -154,6 +157,55 @@ def test_settings_that_need_another_loop_stop_time_until_it_is_made(
     assert all(each.kind.encoder for each in lab.session.runs.values())
     assert lab.session.laws[LEFT] == law(0.125)
     assert_sound(lab)
+
+
+class LateCache(LoopCache):
+    """Each loop is there when it has been asked for some times."""
+
+    def __init__(self, late: int) -> None:
+        super().__init__(at_once=True)
+        self._late, self._asked = late, dict[Key, int]()
+
+    def find(self, robot: Robot, kind: Kind) -> Loop | None:
+        key = (robot.core, kind)
+        self._asked[key] = self._asked.get(key, 0) + 1
+        return super().find(robot, kind) if self._asked[key] > self._late else None
+
+
+EVERY_KIND = Script(
+    do=(
+        Action(at=0.1, set={"encoder_counts": 2000.0}),
+        Action(at=0.2, path="segment"),
+        Action(at=0.3, laws=Laws(left="waiting_clock")),
+        Action(at=0.4, hold=True),
+        Action(at=0.7, path="ellipse"),
+        Action(at=0.8, hold=False),
+        Action(at=1.1, set={"across": "level_set", "delay": 2.0}),
+        Action(at=1.2, path="circle"),
+        Action(at=1.25, robot="two_link_arm"),
+    ),
+    until=1.5,
+)
+
+
+@pytest.mark.parametrize("late", [1, 7, 23])
+def test_a_script_gives_the_same_bits_however_late_its_loops_come(late: int) -> None:
+    ends = list[Lab]()
+    for store in (LateCache(late), LoopCache(at_once=True)):
+        lab = Lab(store)
+        lab.script = player_of(EVERY_KIND)
+        frames = 0
+        while lab.script is not None:
+            run(lab, FRAME)
+            frames += 1
+            assert frames < 4000
+        ends.append(lab)
+        store.close()
+    late_lab, soon = ends
+    assert late_lab.session.time == soon.session.time and not late_lab.message
+    for side, state in states(soon.session).items():
+        assert np.array_equal(state, states(late_lab.session)[side])
+        assert late_lab.session.laws[side] == soon.session.laws[side]
 
 
 @pytest.mark.parametrize("robot", ROBOTS)

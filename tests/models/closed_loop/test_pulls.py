@@ -26,8 +26,8 @@ FOLLOWER = "path_following"
 RATES, COUNTS, NOISES = (100, 250, 1000), (0.0, 2000.0), (0.0, 1e-4)
 PATHS = ("circle", "circle", "ellipse", "segment")
 PULLED = ("five_bar", "flexible", "seven_axes", "spatial_arm", "two_link_arm")
-"""Robots that no pull stops. The rod of a gantry swings on, a cart comes to the end of its rail,
-and pulls of 15 N can fling the free joint of the planar arm (README.md)."""
+"""Robots that no pull stops. A cart comes to the end of its rail, a gantry with its rod to the end
+of its travel, and a hand may whip a joint of the planar arm (the table in README.md)."""
 NEAR = 0.005  # [m], within which it must be 1.5 s after its release
 
 

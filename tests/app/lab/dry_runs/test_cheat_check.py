@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import pytest
 from msgspec.structs import replace
 
 from onpath.app.cli.main import run_command
+from onpath.app.lab.dry_runs.cheat_check import Asked, asked_tasks, passes_of
 from onpath.app.lab.dry_runs.course_check import lab_at, solved
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.lessons import cheating
 from onpath.lessons.action_schema import Action, Script
 from onpath.lessons.cheating import cheats
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
-from onpath.lessons.task_schema import Only
+from onpath.lessons.students import MOST_PASS, random_students
+from onpath.lessons.task_schema import Check, Only, Setting
 from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -94,6 +97,59 @@ def test_what_once_passed_without_what_is_asked_does_not(
 @pytest.mark.parametrize("name", COURSE.lessons)
 def test_no_cheat_passes_a_task_of_the_course(name: str) -> None:
     assert run_command(["lessons", "check", str(BUILT_IN / name), "--cheat"]) == 0
+
+
+ASKED = {asked.task.id: asked for asked in asked_tasks(COURSE, BUILT_IN)}
+
+
+def without(asked: Asked, gone: type[Check], name: str) -> Asked:
+    """A task without its checks of a kind and name, which are its price."""
+    kept = [c for c in asked.task.check if not (isinstance(c, gone) and c.name == name)]
+    return dataclasses.replace(asked, task=replace(asked.task, check=tuple(kept)))
+
+
+@pytest.mark.parametrize("task", ["hold-two-seconds", "get-it-going"])
+def test_who_does_not_think_does_not_pass(store: LoopCache, task: str) -> None:
+    """The other tasks: `test_no_cheat_passes_a_task_of_the_course`."""
+    found = passes_of(ASKED[task], store, count=20)
+    assert not found.thoughtless and found.random <= MOST_PASS
+
+
+def test_without_its_price_a_task_is_passed_by_sliders_and_chance(store: LoopCache) -> None:
+    found = passes_of(without(ASKED["hold-two-seconds"], Setting, "K1"), store, count=20)
+    assert {"K1 = 2500", "K1 = 2500 and K2 = 200"} <= set(found.thoughtless)
+    first, second = (problem.text for problem in found.problems())
+    assert "of 20 students who draw at random" in first and "K1 = 2500" in second
+    trying = dataclasses.replace(found.asked, task=replace(found.asked.task, exploratory=True))
+    assert not list(dataclasses.replace(found, asked=trying).problems())
+
+
+def test_a_link_that_evokes_a_note_is_no_refusal(store: LoopCache) -> None:
+    """A path that crosses itself is followed, with a note, and once passed this task."""
+    assert not passes_of(ASKED["cheap"], store, count=0).thoughtless
+    found = passes_of(without(ASKED["cheap"], Setting, "path"), store, count=0)
+    assert found.thoughtless == ["link 'A path that crosses itself' and nothing else"]
+
+
+def test_a_hint_that_is_the_solution_is_found(store: LoopCache) -> None:
+    asked = ASKED["get-it-going"]
+    for hint, passed in (("Set K5 to 20, and wait.", True), ("K5 = 12 is not enough.", False)):
+        told = dataclasses.replace(asked, task=replace(asked.task, hints=(hint,)))
+        words = passes_of(told, store, count=0).thoughtless
+        assert ("hint 1" in words) == passed
+
+
+def test_random_students_are_always_the_same() -> None:
+    for asked in ASKED.values():
+        about = asked.lesson, asked.index, asked.task, asked.reference.solution
+        few, many = (list(random_students(*about, count)) for count in (3, 6))
+        assert many[:3] == few and len({repr(script) for script in many}) == 6
+
+
+def test_every_task_of_the_course_has_three_other_solutions() -> None:
+    for task, asked in ASKED.items():
+        scripts = [asked.reference.solution, *asked.reference.variant]
+        assert len({repr(script) for script in scripts}) >= 4, task
 
 
 def test_every_control_is_tried_at_its_extremes_unless_the_task_forbids_it() -> None:
