@@ -8,6 +8,7 @@ import os
 import re
 import sys
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from typing import Protocol
 
@@ -21,6 +22,7 @@ from onpath.app.cli.figure import FigureCommand
 from onpath.app.cli.identify import IdentifyCommand
 from onpath.app.cli.lessons import LessonsCommand
 from onpath.app.cli.serve import Serve
+from onpath.app.cli.supervisor import supervised
 
 INTERRUPTED = 130
 
@@ -66,7 +68,10 @@ COMMANDS: dict[str, type[Subcommand]] = {
 def main() -> None:
     """Entry point of `onpath`."""
     _print_any_text()
-    sys.exit(run_command(sys.argv[1:]))
+    arguments = sys.argv[1:]
+    if arguments and arguments[0] in COMMANDS.keys() - {"serve"}:
+        sys.exit(run_command(arguments))
+    sys.exit(supervised(partial(run_command, arguments)))
 
 
 def _print_any_text() -> None:

@@ -70,8 +70,9 @@ class Serve:
     most_clients: int = 64
     """Maximum number of browsers, 15 of 16 of them from one network; further ones wait."""
     hang_seconds: float = 10.0
-    """A process whose simulation or network hangs for this time answers 503 at /health, and ends
-    after twice this time, so that whatever supervises it starts another; 0 for never."""
+    """A process whose simulation or network hangs for this time answers 503 at /health, and is
+    started again after twice this time; time when it gets no processor does not count. 0 for
+    never."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """Lowest level of log messages."""
 

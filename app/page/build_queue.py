@@ -8,18 +8,13 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 
-import viser
-
 from onpath.app.common.error_log import log_error
 from onpath.app.common.on_time import wait_until_on_time
-from onpath.app.page.notice import show_notice
-from onpath.lessons.words import Words
 
 REST = 2.0  # rest of a build, relative to its duration; sending the page takes time as well
 LONG = 0.5  # [s]; longer builds rest no longer than one of this duration
 CALM = 1.0  # [s] without a build, after which the next one need not rest between its parts
 PATIENCE = 0.1  # [s] that a part of a build waits at most while frames are late
-FEW = 2  # clients ahead from which on a waiting client is shown a notice
 
 
 class BuildLock:
@@ -87,42 +82,21 @@ class BuildQueue:
     that already have a page.
     """
 
-    def __init__(self, server: viser.ViserServer) -> None:
-        self._server = server
+    def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, "pages")
-        self._lock = threading.Lock()
-        self._ahead = 0
 
-    def submit(self, client: viser.ClientHandle, build: Callable[[], None]) -> None:
-        """Queue the build of a page. A client that has to wait is shown a notice.
-
-        Args:
-            build: called even if the client has disconnected by then.
-        """
-        with self._lock:
-            close_notice = _show_notice(client) if self._ahead >= FEW else None
-            self._ahead += 1
+    def submit(self, build: Callable[[], None]) -> None:
+        """Queue the build of a page; it is called even if its client has disconnected by then."""
         with suppress(RuntimeError):  # the server has stopped
-            self._pool.submit(self._build, client.client_id, close_notice, build)
+            self._pool.submit(_build, build)
 
     def stop(self) -> None:
         """Finish the page under construction and discard the queue."""
         self._pool.shutdown(cancel_futures=True)
 
-    def _build(
-        self, client: int, close_notice: Callable[[], None] | None, build: Callable[[], None]
-    ) -> None:
-        try:
-            if close_notice is not None and client in self._server.get_clients():
-                close_notice()
-            build()
-        except Exception as error:
-            log_error(error)
-        with self._lock:
-            self._ahead -= 1
 
-
-def _show_notice(client: viser.ClientHandle) -> Callable[[], None]:
-    """Show the waiting notice; returns a function that removes it."""
-    words = Words()
-    return show_notice(client, words("coming.title"), words("coming.text"))
+def _build(build: Callable[[], None]) -> None:
+    try:
+        build()
+    except Exception as error:
+        log_error(error)

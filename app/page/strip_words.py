@@ -17,8 +17,8 @@ _PLAIN = (
     *("run.step", "run.reset", "key.right", "key.reset"),
     *("past.go_on", "past.undo", "past.undo_hint"),
     *("transport.go_on_hint", "transport.back", "transport.back_hint"),
-    *("strip.lost", "lesson.lessons"),
-    *("help.close", "breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
+    *("lesson.lessons", "help.close"),
+    *("breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
     *(f"invite.{invitation.name}" for invitation in INVITATIONS),
     *("invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
 )

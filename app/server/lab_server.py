@@ -51,7 +51,7 @@ from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
 from onpath.app.viser_adapter.addresses import class_address, storage_key
-from onpath.app.viser_adapter.connections import disconnect
+from onpath.app.viser_adapter.connections import disconnect, turn_away
 from onpath.app.viser_adapter.data_channel import DataChannel
 from onpath.app.viser_adapter.local_storage import ask_item
 from onpath.app.viser_adapter.message_filter import Limits
@@ -119,7 +119,7 @@ class LabServer:
         **listening: Any,
     ) -> None:
         listening.setdefault("limits", Limits(max_upload_bytes=path_upload.MOST_BYTES))
-        self._store, self._privacy_url = store, privacy_url
+        self._host, self._store, self._privacy_url = host, store, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
         self._origins: Sequence[str] = listening.get("allowed_origins", ())
         self._room = AdmissionQueue(most_clients)
@@ -151,7 +151,7 @@ class LabServer:
         self._views = dict[int, LabFeed]()
         self._seen = dict[int, str]()  # where clients have opened the site
         self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
-        self._newcomers = BuildQueue(self.server)
+        self._newcomers = BuildQueue()
         self._tabs = TabVisibilities(self.server)
         set_initial_camera(self.server, stage_of(robot.make(robot.parameters())))
         self._arrivals = Arrivals(self.server, ASKED, self._connected)
@@ -182,7 +182,7 @@ class LabServer:
         """URL to open in a browser; the file of a Unix socket, which only a proxy can open."""
         if self._socket is not None:
             return str(self._socket)
-        host = self.server.get_host()
+        host = self._host
         shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
         shown = f"[{shown}]" if ":" in shown else shown
         return f"http://{shown}:{self.server.get_port()}"
@@ -194,7 +194,7 @@ class LabServer:
             return self._origins[0]
         if self._socket is not None:
             return ""
-        return reachable_site(self.server.get_host(), self.server.get_port())
+        return reachable_site(self._host, self.server.get_port())
 
     def stop(self) -> None:
         """Stop the server and all its threads."""
@@ -263,7 +263,7 @@ class LabServer:
         """Give a newly admitted client its session, if it is still connected."""
         if client.client_id in self.server.get_clients():
             entry = self.sessions.join(client.client_id, known, language)
-            self._newcomers.submit(client, partial(self._show, client, entry))
+            self._newcomers.submit(partial(self._show, client, entry))
 
     def _show(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
         """Show a session to a client, if both still exist."""
@@ -277,7 +277,7 @@ class LabServer:
             view = self._view(client, entry)
         except Exception as error:
             log_error(error)
-            self.sessions.leave(client.client_id)
+            turn_away(self.server, client.client_id, "a page that could not be built")
             return
         self._views[client.client_id] = view
         self._tabs.watch(client, entry.scheduled, view)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -26,6 +27,8 @@ LIGHTS = {f'{{"is":"light","symbol":"{name}"}}': name for name in ("", *AT_JOINT
 """Messages that ask what a symbol of a joint means; an empty name ends it."""
 _NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
+BEAT = 1.0  # [s]; a page to which nothing else is told for so long is told that the lab lives
+ALIVE = b'{"is":"alive"}'
 
 
 class PageData:
@@ -48,6 +51,7 @@ class PageData:
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
         self._lit: tuple[str, bytes] = "", b""  # the last one told, and the robots at that time
+        self._told = 0.0  # when anything was told last, [s]
 
     @property
     def ticket(self) -> str:
@@ -95,7 +99,10 @@ class PageData:
             messages.append(partial(frame_message, frame))
         if self._symbol:
             messages += self._light(robot, drawn)
+        if not messages and time.monotonic() > self._told + BEAT:
+            messages.append(partial(bytes, ALIVE))
         if messages:
+            self._told = time.monotonic()
             stream.hand_over(*messages)
 
     def tell(self, snapshot: PageSnapshot, page: Page) -> None:

@@ -1,6 +1,7 @@
 """Notices when the simulation thread or the event loop hangs, and ends the process.
 
-The process's supervisor starts it again: systemd, Kubernetes, a container's restart policy.
+Whatever supervises the process starts it again: systemd, Kubernetes, a container's restart policy,
+or `app.cli.supervisor`. A process that only gets too little of the processor does not hang.
 """
 
 from __future__ import annotations
@@ -12,42 +13,76 @@ import os
 import signal
 import socket
 import sys
-from collections import Counter
+import threading
+from collections import defaultdict
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
+from typing import Protocol
 
 from onpath.app.common.periodic import Periodic
+from onpath.app.server.processor_time import ProcessorTime
 from onpath.app.simulation.simulation_thread import SimulationThread
 
 log = logging.getLogger(__name__)
 
-EXIT_CODE = 70  # EX_SOFTWARE
+EXIT_CODE = getattr(os, "EX_SOFTWARE", 70)  # which Windows does not have
 LOOKS = 20  # without a sign of life, after which something hangs
 BEAT = 0.1  # [s] between an event loop's signs of life
 
-Sign = Callable[[], object]
+
+@dataclass(frozen=True, slots=True)
+class Sign:
+    """A sign of life of one thread.
+
+    Attributes:
+        value: returns what keeps changing while the thread works.
+        thread: returns its native id.
+    """
+
+    value: Callable[[], object]
+    thread: Callable[[], int]
+
+
+class Clock(Protocol):
+    """See `ProcessorTime`."""
+
+    def look(self) -> None:
+        """Begin another interval."""
+        ...
+
+    def counted(self, thread: int, most: float) -> float:
+        """How much of the last interval counts for a silent thread, [s]."""
+        ...
 
 
 class Watchdog:
-    """Watches signs of life, which are values that keep changing while something works.
+    """Watches signs of life.
 
-    Time is counted in looks of the watchdog's own thread. A suspended process is suspended together
-    with its watchdog, so it has missed at most one look.
+    Silence is counted as `ProcessorTime` does. A suspended process is suspended together with its
+    watchdog, so it has missed at most one look.
 
     Args:
         seconds: time without a sign of life after which something counts as hanging, [s]; after
             twice this time the process ends. 0 for no watch.
         end: ends the process.
+        clock: counts silence.
 
     Attributes:
         trouble: a sentence about what hangs; empty if nothing does.
     """
 
-    def __init__(self, seconds: float, end: Callable[[], object] | None = None) -> None:
+    def __init__(
+        self,
+        seconds: float,
+        end: Callable[[], object] | None = None,
+        clock: Clock | None = None,
+    ) -> None:
         self._seconds, self._end = seconds, end or _end_process
+        self._clock: Clock = clock or ProcessorTime()
         self._signs: Mapping[str, Sign] = {}
         self._seen: dict[str, object] = {}
-        self._silent = Counter[str]()  # looks since the last sign of life
+        self._silent = defaultdict[str, float](float)  # [s] since the last sign of life
         self._looks = Periodic("watchdog", seconds / LOOKS, self.look)
         self.trouble = ""
 
@@ -69,12 +104,16 @@ class Watchdog:
         """Look once at all signs of life."""
         _limit_processor_time(2 * self._seconds)
         _tell_systemd()
+        self._clock.look()
         for name, sign in self._signs.items():
-            seen = sign()
-            self._silent[name] = self._silent[name] + 1 if seen == self._seen.get(name) else 0
+            seen = sign.value()
+            if seen == self._seen.get(name):
+                self._silent[name] += self._clock.counted(sign.thread(), self._seconds / LOOKS)
+            else:
+                self._silent[name] = 0.0
             self._seen[name] = seen
-        ((name, silent),) = self._silent.most_common(1)
-        before, self.trouble = self.trouble, f"{name} hangs" if silent >= LOOKS else ""
+        name, silent = max(self._silent.items(), key=lambda each: each[1])
+        before, self.trouble = self.trouble, f"{name} hangs" if silent >= self._seconds else ""
         if self.trouble and not before:
             log.critical(
                 "%s: no sign of life for %g s; without one in the next %g s this process ends",
@@ -84,23 +123,26 @@ class Watchdog:
             )
         elif before and not self.trouble:
             log.warning("%s no longer", before)
-        if silent >= 2 * LOOKS:
+        if silent >= 2 * self._seconds:
             self._end()
 
 
 def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop) -> dict[str, Sign]:
     """The frame count of a simulation thread, and a count that an event loop increments."""
-    count = 0
+    count = network = 0
 
     def beat() -> None:
-        nonlocal count
+        nonlocal count, network
         count += 1
+        network = threading.get_native_id()
         loop.call_later(BEAT, beat)
 
     loop.call_soon_threadsafe(beat)
     return {
-        "the simulation thread": lambda: simulation.frames.count,
-        "the event loop": lambda: count,
+        "the simulation thread": Sign(
+            lambda: simulation.frames.count, lambda: simulation.thread.native_id or 0
+        ),
+        "the event loop": Sign(lambda: count, lambda: network),
     }
 
 
@@ -123,6 +165,10 @@ def _tell_systemd() -> None:
 
 
 def _end_process() -> None:
-    """End the process at once, without waiting for threads, and print where each of them is."""
-    faulthandler.dump_traceback(sys.stderr)
-    os._exit(EXIT_CODE)
+    """End the process at once, without waiting for threads, and print where each of them is.
+
+    On Windows nobody would start it again: there, what hangs is only said.
+    """
+    if hasattr(os, "fork"):
+        faulthandler.dump_traceback(sys.stderr)
+        os._exit(EXIT_CODE)

@@ -14,7 +14,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future
+from concurrent.futures import Future, wait
 from typing import Any, TypeVar
 
 from onpath.app.common.error_log import log_error
@@ -36,7 +36,7 @@ PAUSE = 1e-3  # [s], minimum between frames, so that the network thread is not s
 HANDOVER = 1e-4  # [s] after which another thread must hand the interpreter back
 ALL_COMMANDS, FEWEST = 4e-3, 2e-3  # [s] of a frame for the commands of all labs: most, and least
 MOST = 0.6  # share of a frame up to which slow updates are made; the network takes up to 0.25
-ANSWER = 30.0  # [s] that another thread waits to be called at the beginning of a frame
+ANSWER = 1.0  # [s] between looks whether the thread that must answer still runs
 
 T = TypeVar("T")
 
@@ -94,17 +94,22 @@ class SimulationThread:
     def call(self, function: Callable[[], T]) -> T:
         """Call a function between two frames, when no lab changes, and return its result.
 
-        All other threads that read a lab use this; the caller waits for the next frame.
+        All other threads that read a lab use this; the caller waits for the next frame, however
+        busy the machine is.
 
         Raises:
-            TimeoutError: the thread does not run.
+            RuntimeError: the thread does not run.
             Exception: whatever the function raises.
         """
         if threading.current_thread() is self.thread:
             return function()
         answer: Future[T] = Future()
         self._calls.append((function, answer))
-        return answer.result(ANSWER)
+        while not answer.done():
+            if not self.thread.is_alive():
+                raise RuntimeError("the simulation has stopped")
+            wait([answer], ANSWER)
+        return answer.result()
 
     @property
     def labs(self) -> list[ScheduledLab]:

@@ -23,7 +23,8 @@ from onpath.app.viser_adapter.secure_connection import SecureConnection
 VERSION = 1
 FAMILY = "onpath-"
 SUBPROTOCOL = f"{FAMILY}{VERSION}"
-GREETING = 5.0  # [s] within which the ticket must come
+GREETING = 90.0  # [s] within which the ticket must come; a page may be slow, and so may be its way
+NO_TICKET = 4001  # closes a connection whose ticket is not valid: the page needs another one
 TICKET = 24  # random bytes of a ticket
 MOST_UNSENT = 1 << 16  # [B] unsent, beyond which a page gets no further data
 AGAIN = 0.05  # [s] until a page that reads slowly is tried again
@@ -147,20 +148,17 @@ class DataChannel:
         """Serve a connection, from its ticket on."""
         self._loop = connection.loop
         with suppress(ConnectionClosed):
-            stream = await self._greeted(connection)
+            try:
+                async with asyncio.timeout(GREETING):
+                    ticket = await connection.recv_data()
+            except TimeoutError:
+                await connection.close(CloseCode.TRY_AGAIN_LATER, "expected a ticket")
+                return
+            stream = self._streams.get(ticket) if isinstance(ticket, str) else None
             if stream is None:
-                await connection.close(CloseCode.POLICY_VIOLATION, "expected a valid ticket")
+                await connection.close(NO_TICKET, "expected a valid ticket")
             else:
                 await stream.serve(connection)
-
-    async def _greeted(self, connection: SecureConnection) -> PageStream | None:
-        """The stream whose ticket a connection shows in time, if any."""
-        try:
-            async with asyncio.timeout(GREETING):
-                ticket = await connection.recv_data()
-        except TimeoutError:
-            return None
-        return self._streams.get(ticket) if isinstance(ticket, str) else None
 
     def take(self, stream: PageStream, messages: Sequence[Message]) -> None:
         """Keep messages until `send`."""

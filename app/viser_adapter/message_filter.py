@@ -48,7 +48,7 @@ class Limits:
         tabs_per_second_each: sustained rate of new websockets, per address.
         tab_burst_each: new websockets at once, per address; a class of sixty that reloads all its
             pages opens 120.
-        silence: time after which a browser is pinged, and time that it has to answer, [s].
+        silence: time after which a browser is pinged; it has three times as long to answer, [s].
         farewell: time that a browser has to acknowledge the close of its connection, [s].
     """
 

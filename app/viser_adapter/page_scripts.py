@@ -13,7 +13,9 @@ from onpath.assets.messages import catalogue, languages
 
 ELEMENTS = {".js": b"script", ".css": b"style"}
 SAID = (
-    *("connect.silent", "connect.lost", "connect.picture_lost"),
+    *("connect.opening", "connect.silent", "connect.blocked", "connect.offline", "connect.lost"),
+    *("connect.building", "connect.loading", "connect.back", "connect.slow"),
+    *("connect.forbidden", "connect.refused", "connect.version", "connect.picture_lost"),
     *("connect.no_webgl", "connect.no_webgl_why", "connect.course", "connect.course_link"),
 )
 """Messages of browser_words.js."""
@@ -64,8 +66,9 @@ def words(course_url: str = "") -> bytes:
     Args:
         course_url: address of the course as pages without a server; empty if there is none.
     """
+    filled = {"origin": "{origin}"}  # by the page
     messages = {
-        code: {key.partition(".")[2]: catalogue(code).text(key, {}) for key in SAID}
+        code: {key.partition(".")[2]: catalogue(code).text(key, filled) for key in SAID}
         | {"course_url": course_url}
         for code in languages()
     }

@@ -13,6 +13,7 @@ from websockets.http11 import Request, Response
 from onpath.app.viser_adapter.addresses import takes_websocket
 
 LONGEST_PATH = 200  # [characters]; file systems have limits
+ORIGIN = "Onpath-Origin"  # with which a page asks whether pages of its origin may connect
 HEALTH = "/health"  # answered while the network thread is alive, for process supervisors
 
 _POLICY = (  # viser's page is one file that unpacks and runs itself, with workers and WebAssembly
@@ -29,6 +30,7 @@ _HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
 }
+_FORBIDDEN = HTTPStatus.FORBIDDEN, "This page's origin may not connect to this server.\n"
 _HOST = re.compile(r"[a-z0-9.-]+(:[0-9]+)?")
 
 
@@ -111,19 +113,23 @@ class RequestFilter:
             return HTTPStatus.NOT_FOUND, "Not found.\n"
         upgrades = request.headers.get_all("Upgrade")
         if not upgrades:
-            return None
+            return self._answer_about(request)
         if len(upgrades) > 1:
             return HTTPStatus.BAD_REQUEST, "More than one Upgrade.\n"
         if not self.open:
             return HTTPStatus.SERVICE_UNAVAILABLE, "Starting.\n"
         if not takes_websocket(request.path):
             return HTTPStatus.NOT_FOUND, "No lab has this address.\n"
-        if not self._trusts(request):
-            return HTTPStatus.FORBIDDEN, "This page's origin may not connect to this server.\n"
-        return None
+        return None if self._trusts(request, request.headers.get_all("Origin")) else _FORBIDDEN
 
-    def _trusts(self, request: Request) -> bool:
-        origins = request.headers.get_all("Origin")
+    def _answer_about(self, request: Request) -> tuple[HTTPStatus, str] | None:
+        """The answer to a page that asks why its websocket does not open: browsers do not tell."""
+        origins = request.headers.get_all(ORIGIN)
+        if not origins:
+            return None
+        return (HTTPStatus.OK, "welcome\n") if self._trusts(request, origins) else _FORBIDDEN
+
+    def _trusts(self, request: Request, origins: list[str]) -> bool:
         if not origins:  # not a browser; other programs could send any origin anyway
             return True
         origin = origins[0].lower()

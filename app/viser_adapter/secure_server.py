@@ -56,6 +56,9 @@ _SUBPROTOCOL = f"viser-v{viser.__version__}"
 _SHARE_TUNNEL = (wire.ShareUrlRequest, wire.ShareUrlDisconnect)
 
 BACKLOG = 100  # connections, asyncio's default
+ANSWERS = (
+    3  # as long as the silence before: a page whose first messages are late has time to answer
+)
 STARTING = 8.0  # [s] that a request waits until the server is ready; websockets gives up after 10
 
 
@@ -118,7 +121,8 @@ def make_server(
         course_url=course_url,
         scripts=scripts,
     ):
-        server = viser.ViserServer(host=host, port=port, label=label, verbose=verbose)
+        shown = f"[{host}]" if ":" in host else host  # in the addresses that viser prints
+        server = viser.ViserServer(host=shown, port=port, label=label, verbose=verbose)
     listener.listen(BACKLOG)  # so many may wait in the system, even if fewer are accepted at once
     harden(server, limits=limits)
     door.open = True
@@ -210,7 +214,7 @@ def _options(limits: Limits) -> dict[str, Any]:
         "backlog": min(BACKLOG, limits.max_waiting),  # accepted before any of them is counted
         "max_size": limits.max_message_bytes,
         "ping_interval": limits.silence,
-        "ping_timeout": limits.silence,
+        "ping_timeout": ANSWERS * limits.silence,
         "close_timeout": limits.farewell,
     }
 

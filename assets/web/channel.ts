@@ -9,8 +9,8 @@ const PROTOCOL = "onpath-1"
 const SECONDS = 60 // of samples that are kept
 const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
 const HEAD = 2 // numbers of a row before those of the robots
-const PATIENCE = [500, 1000, 2000, 4000, 8000] // [ms], until it connects again
-const STALE = 1008 // the ticket is not valid any more
+const PATIENCE = [0, 500, 1000, 2000] // [ms], until it connects again
+const NO_TICKET = 4001 // the ticket is not valid, or not any more
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two looks at the past
 const SETTLES = 400 // [ms], until what the server shows counts again
@@ -95,6 +95,9 @@ export interface LabState {
 
 interface Refusal { is: "refused"; why: string }
 
+/** Comes when nothing else does. */
+interface Alive { is: "alive" }
+
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
     readonly lines: readonly (readonly Vector[])[]
@@ -171,6 +174,12 @@ export class RemoteEngine implements Engine {
     route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
+    /** How many messages it has heard, and connections opened. */
+    heard = 0
+    /** The last ticket that was not valid, when [ms], and how many in a row were not. */
+    refused = { ticket: "", at: 0, times: 0 }
+    /** Whether the lab is of another version. */
+    outdated = false
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
@@ -183,7 +192,6 @@ export class RemoteEngine implements Engine {
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
     private ticket = ""
-    private refused = "" // a ticket that is not valid
     private tries = 0
     private again = 0 // [ms], when it may be tried again
     private readonly listeners = new Set<(change: Change) => void>()
@@ -194,12 +202,15 @@ export class RemoteEngine implements Engine {
     /** Connect with a ticket, unless it is in use or was refused; called repeatedly. */
     open(ticket: string): void {
         const now = performance.now()
-        if (!ticket || ticket === this.refused || (this.socket && ticket === this.ticket) || now < this.again) return
+        if (!ticket || ticket === this.refused.ticket || (this.socket && ticket === this.ticket) || now < this.again) return
         this.close()
         this.ticket = ticket
         const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, ""), PROTOCOL)
         this.socket = socket
-        socket.addEventListener("open", () => socket.send(ticket))
+        socket.addEventListener("open", () => {
+            this.heard++
+            socket.send(ticket)
+        })
         socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
         socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
     }
@@ -284,10 +295,11 @@ export class RemoteEngine implements Engine {
         this.tell("state")
     }
 
-    private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal): void {
+    private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal | Alive): void {
+        this.heard++
         if (!this.connected) {
             this.connected = true
-            this.tries = 0
+            this.tries = this.refused.times = 0
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             this.tell("state")
         }
@@ -308,7 +320,7 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "measured") {
             this.measured = message
             this.tell("measured")
-        } else console.warn(`refused: ${message.why}`)
+        } else if (message.is === "refused") console.warn(`refused: ${message.why}`)
     }
 
     private frame({ rows, running, past, anew, straight }: FrameMessage): void {
@@ -346,7 +358,8 @@ export class RemoteEngine implements Engine {
     private closed(code: number): void {
         this.socket = null
         this.connected = false
-        if (code === STALE || code === OTHER_VERSION) this.refused = this.ticket
+        if (code === NO_TICKET) this.refused = { ticket: this.ticket, at: Date.now(), times: this.refused.times + 1 }
+        if (code === OTHER_VERSION) this.outdated = true
         this.again = performance.now() + PATIENCE[Math.min(this.tries++, PATIENCE.length - 1)]!
         this.tell("state")
     }

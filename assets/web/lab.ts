@@ -3,6 +3,7 @@
 
 import { RemoteEngine } from "./channel"
 import { Column } from "./column"
+import { Connection } from "./connection"
 import { made, tell } from "./controls"
 import { shown } from "./engine"
 import { retone } from "./ink"
@@ -36,7 +37,6 @@ class Face {
     private readonly element: HTMLElement
     private readonly undo = made("button", "")
     private readonly transport: Transport
-    private readonly lost: HTMLElement
     private readonly clock = made("span", "clock")
     private readonly column: Column
     private readonly voice: Voice
@@ -57,8 +57,6 @@ class Face {
         this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))
         this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
-        this.lost = made("p", "lost")
-        this.lost.setAttribute("role", "status")
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
         this.sides = indices.map(i => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))
@@ -68,7 +66,7 @@ class Face {
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo)
         const title = made("h2", "", said(texts, "chart.title"))
-        const head = made("div", "head", title, this.clock, this.lost, this.transport.element)
+        const head = made("div", "head", title, this.clock, this.transport.element)
         this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
         this.element.id = "op-strip"
@@ -137,7 +135,7 @@ class Face {
     }
 
     private show(): void {
-        const { engine, texts, transport } = this
+        const { engine, transport } = this
         const { past } = engine.state
         engine.texts.forEach(({ title, name, text, caption }, i) => {
             const [robot, law] = this.titles[i]!.children as unknown as [HTMLElement, HTMLElement]
@@ -150,7 +148,6 @@ class Face {
         })
         this.undo.hidden = !engine.lab!.undo
         transport.element.hidden = !engine.lab!.own
-        tell(this.lost, engine.connected ? "" : said(texts, "strip.lost"))
         this.enlarge(engine.lab!.presenting)
         this.read = 0
     }
@@ -206,17 +203,17 @@ function sliderOf(gain: string): Element | null {
 
 /** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
 export function showLab(): void {
-    const engine = new RemoteEngine(), root = document.documentElement
+    const engine = new RemoteEngine(), root = document.documentElement, connection = new Connection(engine)
     let face: Face | null = null
     let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
     let source: DOMStringMap | undefined
-    const look = () => {
+    const follow = () => {
         source = document.querySelector<HTMLElement>("[data-page]")?.dataset ?? source
         if (!source) return // the page is being built; later, its panel may be folded
         root.classList.remove("op-loading")
         root.lang = source["language"]!
-        engine.open(source["ticket"] ?? "")
+        connection.page(source["ticket"] ?? "")
         if (source["parts"] !== words) {
             face?.end()
             face = null
@@ -229,7 +226,10 @@ export function showLab(): void {
         calmed = true // users who ask for less motion begin with a lab at rest
         engine.act({ do: "run", on: false })
     }
-    setInterval(look, LOOK)
+    setInterval(() => {
+        follow()
+        connection.look(face !== null)
+    }, LOOK)
     new MutationObserver(retone).observe(root, { attributeFilter: ["data-mantine-color-scheme"] })
     Object.assign(window, { onpathLab: engine }) // for tests
 }

@@ -224,9 +224,6 @@ full-text =
     } Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
 full-network = Alle { $places } Plätze für ein Netz sind besetzt; die übrigen werden für andere Netze freigehalten. Lass diese Seite offen: Sie geht von selbst weiter, sobald einer frei ist.
 
-coming-title = Einen Augenblick
-coming-text = Gerade verbinden sich viele auf einmal. Dein Labor öffnet sich in ein paar Sekunden.
-
 test-title_before = Vor dem Kurs: { $title }
 test-title_after = Nach dem Kurs: { $title }
 test-open = Test öffnen
@@ -486,8 +483,18 @@ connect-no_webgl_why = Die beiden Roboter werden mit WebGL 2 gezeichnet, das in 
 connect-course = Die Lektionen brauchen kein WebGL: Den Kurs gibt es auch als Seiten. Wer dieses Labor betreibt, erstellt sie mit „onpath export site course“.
 connect-course_link = Zum Kurs
 connect-picture_lost = Das Bild der Roboter ging verloren; das Labor läuft weiter. Das Bild kommt von selbst zurück; wenn nicht, lade die Seite neu.
-connect-silent = Das Labor antwortet nicht. Läuft es noch? Ein Proxy dazwischen muss Websockets weiterleiten: assets/deploy/README.md zeigt, wie.
+connect-opening = Die Verbindung zum Labor wird aufgebaut …
+connect-building = Das Labor bereitet deine Seite vor. Wenn viele auf einmal kommen, dauert das etwas länger.
+connect-loading = Deine Seite ist da; Kurven und Knöpfe folgen.
+connect-back = Das Labor war unterbrochen oder wurde neu gestartet. In ein paar Sekunden geht es für dich weiter.
+connect-slow = Das Labor ist gerade langsam: Sein Rechner ist ausgelastet, oder die Verbindung ist schlecht. Nichts geht verloren.
+connect-silent = Das Labor antwortet nicht. Läuft es noch? Diese Seite versucht weiter, es zu erreichen.
+connect-blocked = Das Labor antwortet, aber seine Verbindung öffnet sich nicht. Vielleicht ist es voll, oder ein Proxy dazwischen leitet Websockets nicht weiter: assets/deploy/README.md zeigt, wie. Diese Seite versucht es weiter.
+connect-offline = Dieses Gerät hat keine Verbindung zu einem Netz. Sobald es eine gibt, geht es von selbst weiter.
 connect-lost = Die Verbindung zum Labor ist abgebrochen. Was du siehst, steht still; die Seite versucht weiter, das Labor zu erreichen.
+connect-forbidden = Dieses Labor lässt Seiten von { $origin } nicht zu. Öffne es unter seiner eigenen Adresse, oder bitte den, der es betreibt, diese zuzulassen (--origin).
+connect-refused = Das Labor weist diese Seite immer wieder ab. Lade die Seite neu; wenn das nicht hilft, sag dem, der das Labor betreibt, dass sein Proxy eine Seite vielleicht zu mehreren Prozessen leitet.
+connect-version = Das Labor hat jetzt eine andere Version. Lade die Seite neu; dein Labor hat alles behalten.
 page-scene = Zwei Roboter, die einer Bahn folgen, von vorn gesehen. Was sie tun, wird laufend angesagt; die Tasten des Labors stehen unter „Hilfe und Tasten“.
 page-keys = Alle Befehle
 page-fold = Bedienfeld einklappen
@@ -1679,10 +1686,6 @@ site-control-direction = die Richtung des Festhaltens
 site-control-wall = die Wand
 site-control-start = der Start neben der Bahn
 site-control-path = die Wahl der Bahn
-
-# The strip below the scene
-
-strip-lost = Keine Verbindung zum Labor; neuer Versuch läuft.
 
 ## Roboter aus Dateien
 

@@ -226,9 +226,6 @@ full-text =
     } Leave this page open: it continues by itself as soon as one is free.
 full-network = All { $places } places for one network are taken; the rest is kept for other networks. Leave this page open: it continues by itself as soon as one is free.
 
-coming-title = One moment
-coming-text = Many people are connecting at once. Your lab opens in a few seconds.
-
 test-title_before = Before the course: { $title }
 test-title_after = After the course: { $title }
 test-open = Open the test
@@ -401,8 +398,18 @@ connect-no_webgl_why = The two robots are drawn with WebGL 2, which is switched 
 connect-course = The lessons need no WebGL: the course also exists as pages. Whoever runs this lab makes them with “onpath export site course”.
 connect-course_link = To the course
 connect-picture_lost = The picture of the robots was lost; the lab goes on. The picture comes back by itself; if it does not, load the page again.
-connect-silent = The lab does not answer. Is it still running? A proxy in between must pass websockets on: assets/deploy/README.md shows how.
+connect-opening = Connecting to the lab …
+connect-building = The lab is preparing your page. When many come at once, this takes a little longer.
+connect-loading = Your page is here; its plots and buttons follow.
+connect-back = The lab was interrupted or restarted. You are back in a few seconds.
+connect-slow = The lab is slow at the moment: its computer is busy, or the connection is bad. Nothing is lost.
+connect-silent = The lab does not answer. Is it still running? This page keeps trying to reach it.
+connect-blocked = The lab answers, but its connection does not open. It may be full, or a proxy in between does not pass websockets on: assets/deploy/README.md shows how. This page keeps trying.
+connect-offline = This device has no connection to a network. The page goes on by itself as soon as there is one.
 connect-lost = The connection to the lab is lost. What you see stands still; the page keeps trying to reach the lab.
+connect-forbidden = This lab does not let pages of { $origin } connect. Open it at its own address, or ask whoever runs it to allow this one (--origin).
+connect-refused = The lab keeps refusing this page. Load the page again; if that does not help, tell whoever runs the lab that its proxy may lead one page to several processes.
+connect-version = The lab has another version now. Load the page again; your lab has kept everything.
 page-scene = Two robots that follow a path, seen from the front. What they do is announced as it happens; the keys of the lab are under “Help and keys”.
 page-keys = All commands
 page-fold = Collapse the controls
@@ -1317,10 +1324,6 @@ site-control-direction = the direction of the hold
 site-control-wall = the wall
 site-control-start = the start beside the path
 site-control-path = the choice of the path
-
-# The strip below the scene
-
-strip-lost = No connection to the lab; trying again.
 
 ## Robots from files
 

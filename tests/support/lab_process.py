@@ -18,6 +18,7 @@ from tests.support.waiting import wait_for
 
 WAIT = 180.0  # [s]; only ends a test that would hang
 PROGRAM = ("-m", "onpath")
+SUPERVISED = {"NOTIFY_SOCKET": "/nowhere"}  # else it would start itself again
 
 
 def free_ports(count: int) -> list[int]:
@@ -49,7 +50,7 @@ class LabProcess:
         program: Sequence[str] = PROGRAM,
         log: Path | None = None,
     ) -> None:
-        self.port, self._environment = port, {**os.environ, **environment}
+        self.port, self._environment = port, {**os.environ, **SUPERVISED, **environment}
         self._log = log
         self._command = [sys.executable, *program, "--port", str(port), *options]
         self.process = self._started()

@@ -49,6 +49,7 @@ CHANGES = (
     Change(2, "tracker_integral", "on", ("five_bar", "two_link_arm", "flexible")),
     Change(3, "at_limit_for", "path_following"),
     Change(4, "observer_time", 0.0),
+    Change(4, "observer_bound", 10.0),
 )
 """By version, oldest first."""
 DEFAULTS = max(change.since for change in CHANGES)

@@ -70,7 +70,7 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
 """Made with version 1, when K3 was 0 and acted in the tracker, too; and what they meant then."""
 VERSION_1 = ("five_bar", "two_link_arm", "flexible")
 """The robots that there were."""
-SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0}
+SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0, "observer_bound": 10.0}
 """Former values of what every robot has had since version 2."""
 
 
@@ -169,6 +169,15 @@ def test_the_value_of_a_version_is_that_before_the_next_change(
     assert [value.get("K1") for value in values] == [123.0, 123.0, 321.0, 321.0, None]
     assert [value.get("K3") for value in values] == [0.0, 77.0, 77.0, None, None]
     assert [change.since for change in CHANGES] == sorted(change.since for change in CHANGES)
+
+
+def test_a_gain_of_a_law_whose_default_has_changed_keeps_its_value() -> None:
+    old = from_data({"defaults": 3, "benches": {"five_bar": {"parameters": {"observer_rate": 9}}}})
+    assert old.robots["five_bar"].parameters["observer_bound"] == 10.0
+    assert (
+        "observer_bound"
+        not in from_data({"defaults": DEFAULTS}).robots.get("five_bar", RobotSetup()).parameters
+    )
 
 
 def test_a_share_code_of_a_newer_version_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""Sixty simultaneous clients are admitted one at a time, and waiting clients see a notice."""
+"""The pages of sixty simultaneous clients are built one at a time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page import build_queue
-from onpath.app.page.build_queue import FEW, LONG, REST, BuildLock
+from onpath.app.page.build_queue import LONG, REST, BuildLock
 from onpath.app.page.page import Page
 from onpath.app.page.panels import dialog
 from onpath.app.page.panels.keys import Keys
@@ -27,7 +27,6 @@ from tests.support.waiting import wait_for
 pytestmark = pytest.mark.thorough
 
 CROWD = 6
-MOMENT = "Many people are"
 
 
 class Builds:
@@ -92,8 +91,8 @@ def wait_for_clients(server: LabServer, count: int) -> None:
 
 
 def wait_for_queue(server: LabServer, count: int) -> None:
-    """Wait until so many clients are in the queue, which they enter some time after connecting."""
-    wait_for(lambda: server._newcomers._ahead == count, 60)
+    """Wait until so many clients wait in the queue, some time after they have connected."""
+    wait_for(lambda: server._newcomers._pool._work_queue.qsize() == count, 60)
 
 
 def wait_for_views(server: LabServer, count: int) -> None:
@@ -101,40 +100,32 @@ def wait_for_views(server: LabServer, count: int) -> None:
 
 
 class Comer(threading.Thread):
-    """A student who looks until a robot moves, or leaves when told to wait."""
+    """A student who looks until a robot moves, or until it is time to leave."""
 
-    def __init__(self, address: str, patient: bool = True) -> None:
+    def __init__(self, address: str) -> None:
         super().__init__(daemon=True)
-        self.student, self._patient = Student(address), patient
-        self.told = False
+        self.student, self.leaves = Student(address), threading.Event()
 
     def run(self) -> None:
         self.student.open()
-        self.student.read(self._inside if self._patient else lambda: self._inside() or self.told)
-        if not self._patient:
+        self.student.read(lambda: self.student.moving > 0 or self.leaves.is_set())
+        if self.leaves.is_set():
             self.student.__exit__()
 
-    def _inside(self) -> bool:
-        self.told = self.told or self.student.sees(MOMENT)
-        return self.student.moving > 0
 
-
-def test_pages_are_built_one_at_a_time_and_waiting_clients_are_told(
-    server: LabServer, builds: Builds
-) -> None:
+def test_pages_are_built_one_at_a_time(server: LabServer, builds: Builds) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
     with ExitStack() as stay:
         crowd = [Comer(address) for _ in range(CROWD)]
         for comer in crowd:
             stay.enter_context(comer.student)
             comer.start()
-        wait_for(lambda: sum(comer.told for comer in crowd) == CROWD - FEW, 60)
+        wait_for_queue(server, CROWD - 1)
         builds.may_begin.set()
         for comer in crowd:
             comer.join(60)
         wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
-        assert not any(comer.student.sees(MOMENT) for comer in crowd)
         assert builds.rests == (CROWD - 1) * [REST * LONG]  # between two pages
         for lab in server.simulation.labs:  # a teacher opens a lesson for all
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
@@ -196,11 +187,13 @@ def test_no_page_is_built_for_a_client_that_leaves_while_waiting(
     server: LabServer, builds: Builds
 ) -> None:
     address = f"ws://127.0.0.1:{server.server.get_port()}"
-    crowd = [Comer(address, patient=number < FEW + 1) for number in range(CROWD)]
+    crowd = [Comer(address) for _ in range(CROWD)]
     for number, comer in enumerate(crowd):
         comer.start()
-        wait_for_queue(server, number + 1) if number <= FEW else comer.join(60)
-    wait_for_clients(server, FEW + 1)
+        wait_for_queue(server, number)
+    for comer in crowd[3:]:
+        comer.leaves.set()
+    wait_for_clients(server, 3)
     builds.may_begin.set()
     for comer in crowd:
         comer.join(60)

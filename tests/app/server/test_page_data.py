@@ -278,3 +278,35 @@ def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
             script.read_until("frame", lambda frame: frame["rows"][-1][1] == 3)
             script.do("Hold", on=False)
             assert "only shown" in script.read("refused")["why"]
+
+
+def test_a_page_to_which_nothing_is_told_hears_that_the_lab_lives(
+    server: LabServer, student: Student
+) -> None:
+    with Script(server, ticket_of(student)) as script:
+        script.read("frame")
+        script.do("SetRunning", running=False)
+        script.read_until("frame", lambda frame: not frame["running"])
+        for _ in range(2):
+            script.told.clear()
+            script.read("alive")
+
+
+def test_a_page_that_could_not_be_built_comes_again(
+    server: LabServer, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its browser connects again; before, it stayed without a view."""
+    genuine, fails = server._view, [True]
+
+    def view(*what: Any) -> Any:
+        if fails and fails.pop():
+            raise OSError("this once")
+        return genuine(*what)
+
+    monkeypatch.setattr(server, "_view", view)
+    with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
+        student.open()
+        student.wait_until_closed()
+        assert "this once" in caplog.text
+        student.reopen()
+        assert ticket_of(student)

@@ -9,20 +9,23 @@ import sys
 import time
 from collections.abc import Iterator
 from functools import partial
+from itertools import cycle
 from pathlib import Path
 
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Watchdog
+from onpath.app.server.watchdog import EXIT_CODE, LOOKS, Sign, Watchdog
 from onpath.app.storage.records import Records
 from tests.support import waiting
 from tests.support.lab_process import LabProcess, free_ports
+from tests.support.starved import starved
 from tests.support.student import Student
 
 WAIT = 60.0  # [s]; only ends a test that would hang
 HANG = 2  # [s]
+STARVED = 30.0  # [s]
 wait_for = partial(waiting.wait_for, seconds=WAIT)
 linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux only")
 
@@ -35,6 +38,8 @@ from onpath.app.lab.commands import SetParameter
 def hang(value):
     if value == 401.0:
         threading.Event().wait()
+    while value == 403.0:
+        pass
     if value == 402.0:
         10 ** (10**9)  # never lets go of the interpreter
 
@@ -52,35 +57,62 @@ sys.exit(run_command(["serve", *sys.argv[1:]]))
 
 
 class Look:
-    """A watchdog of two signs of life, which looks when it is told."""
+    """A watchdog of two signs of life, which looks when it is told; each look counts one second."""
 
     def __init__(self) -> None:
-        self.signs, self.ended = {"a": 0, "b": 0}, 0
-        self.dog = Watchdog(0.0, self._end)
-        self.dog._signs = {name: partial(self.signs.__getitem__, name) for name in self.signs}
+        self.values, self.ended = {"a": 0, "b": 0}, 0
+        self.dog = Watchdog(float(LOOKS), self._end, self)
+        threads = {"a": 1, "b": 2}
+        self.counts = dict.fromkeys(threads.values(), 1.0)
+        self.dog._signs = {
+            name: Sign(partial(self.values.__getitem__, name), partial(threads.__getitem__, name))
+            for name in threads
+        }
+
+    def __enter__(self) -> Look:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.dog.stop()  # it limits the processor time of this process
+
+    def look(self) -> None:
+        pass
+
+    def counted(self, thread: int, most: float) -> float:
+        return min(self.counts[thread], most)
 
     def _end(self) -> None:
         self.ended += 1
 
 
-@given(st.lists(st.tuples(st.sets(st.sampled_from("ab")), st.integers(1, 2 * LOOKS)), max_size=6))
-@example([(set(), LOOKS - 1), ({"a", "b"}, 1), ({"a"}, LOOKS - 1)])
-@example([({"b"}, LOOKS), ({"a", "b"}, 1), ({"a"}, 2 * LOOKS)])
+@given(
+    st.lists(
+        st.tuples(
+            st.sets(st.sampled_from("ab")), st.integers(1, 2 * LOOKS), st.sampled_from([1.0, 0.125])
+        ),
+        max_size=6,
+    )
+)
+@example([(set(), LOOKS - 1, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, LOOKS - 1, 1.0)])
+@example([({"b"}, LOOKS, 1.0), ({"a", "b"}, 1, 1.0), ({"a"}, 2 * LOOKS, 1.0)])
+@example([(set(), 2 * LOOKS, 0.125), (set(), 2 * LOOKS, 1.0)])
 def test_anything_without_a_sign_of_life_for_long_enough_hangs(
-    lives: list[tuple[set[str], int]],
+    lives: list[tuple[set[str], int, float]],
 ) -> None:
-    look, silent = Look(), {"a": 0, "b": 0}
-    look.dog.look()
-    for alive in [alive for alive, looks in lives for _ in range(looks)]:
-        for name in silent:
-            silent[name] = 0 if name in alive else silent[name] + 1
-            look.signs[name] += name in alive
-        ended = look.ended
+    silent = {"a": 0.0, "b": 0.0}
+    with Look() as look:
         look.dog.look()
-        hangs = {name for name in silent if silent[name] >= LOOKS}
-        assert bool(hangs) == bool(look.dog.trouble)
-        assert not hangs or look.dog.trouble in {f"{name} hangs" for name in hangs}
-        assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
+        for alive, counts in [(alive, counts) for alive, n, counts in lives for _ in range(n)]:
+            look.counts = dict.fromkeys(look.counts, counts)
+            for name in silent:
+                silent[name] = 0.0 if name in alive else silent[name] + counts
+                look.values[name] += name in alive
+            ended = look.ended
+            look.dog.look()
+            hangs = {name for name in silent if silent[name] >= LOOKS}
+            assert bool(hangs) == bool(look.dog.trouble)
+            assert not hangs or look.dog.trouble in {f"{name} hangs" for name in hangs}
+            assert (look.ended > ended) == (max(silent.values()) >= 2 * LOOKS)
 
 
 @linux_only
@@ -92,13 +124,14 @@ def test_systemd_hears_from_a_process_at_every_look(
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as systemd:
         systemd.bind(address.replace("@", "\0", 1))
         systemd.settimeout(WAIT)
-        look = Look()
-        look.dog.look()  # nobody asks
-        monkeypatch.setenv("NOTIFY_SOCKET", address)
-        for _ in range(2):
-            look.dog.look()
-            assert systemd.recv(100) == b"WATCHDOG=1"
-    look.dog.look()  # it has gone
+        with Look() as look:
+            look.dog.look()  # nobody asks
+            monkeypatch.setenv("NOTIFY_SOCKET", address)
+            for _ in range(2):
+                look.dog.look()
+                assert systemd.recv(100) == b"WATCHDOG=1"
+    with Look() as look:
+        look.dog.look()  # it has gone
 
 
 class Served(LabProcess):
@@ -118,8 +151,8 @@ class Served(LabProcess):
         self.kill()
         self._records.close()
 
-    def student(self) -> Student:
-        return Student(f"ws://127.0.0.1:{self.port}")
+    def student(self, channel: bool = False) -> Student:
+        return Student(f"ws://127.0.0.1:{self.port}", channel=channel)
 
 
 @pytest.fixture
@@ -131,14 +164,17 @@ def served(tmp_path: Path) -> Iterator[Served]:
 
 @pytest.mark.thorough
 @linux_only
+@pytest.mark.parametrize(
+    ("value", "where"), [(401.0, "threading.py"), (403.0, "in hang")], ids=["is locked", "spins"]
+)
 def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
-    served: Served,
+    served: Served, value: float, where: str
 ) -> None:
     with served.student() as student:
         student.open()
         student.set("K2", 44.0)
         student.read(lambda: served.has_kept(student.code, "'K2': 44.0"))
-        student.set("K1", 401.0)
+        student.set("K1", value)
         wait_for(lambda: served.health() == (503, "the simulation thread hangs\n"))
         assert served.exit_code() == EXIT_CODE
         served.start_again()
@@ -147,7 +183,7 @@ def test_a_simulation_that_hangs_is_replaced_and_its_labs_go_on(
         assert student.code == code and student.find("K2")["value"] == 44.0
     said = served.said
     assert said.count("the simulation thread hangs: no sign of life for 2 s") == 1
-    assert "threading.py" in said  # where it hangs
+    assert where in said
 
 
 @pytest.mark.thorough
@@ -182,3 +218,28 @@ def test_a_suspended_process_does_not_hang(
         student.read(lambda: student.moving > moving + 60)
         assert served.health() == (200, "well\n")
     assert process.poll() is None and "hangs" not in served.said
+
+
+@pytest.mark.thorough
+@linux_only
+def test_a_process_that_gets_a_tenth_of_the_machine_does_not_hang(served: Served) -> None:
+    """Its labs do dear work meanwhile, and go on afterwards."""
+    with served.student(channel=True) as first, served.student() as second:
+        for student in (first, second):
+            student.open()
+            student.read(lambda student=student: student.moving > 10)
+        until, gain = time.monotonic() + STARVED, 40.0
+        with starved(served.process.pid):
+            for robot in cycle(("two_link_arm", "five_bar")):
+                first.tell({"do": "ChooseRobot", "name": robot})
+                second.set("K2", gain := gain + 1.0)
+                for student in (first, second):
+                    later = time.monotonic() + 1.0
+                    student.read(lambda later=later: time.monotonic() > later)
+                if time.monotonic() > until:
+                    break
+        moving = first.moving, second.moving
+        first.read(lambda: first.moving > moving[0] + 60)
+        second.read(lambda: second.moving > moving[1] + 60)
+        wait_for(lambda: served.health() == (200, "well\n"))
+    assert served.process.poll() is None and "hangs" not in served.said

@@ -23,6 +23,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.advance_together import Frame
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
+from onpath.app.simulation import simulation_thread
 from onpath.app.simulation.display_rate import LATE, STRIDES, is_turn
 from onpath.app.simulation.frame_length import frame_length
 from onpath.app.simulation.scheduled_lab import ScheduledLab
@@ -505,3 +506,43 @@ def test_another_thread_reads_a_lab_between_two_frames_only() -> None:
         assert thread.call(lambda: "goes on") == "goes on"
     finally:
         thread.stop()
+
+
+def test_a_caller_waits_as_long_as_a_frame_takes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a page would stay without its first picture on a busy machine."""
+    monkeypatch.setattr(simulation_thread, "ANSWER", 0.01)
+    thread, begun, may_end = SimulationThread(), threading.Event(), threading.Event()
+    looks = list[float]()
+
+    class Slow(Lab):
+        def frame(self, seconds: float) -> Frame:
+            begun.set()
+            assert may_end.wait(10)
+            yield from super().frame(seconds)
+
+    def waited(_: object, seconds: float) -> None:
+        looks.append(seconds)
+        if len(looks) > 20:
+            may_end.set()
+        time.sleep(seconds)
+
+    scheduled = ScheduledLab(Slow(new_lab().session._store))
+    scheduled.view = View(lambda _: None)
+    thread.add(scheduled)
+    thread.start()
+    try:
+        assert begun.wait(10)
+        monkeypatch.setattr(simulation_thread, "wait", waited)
+        assert thread.call(lambda: "at last") == "at last"
+    finally:
+        may_end.set()
+        thread.stop()
+    assert len(looks) > 20
+
+
+def test_a_caller_does_not_wait_for_a_thread_that_has_ended() -> None:
+    thread = SimulationThread()
+    thread.start()
+    thread.stop()
+    with pytest.raises(RuntimeError, match="stopped"):
+        thread.call(lambda: None)

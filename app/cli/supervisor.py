@@ -1,0 +1,57 @@
+"""Starts the lab again when its process has crashed or hung, if nothing else does.
+
+A child serves, and its parent waits: without threads, and before anything large is imported. Labs
+and classes are in the database, so their pages come back by themselves. systemd, which says that it
+supervises, starts a process again itself. Windows has no `fork`; there, nobody does.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+HANDED_ON = signal.SIGINT, signal.SIGTERM
+SOON = 5.0  # [s]; a lab that ends so soon after its start would do it again
+LOOK = 0.5  # [s] between a child's looks for its parent
+
+
+def supervised(serve: Callable[[], int]) -> int:
+    """Serve in a child, and again if it crashes or hangs; return its exit code.
+
+    Args:
+        serve: serves until it is asked to stop; returns the exit code.
+    """
+    if not hasattr(os, "fork") or "NOTIFY_SOCKET" in os.environ:
+        return serve()
+    child = 0
+
+    def hand_on(number: int, _: object) -> None:
+        if not child:
+            sys.exit(128 + number)
+        os.kill(child, number)
+
+    handlers = {number: signal.signal(number, hand_on) for number in HANDED_ON}
+    while True:
+        begun = time.monotonic()
+        if not (child := os.fork()):
+            for number, handler in handlers.items():
+                signal.signal(number, handler)
+            threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
+            return serve()
+        code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+        goes_on = code < 0 or code == os.EX_SOFTWARE  # see `app.server.watchdog`
+        if not goes_on or time.monotonic() - begun < SOON:
+            return code if code >= 0 else 128 - code
+        child = 0
+        print(f"onpath: the lab has ended with code {code}; it starts again", file=sys.stderr)
+
+
+def _end_with(parent: int) -> None:
+    """End this process as soon as its parent has ended, however that came."""
+    while os.getppid() == parent:
+        time.sleep(LOOK)
+    os.kill(os.getpid(), signal.SIGTERM)

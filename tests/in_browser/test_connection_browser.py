@@ -1,0 +1,323 @@
+"""A page comes back by itself, and until then says in words what is going on.
+
+The page's own script runs in Chromium against a network and a server that are simulated there, with
+a simulated clock. The messages are those of a real lab.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from websockets.sync.client import connect
+from websockets.typing import Subprotocol
+
+pytest.importorskip("playwright")
+
+from playwright.sync_api import Browser
+
+from onpath.app.page.own_part import own_part
+from onpath.app.server.lab_server import LabServer
+from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
+from onpath.app.viser_adapter.page_scripts import our_scripts
+from tests.support.student import Student
+
+SITE = "http://lab.example/"
+LONGEST = 30.0  # [s] of a first message
+LAST = 120.0  # [s]; later, nothing disturbs
+ENOUGH = 12 * LONGEST  # [s] for all first messages one after another, and pauses in between
+
+# What the page finds instead of viser, network and server. `wrong` lists the moments without
+# a sentence, and those with one although all is there.
+NETWORK = """plan => {
+    const now = () => Date.now() / 1000, later = (act, after) => setTimeout(act, 1000 * after)
+    const drawn = (() => { let n = 0; return () => plan.delays[n++ % plan.delays.length] })()
+    const lab = { up: true, tickets: new Map(), wrong: [], tabs: [], datas: [], whole: 0, same: 0 }
+    window.lab = lab
+    let number = 0
+    window.requestAnimationFrame = act => later(() => act(performance.now()), 1)
+    Object.defineProperty(navigator, "onLine", { get: () => !lab.offline })
+    const reachable = () => lab.up && !lab.offline
+
+    class FakeWorker extends EventTarget {
+        constructor() { super(); this.generation = 0 }
+        say(data) {
+            const event = new MessageEvent("message", { data })
+            this.dispatchEvent(event)
+            if (data.type === "connected") document.querySelector("#root").replaceChildren()
+        }
+        postMessage({ type }) {
+            if (type !== "set_server" && type !== "retry") return
+            this.leave?.()
+            const tab = { alive: true, ticket: "" }, generation = ++this.generation
+            const current = () => tab.alive && generation === this.generation
+            const end = () => {
+                tab.alive = false
+                lab.tickets.delete(tab.ticket)
+                if (this.current === tab) this.current = null
+            }
+            tab.drop = () => {
+                const tell = current()
+                end()
+                if (tell) this.say({ type: "closed" })
+            }
+            tab.die = () => { // and the page does not notice
+                tab.alive = false
+                lab.tickets.delete(tab.ticket)
+            }
+            this.leave = end
+            lab.tabs.push(tab)
+            later(() => {
+                if (!current()) return
+                if (!reachable() || plan.forbidden) return tab.drop()
+                this.current = tab
+                this.say({ type: "connected" })
+                later(() => {
+                    if (!current()) return
+                    tab.ticket = `${++number}`
+                    const { ticket } = tab
+                    lab.tickets.set(ticket, tab)
+                    later(() => current() && this.show(ticket), drawn())
+                }, drawn())
+            }, reachable() ? drawn() : 0.01)
+        }
+        show(ticket) {
+            const root = document.querySelector("#root")
+            root.innerHTML = plan.page
+            root.querySelector("[data-page]").dataset.ticket = ticket
+        }
+        get isWhole() {
+            const shown = document.querySelector("[data-page]")?.dataset.ticket
+            const told = lab.datas.some(data => data.told === shown)
+            return Boolean(this.current && shown && shown === this.current.ticket && told)
+        }
+    }
+    window.Worker = FakeWorker
+    window.fetch = async () => {
+        if (!reachable()) throw new TypeError("no network")
+        return { status: plan.forbidden ? 403 : 200 }
+    }
+    window.WebSocket = class extends EventTarget {
+        static OPEN = 1
+        constructor() {
+            super()
+            this.readyState = 0
+            this.told = ""
+            lab.datas.push(this)
+            later(() => {
+                if (this.readyState > 1) return
+                if (!reachable()) return this.end(1006)
+                this.readyState = 1
+                this.dispatchEvent(new Event("open"))
+            }, reachable() ? drawn() : 0.01)
+        }
+        send(text) {
+            if (this.ticket) return
+            this.ticket = text
+            later(() => {
+                const tab = lab.tickets.get(text)
+                if (!tab) return this.end(4001)
+                later(() => {
+                    if (this.readyState !== 1 || !tab.alive) return this.end(1001)
+                    for (const message of plan.messages) this.hear(message)
+                    this.told = text
+                    this.beat(tab)
+                }, drawn())
+            }, drawn())
+        }
+        beat(tab) {
+            if (this.readyState !== 1) return
+            if (!tab.alive) return this.end(1001)
+            this.hear('{"is":"alive"}')
+            later(() => this.beat(tab), 1)
+        }
+        hear(data) { this.dispatchEvent(new MessageEvent("message", { data })) }
+        end(code) {
+            if (this.readyState > 1) return
+            this.readyState = 3
+            this.told = ""
+            lab.same = 0
+            const event = new Event("close")
+            event.code = code
+            this.dispatchEvent(event)
+        }
+        close() { later(() => this.end(1000), 0.01) }
+    }
+
+    const faults = {
+        viser: () => lab.tabs.forEach(tab => tab.drop()),
+        silently: () => lab.tabs.forEach(tab => tab.die()),
+        data: code => lab.datas.forEach(data => data.end(code)),
+        restart: (_, lasts) => {
+            lab.up = false
+            lab.tickets.clear()
+            faults.viser()
+            faults.data(1006)
+            later(() => (lab.up = true), lasts)
+        },
+        offline: (_, lasts) => {
+            lab.offline = true
+            faults.viser()
+            faults.data(1006)
+            later(() => { lab.offline = false; dispatchEvent(new Event("online")) }, lasts)
+        },
+    }
+    for (const { kind, at, code, lasts } of plan.faults) later(() => faults[kind](code, lasts), at)
+    addEventListener("DOMContentLoaded", () => {
+        lab.worker = new Worker("blob:viser", { type: "module" })
+        lab.worker.postMessage({ type: "set_server" })
+        let was = false
+        setInterval(() => {
+            const said = document.querySelector(".op-notice")?.textContent ?? ""
+            const isWhole = lab.worker.isWhole
+            lab.same = isWhole === was ? lab.same + 1 : 0
+            was = isWhole
+            lab.whole = isWhole ? lab.same : 0
+            if (lab.same > 3 && isWhole === Boolean(said)) lab.wrong.push([now(), isWhole, said])
+        }, 200)
+    })
+}"""
+PARTS = """() => {
+    const seen = name => [...document.querySelectorAll(name)]
+    return {
+        strip: seen("#op-strip").length,
+        titles: seen("#op-stage .title").map(each => each.innerText.trim() !== ""),
+        lenses: seen(".lens canvas").length,
+        hold: seen("#op-strip button").some(each => each.textContent.startsWith("Hold")),
+        notice: document.querySelector(".op-notice")?.dataset.cause ?? "",
+        root: document.documentElement.className,
+    }
+}"""
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What ends connections, when [s], with which code, and for how long [s] nothing answers."""
+
+    kind: str
+    at: float
+    code: int = 1006
+    lasts: float = 1.0
+
+
+seconds = st.floats(0.01, LONGEST)
+faults = st.builds(
+    Fault,
+    st.sampled_from(["viser", "data", "restart", "offline", "silently"]),
+    st.floats(0.0, LAST - LONGEST),
+    st.sampled_from([1000, 1001, 1006, 1008, 1011, 1012, 1013, 1015]),
+    seconds,
+)
+
+
+class Told(dict[str, Any]):
+    """What a lab tells; too long to be shown where a test fails."""
+
+    def __repr__(self) -> str:
+        return "Told"
+
+
+@pytest.fixture(scope="module")
+def told(server: LabServer) -> Told:
+    """What a real lab tells a page at first: viser's page, and the messages of the data channel."""
+    address = f"ws://127.0.0.1:{server.server.get_port()}"
+    with Student(address) as student:
+        student.open()
+
+        def page() -> str:
+            contents = (str(widget.get("content", "")) for widget in student.widgets.values())
+            return next((text for text in contents if "data-ticket" in text), "")
+
+        student.read(lambda: page() != "")
+        ticket = re.search('data-ticket="([^"]+)"', page())
+        assert ticket is not None
+        messages, kinds = list[str](), set[str]()
+        protocol = [Subprotocol(SUBPROTOCOL)]
+        with connect(address, subprotocols=protocol, compression=None) as socket:
+            socket.send(ticket[1])
+            while not kinds >= {"state", "path", "frame"}:
+                student.read_what_has_come()
+                messages.append(str(socket.recv(10)))
+                kinds.add(json.loads(messages[-1])["is"])
+        return Told(page=page(), messages=messages)
+
+
+def document() -> str:
+    head = (our_scripts() + own_part()).decode()
+    return f"<!doctype html><html><head>PLAN{head}</head><body><div id=root></div></body></html>"
+
+
+class Visit:
+    """A page in such a network: between two times [s], until it has been whole for some seconds."""
+
+    def __init__(self, browser: Browser, plan: dict[str, Any], least: float, most: float) -> None:
+        context = browser.new_context()
+        self.page, self.errors = context.new_page(), list[str]()
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.clock.install(time=0)
+        text = document().replace("PLAN", f"<script>({NETWORK})({json.dumps(plan)})</script>")
+        self.page.route("**/*", lambda route: route.fulfill(body=text, content_type="text/html"))
+        self.page.goto(SITE)
+        passed = 0.0
+        while passed < most and not (passed > least and self.page.evaluate("lab.whole > 50")):
+            self.page.clock.run_for(5000)
+            passed += 5.0
+        self.parts: dict[str, Any] = self.page.evaluate(PARTS)
+        self.wrong: list[Any] = self.page.evaluate("lab.wrong")
+        self.tabs: int = self.page.evaluate("lab.tabs.length")
+        context.close()
+
+
+def becomes_whole(browser: Browser, told: Told, delays: list[float], faults: list[Fault]) -> None:
+    """Assert that a page is whole in the end, and has said until then what was missing."""
+    plan = {**told, "delays": delays, "faults": [asdict(each) for each in faults]}
+    last = max((each.at + each.lasts for each in faults), default=0.0)
+    visit = Visit(browser, plan, last, last + ENOUGH)
+    assert visit.errors == []
+    assert visit.parts == {
+        "strip": 1,
+        "titles": [True, True],
+        "lenses": 2,
+        "hold": True,
+        "notice": "",
+        "root": "op-stripped",
+    }
+    assert visit.wrong == []
+
+
+@pytest.mark.parametrize(
+    ("delay", "fault"),
+    [
+        (LONGEST, None),
+        (0.01, Fault("restart", 5.0, lasts=15.0)),
+        (0.01, Fault("silently", 5.0)),
+        (0.01, Fault("data", 5.0, 1008)),
+    ],
+    ids=["late", "restarted", "dead", "closed"],
+)
+def test_a_page_becomes_whole_by_itself(
+    browser: Browser, told: Told, delay: float, fault: Fault | None
+) -> None:
+    becomes_whole(browser, told, [delay], [fault] if fault else [])
+
+
+@pytest.mark.thorough
+@settings(suppress_health_check=[HealthCheck.too_slow], max_examples=15)
+@given(st.lists(seconds, min_size=1, max_size=12), st.lists(faults, max_size=4))
+def test_whatever_is_late_or_ends_a_page_becomes_whole_and_says_so(
+    browser: Browser, told: Told, delays: list[float], faults: list[Fault]
+) -> None:
+    becomes_whole(browser, told, delays, faults)
+
+
+def test_only_a_page_that_is_forbidden_stays_away(browser: Browser, told: Told) -> None:
+    plan = {**told, "delays": [0.01], "faults": [], "forbidden": True}
+    early, late = (Visit(browser, plan, until, until) for until in (15.0, 60.0))
+    assert early.parts["notice"] == late.parts["notice"] == "forbidden"
+    assert early.tabs == late.tabs
+    assert early.wrong == late.wrong == []
