@@ -44,7 +44,7 @@ SOLUTIONS: dict[str, dict[str, tuple[Gesture, ...]]] = {
         "rail": (Enter("K1", 900), Enter("K2", 60), RESET, Key("w", 5), Wait(2), Key("x")),
         "spring-board": (
             *(Enter("K1", 100), Enter("K2", 20), Enter("K4", 400), Enter("K5", 40)),
-            *(RESET, Key("d", 4), Wait(1), Key("x")),
+            *(RESET, Key("d", 4), Wait(1), Key("x"), Wait(2)),
         ),
     },
     "04b-poles-and-gains": {
