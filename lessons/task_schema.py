@@ -132,7 +132,7 @@ class Once(Bound, frozen=True, tag="once", tag_field="kind"):
 Check = Bound | Compare | Better | Event | Order | Setting | Only | Once
 
 
-class Way(Data, frozen=True):
+class TaskWay(Data, frozen=True):
     """One way of passing a task, after which something else is said.
 
     Attributes:
@@ -164,7 +164,7 @@ class Task(Data, frozen=True):
     hints: tuple[str, ...] = ()
     best: str = ""
     passed: str = ""
-    way: tuple[Way, ...] = ()
+    way: tuple[TaskWay, ...] = ()
     exploratory: bool = False
 
     @property

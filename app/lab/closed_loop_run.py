@@ -28,7 +28,7 @@ from onpath.models.closed_loop.speed_profile import Leg
 from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import DEFAULT_LAWS
-from onpath.models.errors import CodedError, Message
+from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import closest_parameters, near_distance
@@ -50,9 +50,9 @@ class ClosedLoopRun:
 
     Args:
         store: provides its loops.
-        refuse: is given the error of a law that cannot be used with the robot and the inputs, and
-            the side then gets a new lab's law; and once in a run, which motor gives more than the
-            robot's file states.
+        tell: is given what a user should know: why a law cannot be used with the robot and the
+            inputs, so that the side gets a new lab's law; and once in a run, which motor gives more
+            than the robot's file states.
 
     Attributes:
         side: name of the side.
@@ -72,10 +72,10 @@ class ClosedLoopRun:
         parameters: Parameters,
         curve: Curve,
         start: Start = ON_PATH,
-        refuse: Callable[[ValueError], None] = lambda _: None,
+        tell: Callable[[ValueError | Message], None] = lambda _: None,
     ) -> None:
         self._store, self.robot, self._made_with = store, robot, parameters
-        self._refuse = refuse
+        self._tell = tell
         self.side, self.law = side, law
         self.diverged: Diverged | None = None
         self._unfilled: Curve | None = None  # the path of a log row that its loop has to complete
@@ -281,7 +281,7 @@ class ClosedLoopRun:
         """
         if not self._beyond and (found := exceeded(self.robot, largest)) is not None:
             self._beyond = True
-            self._refuse(CodedError(found.code, **found.arguments))
+            self._tell(found)
 
     def configure(
         self,
@@ -345,7 +345,7 @@ class ClosedLoopRun:
         try:
             self._store.find(self.robot, kind)
         except ValueError as error:
-            self._refuse(error)
+            self._tell(error)
             self.law = DEFAULT_LAWS[self.side]
             return kind_of(self.law, *inputs)
         return kind

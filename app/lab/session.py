@@ -340,7 +340,7 @@ class Session:
                 parameters=self.parameters,
                 curve=curve,
                 start=start,
-                refuse=self.law_changes.remarks.append,
+                tell=self.law_changes.remarks.append,
             )
             for side, law in laws.items()
         }

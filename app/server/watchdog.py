@@ -44,7 +44,7 @@ class Sign:
     thread: Callable[[], int]
 
 
-class Clock(Protocol):
+class SilenceClock(Protocol):
     """See `ProcessorTime`."""
 
     def look(self) -> None:
@@ -76,10 +76,10 @@ class Watchdog:
         self,
         seconds: float,
         end: Callable[[], object] | None = None,
-        clock: Clock | None = None,
+        clock: SilenceClock | None = None,
     ) -> None:
         self._seconds, self._end = seconds, end or _end_process
-        self._clock: Clock = clock or ProcessorTime()
+        self._clock: SilenceClock = clock or ProcessorTime()
         self._signs: Mapping[str, Sign] = {}
         self._seen: dict[str, object] = {}
         self._silent = defaultdict[str, float](float)  # [s] since the last sign of life

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from typing import Literal, get_args
+from typing import Literal, TypeGuard, get_args
 
 import msgspec
 
@@ -82,15 +82,14 @@ def read_behaviour(line: int, text: str, play: str) -> Behaviour:
     said, after = _split_after(play.split())
     absent = said[:1] == ["no"]
     first, *rest = said[absent:] or [""]
-    if first in VERBS:
-        (verb,) = (each for each in VERBS if each == first)
-        name, reason = _object(verb, rest)
-        for fault in _faults(verb, name, after, absent):
+    if _is_verb(first):
+        name, reason = _object(first, rest)
+        for fault in _faults(first, name, after, absent):
             raise ValueError(fault)
         return Behaviour(
             line=line,
             text=text,
-            verb=verb,
+            verb=first,
             name=name,
             reason=reason,
             absent=absent,
@@ -102,6 +101,10 @@ def read_behaviour(line: int, text: str, play: str) -> Behaviour:
     return Behaviour(
         line=line, text=text, measure=measure, limit=limit, above=said[-2] == ">", after=after
     )
+
+
+def _is_verb(word: str) -> TypeGuard[Verb]:
+    return word in VERBS
 
 
 def _split_after(words: list[str]) -> tuple[list[str], str]:

@@ -44,8 +44,10 @@ def exceeded(robot: Robot, largest: Array) -> Message | None:
     worst = int((largest / limits).argmax())
     joint, most = robot.chain.joints[worst], float(largest[worst])
     gave = f"{most:.0f}" if most >= 100 else f"{most:.3g}"
-    arguments = {"joint": joint.name, "gave": f"{gave} {joint.unit}", "limit": _limit(joint)}
-    return Message("efforts.exceeded", arguments)
+    return Message(
+        "efforts.exceeded",
+        {"joint": joint.name, "gave": f"{gave} {joint.unit}", "limit": _limit(joint)},
+    )
 
 
 def _limit(joint: Joint) -> str:

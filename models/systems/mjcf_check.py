@@ -95,7 +95,7 @@ def checked_model(file: Path, root: Element, packages: Mapping[str, Path]) -> Ch
             if counts[tag] > MOST[tag]:
                 raise FileFault(element, Message("robot_file.many", {"most": MOST[tag]}))
         _check_numbers(element)
-    return _Writer(file, root, packages).written()
+    return _Rewriter(file, root, packages).written()
 
 
 def all_elements(root: Element) -> Iterator[Element]:
@@ -119,7 +119,7 @@ def _check_numbers(element: Element) -> None:
             raise FileFault(element, reason)
 
 
-class _Writer:
+class _Rewriter:
     """Writes the elements that are passed on."""
 
     def __init__(self, file: Path, root: Element, packages: Mapping[str, Path]) -> None:

@@ -46,7 +46,7 @@ FIELDS = (
 """The arrays of `mjModel` that are read."""
 
 
-class Job(msgspec.Struct, frozen=True):
+class Reading(msgspec.Struct, frozen=True):
     """What the process reads: a model, the files that it names, and its time limit, [s]."""
 
     text: str
@@ -77,7 +77,7 @@ def read_model(
     try:
         ended = subprocess.run(
             [sys.executable, "-P", "-m", __name__],
-            input=msgspec.msgpack.encode(Job(text, dict(files), seconds)),
+            input=msgspec.msgpack.encode(Reading(text, dict(files), seconds)),
             capture_output=True,
             check=True,
             cwd=os.path.abspath(os.sep),
@@ -109,7 +109,7 @@ def main() -> None:
     """Read a job from stdin, and write the answer to stdout."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what the library prints must not be mixed with the answer
-    job = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Job)
+    job = msgspec.msgpack.decode(sys.stdin.buffer.read(), type=Reading)
     _limit(job.seconds)
     arrays, told = _read(job)
     answer = io.BytesIO()
@@ -129,7 +129,7 @@ def _limit(seconds: int) -> None:
         resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, MEMORY))
 
 
-def _read(job: Job) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def _read(job: Reading) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     warnings = list[str]()
     try:
         mujoco: Any = import_module("mujoco")

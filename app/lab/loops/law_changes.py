@@ -15,7 +15,7 @@ from onpath.models.closed_loop.loops import CompiledLoop, Loop
 from onpath.models.closed_loop.simulation import FREE, Push, kind_of
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.sides import DEFAULT_LAWS
-from onpath.models.errors import CodedError
+from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curves import Curve
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
@@ -36,13 +36,13 @@ class LawChanges:
 
     Attributes:
         coming: laws whose loops are being made, by side.
-        remarks: what the user has not been told yet: why a law cannot be used, or not compiled.
+        remarks: what the user has not been told yet, for instance why a law cannot be used.
     """
 
     def __init__(self, store: LoopCache, change: Callable[[str, str], None]) -> None:
         self._store, self._change = store, change
         self.coming: dict[str, str] = {}
-        self.remarks: list[ValueError] = []
+        self.remarks: list[ValueError | Message] = []
         self._interpreted = set[str]()  # laws of which the user has been told
         self._asked = False  # whether the last frame asked for loops
 

@@ -174,17 +174,19 @@ class LateCache(LoopCache):
 
 EVERY_KIND = Script(
     do=(
-        Action(at=0.1, set={"encoder_counts": 2000.0}),
-        Action(at=0.2, path="segment"),
+        Action(at=0.1, path="clover"),
+        Action(at=0.2, set={"encoder_counts": 2000.0}),  # while the path bends
         Action(at=0.3, laws=Laws(left="waiting_clock")),
         Action(at=0.4, hold=True),
         Action(at=0.7, path="ellipse"),
         Action(at=0.8, hold=False),
+        Action(at=0.85, set={"stiction": 0.01}),
         Action(at=1.1, set={"across": "level_set", "delay": 2.0}),
-        Action(at=1.2, path="circle"),
-        Action(at=1.25, robot="two_link_arm"),
+        Action(at=1.2, path="segment"),
+        Action(at=1.6, path="circle"),
+        Action(at=1.7, set={"torque_limit": 2.0}),
     ),
-    until=1.5,
+    until=1.9,
 )
 
 

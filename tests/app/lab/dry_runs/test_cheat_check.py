@@ -17,7 +17,7 @@ from onpath.lessons.action_schema import Action, Script
 from onpath.lessons.cheating import cheats
 from onpath.lessons.course import BUILT_IN, REFERENCE, read_course, read_references
 from onpath.lessons.students import MOST_PASS, random_students
-from onpath.lessons.task_schema import Check, Only, Setting
+from onpath.lessons.task_schema import Only, Setting
 from onpath.models.control.settable import specs
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -102,9 +102,9 @@ def test_no_cheat_passes_a_task_of_the_course(name: str) -> None:
 ASKED = {asked.task.id: asked for asked in asked_tasks(COURSE, BUILT_IN)}
 
 
-def without(asked: Asked, gone: type[Check], name: str) -> Asked:
-    """A task without its checks of a kind and name, which are its price."""
-    kept = [c for c in asked.task.check if not (isinstance(c, gone) and c.name == name)]
+def without(asked: Asked, name: str) -> Asked:
+    """A task without its check of a setting, which is its price."""
+    kept = [c for c in asked.task.check if not (isinstance(c, Setting) and c.name == name)]
     return dataclasses.replace(asked, task=replace(asked.task, check=tuple(kept)))
 
 
@@ -116,7 +116,7 @@ def test_who_does_not_think_does_not_pass(store: LoopCache, task: str) -> None:
 
 
 def test_without_its_price_a_task_is_passed_by_sliders_and_chance(store: LoopCache) -> None:
-    found = passes_of(without(ASKED["hold-two-seconds"], Setting, "K1"), store, count=20)
+    found = passes_of(without(ASKED["hold-two-seconds"], "K1"), store, count=20)
     assert {"K1 = 2500", "K1 = 2500 and K2 = 200"} <= set(found.thoughtless)
     first, second = (problem.text for problem in found.problems())
     assert "of 20 students who draw at random" in first and "K1 = 2500" in second
@@ -127,7 +127,7 @@ def test_without_its_price_a_task_is_passed_by_sliders_and_chance(store: LoopCac
 def test_a_link_that_evokes_a_note_is_no_refusal(store: LoopCache) -> None:
     """A path that crosses itself is followed, with a note, and once passed this task."""
     assert not passes_of(ASKED["cheap"], store, count=0).thoughtless
-    found = passes_of(without(ASKED["cheap"], Setting, "path"), store, count=0)
+    found = passes_of(without(ASKED["cheap"], "path"), store, count=0)
     assert found.thoughtless == ["link 'A path that crosses itself' and nothing else"]
 
 
