@@ -133,7 +133,7 @@ def test_the_reflected_tip_is_off_by_twice_the_deflection() -> None:
 
 
 def test_a_promise_that_is_not_kept() -> None:
-    (within,) = said(LESSON, 'the tip stays within # mm."')
+    (within,) = said(LESSON, 'the tip must stay within # mm."')
     assert largest(gone({"alpha": 0.8, "modes": 1}).distance, 0, 10) < value(within)
     (soon,) = said(LESSON, "The robots start anew and are stopped within # s.")
     for law in (FOLLOWER, TRACKER):

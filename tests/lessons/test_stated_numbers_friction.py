@@ -256,9 +256,11 @@ def test_clock_is_an_integral() -> None:
     asked += said(LESSON, "it asks for # N m, and the joints stick up to")
     asked += said(LESSON, "It asks for # N m and needs more")
     assert_stated(asked, 4 * [float(follower.torque[1000:].max())])
-    slow, *_, fast = said(
-        LESSON, "With K5 = 15 it starts, and goes round at # rad/s on average; with 30 at # rad/s."
+    slow, enough, fast = said(
+        LESSON,
+        "With K5 = 15 it starts, and goes round at # rad/s on average; with 20 at #,"
+        " with 30 at # rad/s.",
     )
-    for stated, gain in ((slow, 15.0), (fast, 30.0)):
+    for stated, gain in ((slow, 15.0), (enough, 20.0), (fast, 30.0)):
         run = play(8.0, [], speed=3.0, K5=gain, **STICKY)["follower"]
         assert_stated([stated], [float(run.rate[3000:].mean())])
