@@ -278,6 +278,7 @@ def test_the_panel_of_a_flexible_link_is_that_of_every_robot_that_has_one(
         words=given,
         post=given,
         exporter=given,
+        files=given,
         submit=given,
         scene=given,
         overlays=given,
