@@ -245,8 +245,8 @@ def test_the_lab_in_a_folder_as_the_readme_says_with_tls(
 @pytest.mark.parametrize(
     ("locale", "said"),
     [
-        ("de-AT", "antwortet nicht"),
-        pytest.param("fr", "does not answer", marks=pytest.mark.thorough),
+        ("de-AT", "seine Verbindung öffnet sich nicht"),
+        pytest.param("fr", "its connection does not open", marks=pytest.mark.thorough),
     ],
 )
 def test_who_waits_in_vain_is_told_so_and_then_shown_the_lab(
@@ -259,7 +259,7 @@ def test_who_waits_in_vain_is_told_so_and_then_shown_the_lab(
     broken = mended.replace("proxy_set_header Upgrade $http_upgrade;", "")
     context = browser.new_context(locale=locale)
     page = context.new_page()
-    told = page.get_by_role("alert").filter(has_text=said)
+    told = page.get_by_role("status").filter(has_text=said)
     with nginx(tmp_path, port, broken):
         page.goto(f"http://localhost:{port}{FOLDER}/?{COARSER}")
         told.wait_for(timeout=60e3)
@@ -290,7 +290,7 @@ def test_a_lost_connection_is_reported_until_it_is_back(
         tab = Tab(server, context, draws=False, path=f"{FOLDER}/", site=site)
         tab.ask(SetLanguage(language))
         tab.page.locator(f"html[lang={language}]").wait_for()
-    alert = tab.page.get_by_role("alert").filter(has_text=message)
+    alert = tab.page.get_by_role("status").filter(has_text=message)
     alert.wait_for(timeout=60e3)
     with nginx(tmp_path, port, proxy):
         alert.wait_for(state="detached", timeout=60e3)

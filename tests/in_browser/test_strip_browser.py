@@ -330,7 +330,7 @@ LETTERS_IN_A_LENS = """() => {
 }"""
 
 
-@pytest.mark.parametrize("size", [75, 99, 144, 184, 260])
+@pytest.mark.parametrize("size", [75, 99, 144, 184, 256])
 def test_letters_in_a_lens_are_whole_and_apart(page: Page, size: int) -> None:
     """Whatever the lens and the force: inside the rim, and off each other and the bar."""
     page.evaluate("size => (onpath.lenses[0].element.style.width = `${size}px`)", size)
