@@ -198,15 +198,15 @@ def test_a_heavy_arm_moves_as_in_python_and_says_that_it_exceeds_its_file(
 ) -> None:
     source = tmp_path / "heavy.urdf"
     source.write_text(urdf("heavy", HEAVY), "utf-8")
-    arm, given = onpath.robot(source), {"speed": 6.0}
-    file = onpath.figure(tmp_path / "a.html", arm, LAWS, "circle 0.1", sliders=(), **given)
+    arm = onpath.robot(source)
+    file = onpath.figure(tmp_path / "a.html", arm, LAWS, "circle 0.1", sliders=(), speed=6.0)
     opened = Opened(browser, file)
     opened.press("Pause")
     opened.do(("reset", None), ("advance", 300))
     begin, size = opened.number("onpath.data.log.u")
     there = [row[begin : begin + size] for row in opened.number(LOGGED)]
     with pytest.warns(UserWarning, match="more than the"):
-        runs = [onpath.simulate(arm, "circle 0.1", law, duration=0.3, **given) for law in LAWS]
+        runs = [onpath.simulate(arm, "circle 0.1", law, duration=0.3, speed=6.0) for law in LAWS]
     assert all(np.abs(run.torque).max() > 3000 for run in runs)
     here = np.array([run.torque[-1] for run in runs])
     assert np.array(there) == pytest.approx(here, rel=1e-9, abs=1e-9 * np.abs(here).max())

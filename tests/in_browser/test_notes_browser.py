@@ -312,7 +312,8 @@ def test_a_grade_is_for_what_is_done_and_right(page: Page, course: Course, name:
             is_judged = kind in ("tasks", "quiz", "numbers")
             begun = notes["tasks"] or notes["quiz"] or notes["numbers"]
             assert progress < 1
-            assert score is None if not begun else (score < 1) == is_judged
+            assert (score is None) == (not begun)
+            assert score is None or (score < 1) == is_judged
     for key in whole["answers"]:
         skipped = {**whole, "answers": {**whole["answers"], key: {}}}
         assert graded(page, steps, skipped)[0] < 1
