@@ -55,10 +55,13 @@ def test_nothing_stops_the_follower(
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("noise", NOISES)
-@pytest.mark.parametrize("counts", COUNTS)
-@pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("robot", PULLED)
+@settings(max_examples=8)
+@given(
+    robot=st.sampled_from(PULLED),
+    rate=st.sampled_from(RATES),
+    counts=st.sampled_from(COUNTS),
+    noise=st.sampled_from(NOISES),
+)
 def test_no_pull_of_many_stops_the_follower(
     robot: str, rate: int, counts: float, noise: float
 ) -> None:
