@@ -211,7 +211,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
         "speed": view.task.speed,
         "torque": ca.substitute(torque, command, ca.SX.zeros(MOST)),
         "torque_gain": ca.vec(ca.substitute(gain, command, ca.SX.zeros(MOST))),
-        "torque_limit": ca.if_else(limit < NO_LIMIT, system.torque_limits(limit), ca.inf),
+        "torque_limit": ca.if_else(limit < NO_LIMIT, system.torque_limits(limit), np.inf),
         **dict(zip(GAINS, (gains.k1, gains.k2, gains.k3, gains.k4, gains.k5), strict=True)),
     }
     layout = Layout(tuple((name, ca.SX(value).numel()) for name, value in found.items()))

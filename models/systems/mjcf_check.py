@@ -21,8 +21,10 @@ MESHES = (".stl", ".obj", ".msh")
 MOST_MESH_BYTES = 200_000_000  # of all meshes of a file
 MOST = {"body": 200, "joint": 200, "geom": 2000, "site": 1000, "mesh": 1000, "key": 100}
 """How many elements of a kind a file may have."""
-_ACTUATORS = ("general", "motor", "position", "velocity", "intvelocity", "pid", "damper")
-_ACTUATORS += ("cylinder", "muscle", "dcmotor")
+_ACTUATORS = (
+    *("general", "motor", "position", "velocity", "intvelocity", "pid", "damper"),
+    *("cylinder", "muscle", "dcmotor"),
+)
 _IN_BODIES = ("body", "frame", "inertial", "joint", "freejoint", "geom", "site")
 PASSED: Mapping[str, tuple[str, ...]] = {
     "mujoco": ("compiler", "default", "asset", "worldbody", "actuator", "keyframe"),
@@ -48,8 +50,10 @@ LEFT_OUT: Mapping[str, tuple[str, ...]] = {
     "actuator": ("orientation", "adhesion"),
 }
 """The elements that are left out with all that is in them."""
-REFUSED = ("include", "model", "attach", "plugin", "extension", "replicate", "composite")
-REFUSED += ("flexcomp", "deformable", "hfield")
+REFUSED = (
+    *("include", "model", "attach", "plugin", "extension", "replicate", "composite"),
+    *("flexcomp", "deformable", "hfield"),
+)
 _NOT_PASSED: Mapping[str, tuple[str, ...]] = {
     "compiler": ("meshdir", "texturedir", "assetdir", "strippath", "discardvisual", "fusestatic")
     + ("usethread", "savecompiled"),

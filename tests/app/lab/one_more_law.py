@@ -64,7 +64,7 @@ def test_it_runs_compiled_in_the_lab_with_its_gain_in_the_share_code() -> None:
         run(lab, FRAME)
         finish(loops)
     own = lab.session.runs[LEFT]
-    assert isinstance(loops.get(own.robot, own.kind), CompiledLoop)
+    assert isinstance(loops.find(own.robot, own.kind), CompiledLoop)
     setup = decode(encode(capture(lab.session)))
     assert setup.robots[FIVE_BAR.name].parameters == {"reach": 4.5}
     other = Lab(loops)

@@ -160,6 +160,7 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
         drive, ends = segment.drives[name], segment.time + segment.ticks * segment.dt
         assert later.time == pytest.approx(ends, abs=1e-9)
         loop = lab.session._store.find(lab.session.robot, drive.kind)
+        assert loop is not None
         state, _ = loop.run(drive.state, drive.settings, segment.curve.table(), segment.ticks)
         assert np.array_equal(state, later.drives[name].state)
 

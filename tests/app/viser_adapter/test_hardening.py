@@ -699,8 +699,11 @@ def brief(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(file_uploads, "SECONDS", 0.2)
 
 
+SLOW = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
 @pytest.mark.usefixtures("brief")
-@settings(max_examples=8, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=8, deadline=None, suppress_health_check=SLOW)
 @given(FILE_MESSAGES)
 def test_whatever_is_sent_only_whole_files_arrive_and_the_next_one_can_be_sent(
     files: Lab, messages: list[tuple[Any, ...]]
