@@ -27,8 +27,8 @@ def opened() -> tuple[Lab, float]:
             if task.id == TASK:
                 do(lab, c.GoToStep(place))
                 (bound,) = [check for check in task.check if isinstance(check, Bound)]
-                assert (bound.last, bound.below) == (WINDOW, 0.65)
-                return lab, 0.65e-3
+                assert (bound.last, bound.below) == (WINDOW, 0.62)
+                return lab, 0.62e-3
     raise AssertionError(TASK)
 
 
