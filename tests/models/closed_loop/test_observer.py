@@ -152,7 +152,7 @@ def imperfections(name: str) -> dict[str, dict[str, float]]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", [n for n in RIGID if n not in ("rod_gantry", "cart_pendulum")])
+@pytest.mark.parametrize("name", ["five_bar", "two_link_arm"])
 def test_nothing_that_the_model_does_not_know_stops_the_follower_and_what_is_worse_is_said(
     name: str,
 ) -> None:
