@@ -5,6 +5,7 @@ Anything that is needed earlier is read or imported where it is needed.
 
 from __future__ import annotations
 
+import gc
 import logging
 import mimetypes
 import time
@@ -68,6 +69,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             time.sleep(rest)
             tries -= 1
             parts = [part for part in parts if not _succeeds(part)]
+        gc.freeze()  # a collection would look through all of this again, and hold every thread
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()
