@@ -183,7 +183,7 @@ NAMES: dict[str, st.SearchStrategy[Any]] = {
     "task": st.sampled_from(["hold", "hold"]) | SHORT,
     "law": st.sampled_from([*LAWS, "across = -K1*xi; along = 0"]) | SHORT,
     "text": st.sampled_from(["across = -K1*xi; along = 0"]) | SHORT,
-    "side": st.sampled_from(["left", "right", None]) | SHORT,
+    "side": st.sampled_from(["left", "right"]) | SHORT,
     "direction": st.sampled_from(["along", "across"]) | SHORT,
     "language": st.sampled_from(["en", "de"]) | SHORT,
     "sure": st.sampled_from(["", "fairly", "certain"]),
