@@ -176,6 +176,7 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
         comer.run()
         wait_for_views(server, 1)
         (view,), (lab,) = server._views.values(), server.simulation.labs
+        wait_for(lambda: lab.session.time > 0, 60)  # its loops are compiled first
         view.page.exporter.csv()
         assert begun.wait(60)
         lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
