@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable
 
 HANDED_ON = signal.SIGINT, signal.SIGTERM
-SOON = 5.0  # [s]; a lab that ends so soon after its start would do it again
+SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail again
 LOOK = 0.5  # [s] between a child's looks for its parent
 
 

@@ -69,7 +69,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             time.sleep(rest)
             tries -= 1
             parts = [part for part in parts if not _succeeds(part)]
-        gc.freeze()  # a collection would look through all of this again, and hold every thread
+        gc.freeze()  # else each full collection scans all of this again and stops every thread
 
     thread = Thread(target=work, name="warm-up", daemon=True)
     thread.start()

@@ -103,7 +103,7 @@ def test_dry_friction_is_found_where_there_is_some(tmp_path: Path) -> None:
 
 
 NOISY = {"encoder_counts": 2000, "sensor_noise": 5e-4}
-FILTERED = {**NOISY, "observer_time": 0.0}  # moves more; behind the observer a delay is 1 ms off
+FILTERED = {**NOISY, "observer_time": 0.0}  # with the observer, the delay found is 1 ms off
 
 
 @pytest.mark.thorough

@@ -168,7 +168,7 @@ def test_compiled_and_interpreted_loops_agree(controller: str, modes: int, plant
     )
     assert np.array_equal(interpreted, compiled, equal_nan=True)
     fields = kernel.log.unpack(interpreted[np.isfinite(interpreted).all(axis=1)])
-    assert len(fields["y"]) == 1000 or modes == 6  # which the hand's step throws off
+    assert len(fields["y"]) == 1000 or modes == 6  # six modes diverge under the hand
     assert np.ptp(fields["y"][:, 1]) > 0.02 and np.abs(fields["force"]).max() > 0.9
 
 
