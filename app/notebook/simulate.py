@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from inspect import signature
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,18 +13,25 @@ from numpy.typing import ArrayLike
 
 from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
 from onpath.app.common.own_laws import law_given
+from onpath.app.common.user_files import is_robot_file
 from onpath.app.notebook.arguments import (
     array_of,
+    ask_unit,
+    check_near,
+    check_number,
+    check_one,
     curve_of,
     lengths,
+    looked_up,
     numbers,
     plane_point,
     schedule_of,
     start_point,
 )
+from onpath.app.notebook.robot import robot as robot_from
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.control.settable import specs, values_of
+from onpath.models.control.settable import specs, values_of, with_values
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
@@ -32,13 +40,13 @@ from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.unused import unused_text
-from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry, robot_named
 from onpath.models.systems.parameter_specs import Spec, unknown_name
 
 
 def simulate(
-    robot: str | RobotEntry = "five_bar",
-    path: Curve | str = "circle",
+    robot: str | Path | RobotEntry = "five_bar",
+    path: str | Path | Curve = "circle",
     law: Any = "path_following",
     *,
     duration: float = 8.0,
@@ -52,15 +60,19 @@ def simulate(
     wall: tuple[float, float, ArrayLike, float] | None = None,
     reverse_at: float = 0.0,
     profile: str | Iterable[tuple[float, float]] | None = None,
-    **parameters: float | str,
+    **settings: float | str,
 ) -> Run:
     """Simulate one robot under one control law, as `onpath experiment` does.
 
+    `onpath.sweep` takes several robots, paths, laws and settings.
+
     Args:
-        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
-        path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
-            "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
-            [m].
+        robot: one of `onpath.robots()`; a URDF or MJCF file, such as "arm.urdf"; or what
+            `onpath.robot` returns, which takes options for a file.
+        path: one of `onpath.paths()`; a text, such as "ellipse 0.07 0.04", see
+            models/studies/path_text.py; a curve, such as `onpath.ellipse(...)`; or a file with
+            options, such as "@logo.svg fit=0.1 nearest", see `onpath.path_from`. It lies in the
+            robot's path plane, [m].
         law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
             "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
             in CasADi, a class of such objects, or a function that is called in every control
@@ -87,7 +99,7 @@ def simulate(
         reverse_at: time at which the desired speed changes sign, [s]; 0: never.
         profile: desired speed over time, linear between (time, speed) pairs, [s] and [rad/s],
             instead of `speed` and `ramp`; it is fed forward, as in (19).
-        parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
+        settings: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
             robot's defaults, which are those of the lab, the command line and figures, too. A new
             lab begins more slowly, as with **onpath.NEWCOMER. What `--set law=` sets for the
             flexible robot is called `output` here.
@@ -97,6 +109,7 @@ def simulate(
             message lists the valid ones), or one that contradicts another, such as `hold_at`
             without `hold`; or no run is possible, because the decoupling matrix is singular at the
             start.
+        OSError: a file cannot be read.
 
     Warns:
         UserWarning: a path that crosses itself; a parameter that is given, but has no effect in
@@ -133,16 +146,25 @@ def simulate(
     >>> run.law, bool(run.max_distance < 1e-4)
     ('pulled', True)
 
-    >>> onpath.simulate(path="elipse")
+    >>> onpath.simulate(path="elips")
     Traceback (most recent call last):
-    onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
+    ValueError: unknown path 'elips': did you mean ellipse, closed? (onpath.paths() lists all)
     """
-    entry, name = entry_named(robot), law_given(law)
-    given = by_declared_names(parameters, entry, simulate)
+    entry, name = entry_named(robot), law_of(law)
+    given = by_declared_names(settings, entry, simulate)
+    check_number("duration", duration, "s")
+    check_number("reverse_at", reverse_at, "s")
+    check_number("clock_offset", clock_offset, "rad")
+    check_number("hold_at", hold_at or 0.0, "rad")
+    made = entry.make(with_values(entry.parameters(), given))
+    curve = curve_of("path", path, made)
+    for argument, value in {"start": start, "push": push, "wall": wall}.items():
+        if value is not None:
+            place = array_of(argument, value if argument == "start" else value[2], "a point, [m]")
+            check_near(argument, place, made.reach)
     given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
     given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
-    curve = curve_of("path", path)
     chosen = Experiment(
         name="simulate",
         title=entry.label,
@@ -207,7 +229,7 @@ def _measured(design: PathDesign) -> str:
     return f"{length}; {remark}" if remark else length
 
 
-def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
+def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     """Names of a robot's parameters with default, range and unit, or options, and description.
 
     Raises:
@@ -288,27 +310,30 @@ def through(
     <closed path, 231 mm long, 75 x 75 mm>
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
+    ask_unit("points", given)
     read = path_through(given, Placing(corners=corners, radius=radius, closed=closed))
     for remark in read.remarks:
         warnings.warn(str(remark), stacklevel=2)
     return read.curve
 
 
-def entry_named(robot: str | RobotEntry) -> RobotEntry:
-    """The robot of this name, or the robot itself.
+def entry_named(robot: str | Path | RobotEntry) -> RobotEntry:
+    """The robot of this name or file, or the robot itself.
 
     Raises:
-        ValueError: there is none; the message lists the nearest names.
+        ValueError: there is none, with the nearest names; or the file is refused.
+        OSError: the file cannot be read.
+
+    Warns:
+        UserWarning: what is left out of the file.
     """
     if isinstance(robot, RobotEntry):
         return robot
-    _check_name(robot, ROBOTS, "robot")
-    return ROBOTS[robot]
-
-
-def _check_name(name: Any, known: Iterable[str], what: str) -> None:
-    if not isinstance(name, str) or name not in known:
-        raise unknown_name(str(name), list(known), what)
+    check_one("robot", robot)
+    if is_robot_file(robot):
+        return robot_from(robot)
+    with looked_up("onpath.robots()"):
+        return robot_named(str(robot))
 
 
 def _names(entry: RobotEntry) -> dict[str, str]:
@@ -319,6 +344,13 @@ def _names(entry: RobotEntry) -> dict[str, str]:
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values that are not None."""
     return {name: value for name, value in values.items() if value is not None}
+
+
+def law_of(law: Any) -> str:
+    """The name of a law, which is added to the laws if it is one's own: see `law_given`."""
+    check_one("law", law)
+    with looked_up("onpath.laws()"):
+        return law_given(law)
 
 
 def by_declared_names(
@@ -333,10 +365,14 @@ def by_declared_names(
         ValueError: an unknown name; the message lists the nearest ones.
     """
     names = _names(entry)
-    arguments = [name for name in signature(function).parameters if name != "parameters"]
-    for name in parameters:
+    arguments = [name for name in signature(function).parameters if name != "settings"]
+    for name, value in parameters.items():
         if name not in names:
-            raise unknown_name(name, [*names, *arguments])
+            with looked_up(f"onpath.parameters({entry.name!r})"):
+                raise unknown_name(name, [*names, *arguments])
+        check_one(name, value)
+        if isinstance(value, str) and not specs(entry.parameters)[names[name]].options:
+            raise ValueError(f"{name}: expected a number, got {value!r}")
     return {names[name]: value for name, value in parameters.items()}
 
 

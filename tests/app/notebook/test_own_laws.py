@@ -244,7 +244,7 @@ def test_the_command_line_takes_a_law_of_a_file(
     page = tmp_path / "own.html"
     assert run_command(["experiment", "obstruction", "--law", f"path_following,{EXAMPLE}"]) == 0
     assert "SlidingMode" in capsys.readouterr().out
-    assert run_command(["export", "figure", str(page), "--law", EXAMPLE, "--path", "circle"]) == 0
+    assert run_command(["figure", str(page), "--law", EXAMPLE, "--path", "circle"]) == 0
     assert page.stat().st_size > 1e5
     compared = ["compare", "--law", EXAMPLE, "--obstruction", "brake"]
     assert run_command(compared) == 0 and "SlidingMode" in capsys.readouterr().out

@@ -79,9 +79,7 @@ def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
         onpath.figure(file, "flexible", output="redefined", alpha=0.3, **circle)
     with pytest.raises(ValueError, match="unknown parameter 'law': did you mean laws"):
         onpath.figure(file, "flexible", law="redefined", **circle)
-    assert (
-        run_command(["export", "figure", str(file), "--robot=flexible", "--set=law=redefined"]) == 0
-    )
+    assert run_command(["figure", str(file), "--robot=flexible", "--set=law=redefined"]) == 0
 
 
 @pytest.mark.parametrize("command", [["experiment", "obstruction"], ["compare"]])
