@@ -73,6 +73,6 @@ class FigureCommand:
             choices=laws_named(self.choice, (), calls=False),
             title=self.title,
             language=self.language,
-            **{"output" if name == "law" else name: settings[name] for name in settings},
+            **settings,
         )
         print(f"{self.file}: {self.file.stat().st_size / 1e3:.0f} kB, needs no server")

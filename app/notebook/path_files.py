@@ -12,7 +12,7 @@ import numpy as np
 
 from onpath.app.common.user_files import user_file
 from onpath.app.notebook.arguments import curve_of, plane_point
-from onpath.app.notebook.simulate import by_declared_names, entry_named
+from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.arrays import Array
 from onpath.models.control.settable import with_values
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
@@ -161,9 +161,9 @@ def check_path(
     if exchanged or str(robot) in presets() or str(path) in ROBOTS:
         raise TypeError("check_path(robot, path): the robot comes first, as in onpath.simulate")
     entry = entry_named(robot)
-    values = by_declared_names(settings, entry, check_path)
+    check_names(settings, entry, check_path)
     curve = curve_of("path", path)
-    margin = entry.make(with_values(entry.parameters(), values)).margin
+    margin = entry.make(with_values(entry.parameters(), settings)).margin
     faults = curve_faults(margin, curve)
     nearest: Curve | None = curve
     if faults:

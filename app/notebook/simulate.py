@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from inspect import signature
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,8 @@ from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.unused import unused_text
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry, robot_named
 from onpath.models.systems.parameter_specs import Spec, unknown_name
+
+VARIABLE = Parameter.VAR_KEYWORD
 
 
 def simulate(
@@ -101,8 +103,7 @@ def simulate(
             instead of `speed` and `ramp`; it is fed forward, as in (19).
         settings: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
             robot's defaults, which are those of the lab, the command line and figures, too. A new
-            lab begins more slowly, as with **onpath.NEWCOMER. What `--set law=` sets for the
-            flexible robot is called `output` here.
+            lab begins more slowly, as with **onpath.NEWCOMER.
 
     Raises:
         ValueError: an unknown name (the message lists the nearest ones), an invalid value (the
@@ -151,18 +152,18 @@ def simulate(
     ValueError: unknown path 'elips': did you mean ellipse, closed? (onpath.paths() lists all)
     """
     entry, name = entry_named(robot), law_of(law)
-    given = by_declared_names(settings, entry, simulate)
+    check_names(settings, entry, simulate)
     check_number("duration", duration, "s")
     check_number("reverse_at", reverse_at, "s")
     check_number("clock_offset", clock_offset, "rad")
     check_number("hold_at", hold_at or 0.0, "rad")
-    made = entry.make(with_values(entry.parameters(), given))
+    made = entry.make(with_values(entry.parameters(), settings))
     curve = curve_of("path", path, made)
     for argument, value in {"start": start, "push": push, "wall": wall}.items():
         if value is not None:
             place = array_of(argument, value if argument == "start" else value[2], "a point, [m]")
             check_near(argument, place, made.reach)
-    given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
+    given = settings | _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
     given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
     chosen = Experiment(
@@ -241,8 +242,7 @@ def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     """
     entry = entry_named(robot)
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
-    names = _names(entry).items()
-    return {public: _described(known[name], defaults[name]) for public, name in names}
+    return {name: _described(spec, defaults[name]) for name, spec in known.items()}
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
@@ -336,11 +336,6 @@ def entry_named(robot: str | Path | RobotEntry) -> RobotEntry:
         return robot_named(str(robot))
 
 
-def _names(entry: RobotEntry) -> dict[str, str]:
-    """Public parameter names -> declared names; they differ where `law` is the control law."""
-    return {"output" if name == "law" else name: name for name in specs(entry.parameters)}
-
-
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values that are not None."""
     return {name: value for name, value in values.items() if value is not None}
@@ -353,27 +348,27 @@ def law_of(law: Any) -> str:
         return law_given(law)
 
 
-def by_declared_names(
+def check_names(
     parameters: Mapping[str, Any], entry: RobotEntry, function: Callable[..., Any]
-) -> dict[str, Any]:
-    """Parameters by the names that they are declared with.
+) -> None:
+    """Refuse parameters that a robot does not have, and texts and lists in place of numbers.
 
     Args:
         function: the function whose arguments they are.
 
     Raises:
-        ValueError: an unknown name; the message lists the nearest ones.
+        ValueError: an unknown name, with the nearest ones; or a value that is no single number
+            where one is expected.
     """
-    names = _names(entry)
-    arguments = [name for name in signature(function).parameters if name != "settings"]
+    names = specs(entry.parameters)
+    arguments = [each for each in signature(function).parameters.values() if each.kind != VARIABLE]
     for name, value in parameters.items():
         if name not in names:
             with looked_up(f"onpath.parameters({entry.name!r})"):
-                raise unknown_name(name, [*names, *arguments])
+                raise unknown_name(name, [*names, *(each.name for each in arguments)])
         check_one(name, value)
-        if isinstance(value, str) and not specs(entry.parameters)[names[name]].options:
+        if isinstance(value, str) and not names[name].options:
             raise ValueError(f"{name}: expected a number, got {value!r}")
-    return {names[name]: value for name, value in parameters.items()}
 
 
 def _described(spec: Spec, default: Any) -> str:
