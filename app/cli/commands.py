@@ -20,6 +20,7 @@ from onpath.app.cli.identify import IdentifyCommand
 from onpath.app.cli.lesson_pages import WriteGuide, WriteWorksheet
 from onpath.app.cli.lesson_play import PlayLesson
 from onpath.app.cli.lessons import CheckLessons, ListLessons, ListNames
+from onpath.app.cli.names import NamesCommand
 from onpath.app.cli.paper import PaperCommand
 from onpath.app.cli.serve import Serve
 
@@ -66,6 +67,7 @@ COMMANDS: Mapping[str, type[Subcommand] | Group] = {
     "paper": PaperCommand,
     "identify": IdentifyCommand,
     "zero-dynamics": ZeroDynamicsCommand,
+    "names": NamesCommand,
     "lessons": Group(
         "List, check, play or print the lessons, the built-in ones or your own.",
         {

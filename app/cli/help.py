@@ -46,8 +46,7 @@ def top_help() -> str:
         "Examples:",
         _table(EXAMPLES),
         "Robot, path, law and settings are --robot, --path, --law and --set NAME=VALUE in all\n"
-        "commands; what may be given more than once also takes commas. onpath lessons names\n"
-        "lists all names.",
+        "commands; what may be given more than once also takes commas. onpath names lists them.",
         "Your shell completes commands and options after one of these lines, in a new window:",
         _table(LINES.items()),
         f"Documentation: {documents} in {home}; in Python, help(onpath)",

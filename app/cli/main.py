@@ -18,6 +18,7 @@ from onpath.app.cli.help import group_help, top_help
 from onpath.app.cli.options import parsed
 from onpath.app.cli.paper import NAMES
 from onpath.app.cli.supervisor import supervised
+from onpath.models.errors import CodedError
 
 INTERRUPTED = 130
 
@@ -65,8 +66,15 @@ def run_command(arguments: list[str]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except (ValueError, OSError) as error:
-        print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
+        print(f"onpath: {_one_line(str(error))}{_where_names_are(error)}", file=sys.stderr)
         return 2
+
+
+def _where_names_are(error: Exception) -> str:
+    """Which command lists the names, if an error is for an unknown one."""
+    arguments = error.message.arguments if isinstance(error, CodedError) else {}
+    listed = arguments.get("kind") in ("robot", "path", "law", "parameter")
+    return " (onpath names lists all)" if listed else ""
 
 
 @contextlib.contextmanager
@@ -142,7 +150,7 @@ def _unboxed(text: str) -> str:
     lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
     pointers = ("For full helptext", "Argument helptext")
     kept = [line for line in lines if line and not line.startswith(pointers)]
-    return " ".join(kept) or _one_line(text)
+    return " ".join(kept).removesuffix(" (required)") or _one_line(text)
 
 
 def _one_line(text: str) -> str:

@@ -140,8 +140,7 @@ def curve_of(name: str, path: Any, robot: Robot | None = None) -> Curve:
     if isinstance(path, Path):
         path = f"@{path}"
     if isinstance(path, str):
-        with looked_up("onpath.paths()"):
-            curve = _path_in(path[1:], robot) if path.startswith("@") else _typed(path)
+        curve = _path_in(path[1:], robot) if path.startswith("@") else _typed(path)
     elif isinstance(path, Curve):
         curve = path
     else:

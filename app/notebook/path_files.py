@@ -11,7 +11,7 @@ from xml.etree import ElementTree
 import numpy as np
 
 from onpath.app.common.user_files import user_file
-from onpath.app.notebook.arguments import curve_of, plane_point
+from onpath.app.notebook.arguments import curve_of, looked_up, plane_point
 from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.arrays import Array
 from onpath.models.control.settable import with_values
@@ -162,7 +162,8 @@ def check_path(
         raise TypeError("check_path(robot, path): the robot comes first, as in onpath.simulate")
     entry = entry_named(robot)
     check_names(settings, entry, check_path)
-    curve = curve_of("path", path)
+    with looked_up("onpath.paths()"):
+        curve = curve_of("path", path)
     margin = entry.make(with_values(entry.parameters(), settings)).margin
     faults = curve_faults(margin, curve)
     nearest: Curve | None = curve

@@ -158,7 +158,8 @@ def simulate(
     check_number("clock_offset", clock_offset, "rad")
     check_number("hold_at", hold_at or 0.0, "rad")
     made = entry.make(with_values(entry.parameters(), settings))
-    curve = curve_of("path", path, made)
+    with looked_up("onpath.paths()"):
+        curve = curve_of("path", path, made)
     for argument, value in {"start": start, "push": push, "wall": wall}.items():
         if value is not None:
             place = array_of(argument, value if argument == "start" else value[2], "a point, [m]")
