@@ -77,6 +77,7 @@ def start_point(robot: Robot, curve: Curve, start: ArrayLike | None) -> Array:
     p = robot.system.p
     form = f"a point, shape (2,) or ({p},), [m]" if p > 2 else "a point, shape (2,), [m]"
     y = array_of("start", start, form)
+    check_near("start", y, robot.reach)
     if y.shape not in ((2,), (p,)) or not np.isfinite(y).all():
         raise ValueError(f"start: expected {form}, got {start!r}")
     return y if y.shape == (p,) else robot.frame.lift(y)
@@ -247,15 +248,13 @@ def numbers(name: str, values: Any, count: int, form: str) -> Array:
 
 
 def check_number(name: str, value: Any, unit: str) -> None:
-    """Check that an argument is a finite number.
+    """Check that an argument is a number.
 
     Raises:
         ValueError: it is not; a text, such as "8", is none.
     """
-    form = f"a finite number, [{unit}]"
-    array = array_of(name, value, form)
-    if array.shape != () or not np.isfinite(array):
-        raise ValueError(f"{name}: expected {form}, got {value!r}")
+    if isinstance(value, str) or not np.isscalar(value):
+        raise ValueError(f"{name}: {value!r} is not a number, [{unit}]")
 
 
 def array_of(name: str, values: Any, form: str) -> Array:

@@ -17,7 +17,6 @@ from onpath.app.common.user_files import is_robot_file
 from onpath.app.notebook.arguments import (
     array_of,
     ask_unit,
-    check_near,
     check_number,
     check_one,
     curve_of,
@@ -32,6 +31,7 @@ from onpath.app.notebook.robot import robot as robot_from
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs, values_of, with_values
+from onpath.models.errors import CodedError
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
@@ -157,13 +157,8 @@ def simulate(
     check_number("reverse_at", reverse_at, "s")
     check_number("clock_offset", clock_offset, "rad")
     check_number("hold_at", hold_at or 0.0, "rad")
-    made = entry.make(with_values(entry.parameters(), settings))
     with looked_up("onpath.paths()"):
-        curve = curve_of("path", path, made)
-    for argument, value in {"start": start, "push": push, "wall": wall}.items():
-        if value is not None:
-            place = array_of(argument, value if argument == "start" else value[2], "a point, [m]")
-            check_near(argument, place, made.reach)
+        curve = curve_of("path", path, entry.make(with_values(entry.parameters(), settings)))
     given = settings | _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
     given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
@@ -369,7 +364,7 @@ def check_names(
                 raise unknown_name(name, [*names, *(each.name for each in arguments)])
         check_one(name, value)
         if isinstance(value, str) and not names[name].options:
-            raise ValueError(f"{name}: expected a number, got {value!r}")
+            raise CodedError("error.value_not_a_number", name=name, value=repr(value))
 
 
 def _described(spec: Spec, default: Any) -> str:
