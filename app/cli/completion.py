@@ -16,8 +16,10 @@ if TYPE_CHECKING:
 
 LINES = {
     "bash": """echo 'eval "$(onpath completion bash)"' >> ~/.bashrc""",
-    "zsh": """echo 'eval "$(onpath completion zsh)"' >> ~/.zshrc""",
-    "fish": "onpath completion fish > ~/.config/fish/completions/onpath.fish",
+    "zsh": "mkdir -p ~/.zfunc && onpath completion zsh > ~/.zfunc/_onpath && "
+    "echo 'fpath+=~/.zfunc; autoload -Uz compinit; compinit' >> ~/.zshrc",
+    "fish": "mkdir -p ~/.config/fish/completions && "
+    "onpath completion fish > ~/.config/fish/completions/onpath.fish",
 }
 """What installs the completion for each shell."""
 FILES_IN_BASH = """

@@ -48,8 +48,8 @@ def top_help() -> str:
         "Robot, path, law and settings are --robot, --path, --law and --set NAME=VALUE in all\n"
         "commands; what may be given more than once also takes commas. onpath names lists them.",
         "Your shell completes commands and options after one of these lines, in a new window:",
-        _table(LINES.items()),
-        f"Documentation: {documents} in {home}; in Python, help(onpath)",
+        "\n".join(f"  {shell:4}  {line}" for shell, line in LINES.items()),
+        f"Documentation, in {home}:\n  {documents}\n  In Python: help(onpath)",
     ]
     return "\n".join(f"{part}\n" if not part.endswith(":") else part for part in parts).rstrip("\n")
 
