@@ -28,7 +28,7 @@ def laws_named(texts: Sequence[str], suitable: Sequence[str], *, calls: bool = T
     for text in texts:
         if text in ("all", "both"):
             names += suitable if text == "all" else NAMES
-        elif text in LAWS or is_text(text) or IN_FILE.fullmatch(text):
+        elif text in LAWS or is_text(text) or IN_FILE.fullmatch(text) or text.endswith(".py"):
             names.append(law_given(text) if calls else compiled_law(text))
         else:
             raise unknown_name(text, [*LAWS, "all", "both"], "law")

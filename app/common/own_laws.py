@@ -40,6 +40,8 @@ def law_given(law: Any) -> str:
             del _FILES[earlier]  # of the file as it was
         _FILES[name] = given
         return name
+    if law.endswith(".py"):
+        raise CodedError("error.law_of_file", law=law)
     return law_name(law)
 
 

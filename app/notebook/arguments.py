@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -160,7 +161,12 @@ def path_name(text: str) -> str:
 
 
 def _typed(text: str) -> Curve:
-    curve = curve_from_text(text)
+    try:
+        curve = curve_from_text(text)
+    except ValueError:
+        if re.search(r"\.[a-zA-Z]\w*( |$)", text):
+            raise ValueError(f"path {text!r}: a file is given as '@{text}'") from None
+        raise
     if remark := deviation_remark(curve):
         warnings.warn(str(remark), stacklevel=4)
     return curve

@@ -149,6 +149,8 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
         ({"path": "zzz"}, "(onpath.paths() lists all)"),
         ({"robot": "zzz"}, "(onpath.robots() lists all)"),
         ({"zzz": 1}, "(onpath.parameters('five_bar') lists all)"),
+        ({"path": "my logo.svg fit=0.1"}, "a file is given as '@my logo.svg fit=0.1'"),
+        ({"law": "my_law.py"}, "expected FILE.py:NAME"),
         ({"path": "circle 50"}, "50 m: did you mean 0.05?"),
         ({"start": (50, 0)}, "50 m: did you mean 0.05?"),
         ({"duration": "8"}, "duration: '8' is not a number"),
