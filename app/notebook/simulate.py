@@ -146,7 +146,7 @@ def simulate(
     chosen = Experiment(
         name="simulate",
         title=entry.label,
-        make=entry.make,
+        entry=entry,
         parameters=entry.parameters(),
         schedule=Schedule(),
         start=lambda robot, _: start_point(robot, chosen.curve(), start),
