@@ -32,6 +32,7 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
 from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
+from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
 from onpath.models.errors import Message
@@ -49,6 +50,8 @@ from onpath.models.systems.parameter_specs import unknown_name
 from onpath.models.systems.parameters import Parameters, declared, rise_of
 from onpath.models.systems.robots import Robot, RobotEntry
 
+_CHECKED = set[tuple[Law, Robot]]()
+"""Laws that are called, whose results have been checked for a robot."""
 NEAR = 1e-9  # [m], distance that counts as on the path
 OF_SPEED = ("speed", "ramp", "speed_profile", "profile_period")
 """Parameters that a profile of the schedule replaces."""
@@ -364,6 +367,9 @@ def run(
         schedule=schedule,
         start=start,
     )
+    if isinstance(running, CalledLoop) and (law_named(controller), robot.core) not in _CHECKED:
+        running.check(*scheduled.inputs())
+        _CHECKED.add((law_named(controller), robot.core))
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None
     done = 0
