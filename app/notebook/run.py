@@ -165,19 +165,15 @@ class Run:
         Raises:
             ValueError: another robot or path, two files, or a file that cannot be written.
         """
-        from onpath.app.exports.figures import experiment_figure, save  # slow to import
+        from onpath.app.exports.figures import experiment_figure  # slow to import
 
         files = [each for each in (*others, file) if isinstance(each, str | Path)]
         if len(files) > 1:
             raise ValueError("plot: it writes one file, not " + " and ".join(map(str, files)))
-        path = Path(files[0]) if files else None
-        check_plot(path, "plot")
+        file = files[0] if files else None
+        check_plot(None if file is None else Path(file), "plot")
         runs = tuple(each for each in others if not isinstance(each, str | Path))
-        figure = experiment_figure(self.experiment, self._with(runs))
-        if path:
-            with whole_file(path) as scratch:
-                save(figure, scratch)
-        return figure
+        return written(experiment_figure(self.experiment, self._with(runs)), file)
 
     def to_csv(self, file: str | Path, *others: Run) -> None:
         """Write one row per millisecond and run, as `onpath experiment --csv` does.
@@ -248,6 +244,22 @@ def read_run(form: int, made_by: str, data: dict[str, Any]) -> Run:
             " does not read: write it with to_csv there"
         )
     return Run(experiment_from(data["experiment"]), Trajectory(**data["trajectory"]))
+
+
+def written(figure: Figure, file: str | Path | None) -> Figure:
+    """A figure, which is written to a file if one is given.
+
+    Raises:
+        ValueError: the file cannot be written.
+    """
+    from onpath.app.exports.figures import save
+
+    if file is not None:
+        path = Path(file)
+        check_plot(path, "plot")
+        with whole_file(path) as scratch:
+            save(figure, scratch)
+    return figure
 
 
 def data_frame(columns: Any) -> DataFrame:

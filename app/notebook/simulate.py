@@ -137,6 +137,63 @@ def simulate(
     Traceback (most recent call last):
     onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
+    chosen, name, given = planned(
+        robot,
+        path,
+        law,
+        duration=duration,
+        start=start,
+        velocity=velocity,
+        clock_offset=clock_offset,
+        hold=hold,
+        hold_at=hold_at,
+        hold_direction=hold_direction,
+        push=push,
+        wall=wall,
+        reverse_at=reverse_at,
+        profile=profile,
+        **parameters,
+    )
+    experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
+    run = Run(chosen, experiments.run(chosen, name))
+    remarks = (
+        experiments.path_remark(chosen.curve()),
+        unused_text(chosen, [name], given),
+        experiments.forecast_text(chosen, [name]),
+        experiments.never_held(chosen, run.trajectory),
+        experiments.beyond_limits(run.trajectory, chosen.robot()),
+    )
+    for text in remarks:
+        if text:
+            warnings.warn(text, UserWarning, stacklevel=2)
+    return run
+
+
+def planned(
+    robot: str | RobotEntry,
+    path: Curve | str,
+    law: Any,
+    *,
+    duration: float = 8.0,
+    start: ArrayLike | None = None,
+    velocity: tuple[float, float] = (0.0, 0.0),
+    clock_offset: float = 0.0,
+    hold: tuple[float, float] | None = None,
+    hold_at: float | None = None,
+    hold_direction: str | None = None,
+    push: tuple[float, float, ArrayLike] | None = None,
+    wall: tuple[float, float, ArrayLike, float] | None = None,
+    reverse_at: float = 0.0,
+    profile: str | Iterable[tuple[float, float]] | None = None,
+    **parameters: float | str,
+) -> tuple[Experiment, str, dict[str, Any]]:
+    """What the arguments of `simulate` mean: the experiment, the law's name, the settings given.
+
+    Whether the robot can follow the path is not checked.
+
+    Raises:
+        ValueError: see `simulate`.
+    """
     entry, name = entry_named(robot), law_given(law)
     given = by_declared_names(parameters, entry, simulate)
     given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
@@ -153,19 +210,7 @@ def simulate(
         path=curve,
         lifts=False,
     ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
-    experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
-    run = Run(chosen, experiments.run(chosen, name))
-    remarks = (
-        experiments.path_remark(chosen.curve()),
-        unused_text(chosen, [name], given),
-        experiments.forecast_text(chosen, [name]),
-        experiments.never_held(chosen, run.trajectory),
-        experiments.beyond_limits(run.trajectory, chosen.robot()),
-    )
-    for text in remarks:
-        if text:
-            warnings.warn(text, UserWarning, stacklevel=2)
-    return run
+    return chosen, name, given
 
 
 def robots() -> dict[str, str]:

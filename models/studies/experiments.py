@@ -35,7 +35,7 @@ from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
 from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
-from onpath.models.errors import Message
+from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import Curve, circle, curve_from
 from onpath.models.studies import schedule as schedules
@@ -351,25 +351,8 @@ def run(
         ValueError: the controller is unknown, the path is out of the robot's reach, or no run is
             possible from the start.
     """
-    law_named(controller)
+    kernel, running, scheduled = _begun(experiment, controller, loop)
     robot, curve = experiment.robot(), experiment.curve()
-    check_level_set(experiment.parameters, curve)
-    kind = kind_of(controller, experiment.parameters, curve)
-    kernel = kernel_of(robot, kind)
-    schedule, start = experiment.schedule, experiment.begin()
-    check_possible(robot, controller, experiment.parameters, robot.rest(start))
-    running = callable_loop(robot, kind, kernel, loop(kernel))
-    scheduled = ScheduledRun(
-        robot=robot,
-        loop=running,
-        curve=curve,
-        parameters=experiment.parameters,
-        schedule=schedule,
-        start=start,
-    )
-    if isinstance(running, CalledLoop) and (law_named(controller), robot.core) not in _CHECKED:
-        running.check(*scheduled.inputs())
-        _CHECKED.add((law_named(controller), robot.core))
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None
     done = 0
@@ -386,6 +369,51 @@ def run(
         if fault is not None:
             break
     return _finished(robot, kernel, controller, _joined(segments), experiment, fault)
+
+
+def check_called(experiment: Experiment, law: str) -> None:
+    """Check what a law that is called returns at the start of an experiment.
+
+    Raises:
+        CodedError: it fails, or it returns no command, with file and line.
+    """
+    known = law_named(law)
+    if known.called is None or (known, experiment.robot().core) in _CHECKED:
+        return
+    try:
+        _begun(experiment, law, InterpretedLoop)
+    except ValueError as error:  # others say that no run is possible here
+        if isinstance(error, CodedError) and error.message.code == "error.law_fails":
+            raise
+
+
+def _begun(
+    experiment: Experiment, law: str, loop: Callable[[Kernel], Loop]
+) -> tuple[Kernel, Loop, ScheduledRun]:
+    """What `run` runs, after all checks: the kernel, its loop, and the run at its start.
+
+    Raises:
+        ValueError: see `run`.
+    """
+    law_named(law)
+    robot, curve = experiment.robot(), experiment.curve()
+    check_level_set(experiment.parameters, curve)
+    kind = kind_of(law, experiment.parameters, curve)
+    kernel, start = kernel_of(robot, kind), experiment.begin()
+    check_possible(robot, law, experiment.parameters, robot.rest(start))
+    running = callable_loop(robot, kind, kernel, loop(kernel))
+    scheduled = ScheduledRun(
+        robot=robot,
+        loop=running,
+        curve=curve,
+        parameters=experiment.parameters,
+        schedule=experiment.schedule,
+        start=start,
+    )
+    if isinstance(running, CalledLoop) and (law_named(law), robot.core) not in _CHECKED:
+        running.check(*scheduled.inputs())
+        _CHECKED.add((law_named(law), robot.core))
+    return kernel, running, scheduled
 
 
 def _joined(segments: list[tuple[Array, Curve, bool]]) -> list[tuple[Array, Curve, bool]]:
@@ -430,7 +458,7 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     held = experiment.schedule.hold_from < experiment.schedule.hold_to
     laws = {
         run.controller: {
-            **(_summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)),
+            **(_summary(run) if run.stopped_at is None else of_stopped(run.stopped_at, held)),
             "never_held": bool(never_held(experiment, run)),
         }
         for run in runs
@@ -452,7 +480,7 @@ def _summary(run: Trajectory) -> dict[str, Any]:
     }
 
 
-def _stopped(time: float, held: bool) -> dict[str, Any]:
+def of_stopped(time: float, held: bool) -> dict[str, Any]:
     """The summary of a run that was stopped at a time, [s].
 
     Args:

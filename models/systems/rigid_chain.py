@@ -168,7 +168,13 @@ class ChainSource:
 
     def is_as(self, other: ChainSource) -> bool:
         """Whether another source makes the same robot, whatever it is called and looks like."""
-        return _mechanics(self) == _mechanics(other)
+        return self.mechanics() == other.mechanics()
+
+    def mechanics(self) -> list[Any]:
+        """All of the data but names and looks."""
+        chain = msgspec.to_builtins(self.chain, enc_hook=_listed)
+        bodies = [{**body, "shapes": ()} for body in chain["bodies"]]
+        return [bodies, chain["tip"], chain["facing"], self.home, self.axes, self.substeps]
 
 
 def source_from(data: dict[str, Any]) -> ChainSource:
@@ -182,12 +188,6 @@ def source_from(data: dict[str, Any]) -> ChainSource:
 
 def _listed(array: Any) -> Any:
     return array.tolist()
-
-
-def _mechanics(source: ChainSource) -> list[Any]:
-    chain = msgspec.to_builtins(source.chain, enc_hook=_listed)
-    bodies = [{**body, "shapes": ()} for body in chain["bodies"]]
-    return [bodies, chain["tip"], chain["facing"], source.home, source.axes, source.substeps]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
