@@ -25,7 +25,7 @@ class Trajectory:
     """The record of one robot under one control law.
 
     Attributes:
-        controller: name of the control law.
+        law: name of the control law.
         t: time, shape (n,), [s].
         fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size); where
             sensors are not exact also `MEASURED`, the joint angles that they read, [rad].
@@ -38,7 +38,7 @@ class Trajectory:
         label: the law's label, which is known even where the law is not.
     """
 
-    controller: str
+    law: str
     t: Array
     fields: dict[str, Array]
     distance: Array
@@ -66,16 +66,16 @@ class Trajectory:
         )
 
 
-def join(controller: str, parts: list[Trajectory]) -> Trajectory:
+def join(law: str, parts: list[Trajectory]) -> Trajectory:
     """Consecutive parts of a run as one trajectory.
 
     Raises:
         ValueError: `parts` is empty.
     """
     if not parts:
-        raise ValueError(f"{controller}: there is nothing to show")
+        raise ValueError(f"{law}: there is nothing to show")
     return Trajectory(
-        controller=controller,
+        law=law,
         t=np.concatenate([part.t for part in parts]),
         fields={
             name: np.concatenate([part.fields[name] for part in parts]) for name in parts[0].fields
@@ -91,7 +91,7 @@ def join(controller: str, parts: list[Trajectory]) -> Trajectory:
 def record(
     robot: Robot,
     log: Layout,
-    controller: str,
+    law: str,
     segments: list[tuple[Array, Curve, bool]],
     dt: float,
     times: Array | None = None,
@@ -111,13 +111,13 @@ def record(
     ]
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
-        controller=controller,
+        law=law,
         t=np.arange(len(rows), dtype=float) * dt if times is None else times,
         fields=fields,
         distance=np.concatenate(distance),
         speed=fields["speed"][:, 0],
         held=np.concatenate(held),
-        label=law_named(controller).label,
+        label=law_named(law).label,
     )
 
 
@@ -198,7 +198,7 @@ def write_csv(
     writer.writerow(header(robot, level_set, sides is not None, read))
     for number, run in enumerate(runs):
         columns = numbers_of(robot, run, read)
-        law = f'"{run.controller}"' if "," in run.controller else run.controller
+        law = f'"{run.law}"' if "," in run.law else run.law
         name = law if sides is None else f"{sides[number]},{law}"
         line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"
         columns += 0.0  # turns -0 into 0
