@@ -9,6 +9,7 @@ same compiled loop, go to a process together.
 
 from __future__ import annotations
 
+import io
 import sys
 import threading
 import uuid
@@ -17,11 +18,13 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor
 from dataclasses import dataclass
 from itertools import groupby
+from types import CodeType
 from typing import Any, Generic, TypeVar
 
 import cloudpickle
 from joblib import Parallel, delayed
 from joblib.parallel import get_active_backend
+from typing_extensions import override
 
 from onpath.models.closed_loop.simulation import forget_kernels
 from onpath.models.control.laws.law import Law
@@ -187,10 +190,26 @@ def luggage_of(laws: Iterable[str], robots: Iterable[RobotEntry]) -> Luggage:
 
 
 def _pickled(law: Law) -> bytes:
+    file = io.BytesIO()
     try:
-        return cloudpickle.dumps(law)
+        _WithFiles(file).dump(law)
     except Exception as error:  # of whatever it consists
         raise ValueError(f"{law.name} cannot be sent to another process: {error}") from error
+    return file.getvalue()
+
+
+class _WithFiles(cloudpickle.Pickler):
+    """Keeps the names of the files of code, which messages tell."""
+
+    @override
+    def reducer_override(self, obj: Any) -> Any:
+        if isinstance(obj, CodeType) and obj.co_filename:
+            return _in_file, (obj.replace(co_filename=""), obj.co_filename)
+        return super().reducer_override(obj)
+
+
+def _in_file(code: CodeType, file: str) -> CodeType:
+    return code.replace(co_filename=file)
 
 
 def _worked(

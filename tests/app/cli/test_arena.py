@@ -31,7 +31,7 @@ import os
 def raising(now):
     return (1 / 0 if now.t > 0.3 else 0), 0
 def dying(now):
-    return os._exit(7) if now.t > 0.3 else (0, 0)
+    return os._exit(7) if now.t > 4.6 else (-now.theta_rate, 0)  # in the pull alone
 """
 
 

@@ -228,7 +228,7 @@ def study(tmp_path: Path) -> dict[str, Any]:
     )
     arm = onpath.robot(tmp_path / "arm.urdf", armature=0.001)
     laws = ["path_following", Summed(300), Summed, f"{tmp_path / 'law.py'}:stiff"]
-    return {"robot": [arm, "five_bar"], "law": [laws[0], laws[1], laws[3]], "K1": [300, 500]}
+    return {"robot": [arm], "law": [laws[0], laws[1], laws[3]], "K1": [300, 500]}
 
 
 def killer(marker: Path, times: int) -> Any:
