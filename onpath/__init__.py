@@ -42,11 +42,14 @@ if TYPE_CHECKING:
     from onpath.app.notebook.simulate import segment as segment
     from onpath.app.notebook.simulate import simulate as simulate
     from onpath.app.notebook.simulate import through as through
+    from onpath.app.notebook.sweep import SweepResult as SweepResult
+    from onpath.app.notebook.sweep import sweep as sweep
 
 __all__ = (
     "NEWCOMER",
     "ArenaResult",
     "Run",
+    "SweepResult",
     "arena",
     "check_path",
     "circle",
@@ -63,6 +66,7 @@ __all__ = (
     "robots",
     "segment",
     "simulate",
+    "sweep",
     "tangential",
     "through",
 )
@@ -78,6 +82,8 @@ _MODULES = {
     "tangential": "own_law",
     "path_from": "path_files",
     "check_path": "path_files",
+    "sweep": "sweep",
+    "SweepResult": "sweep",
 }
 """Public names that are not in app/notebook/simulate.py -> the module that has them."""
 

@@ -35,6 +35,8 @@ class ArenaCommand:
     """Seed of the random numbers: the same seed gives the same trials."""
     processes: int = 0
     """Number of processes; 0: one for each processor."""
+    folder: Path | None = None
+    """Keep finished runs in this folder: an arena that was interrupted goes on where it was."""
     html: Path = Path("arena.html")
     """The page. Its live figures are in a folder beside it, NAME-figures."""
     csv: Path = Path("arena.csv")
@@ -64,6 +66,7 @@ class ArenaCommand:
             rounds=self.rounds,
             seed=self.seed,
             processes=self.processes,
+            folder=self.folder,
             html=self.html,
             csv=self.csv,
             figures=not self.no_figures,

@@ -151,6 +151,63 @@ def simulate(
     Traceback (most recent call last):
     ValueError: unknown path 'elips': did you mean ellipse, closed? (onpath.paths() lists all)
     """
+    chosen, name, given = planned(
+        robot,
+        path,
+        law,
+        duration=duration,
+        start=start,
+        velocity=velocity,
+        clock_offset=clock_offset,
+        hold=hold,
+        hold_at=hold_at,
+        hold_direction=hold_direction,
+        push=push,
+        wall=wall,
+        reverse_at=reverse_at,
+        profile=profile,
+        **settings,
+    )
+    experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
+    run = Run(chosen, experiments.run(chosen, name))
+    remarks = (
+        experiments.path_remark(chosen.curve()),
+        unused_text(chosen, [name], given),
+        experiments.forecast_text(chosen, [name]),
+        experiments.never_held(chosen, run.trajectory),
+        experiments.beyond_limits(run.trajectory, chosen.robot()),
+    )
+    for text in remarks:
+        if text:
+            warnings.warn(text, UserWarning, stacklevel=2)
+    return run
+
+
+def planned(
+    robot: str | Path | RobotEntry,
+    path: str | Path | Curve,
+    law: Any,
+    *,
+    duration: float = 8.0,
+    start: ArrayLike | None = None,
+    velocity: tuple[float, float] = (0.0, 0.0),
+    clock_offset: float = 0.0,
+    hold: tuple[float, float] | None = None,
+    hold_at: float | None = None,
+    hold_direction: str | None = None,
+    push: tuple[float, float, ArrayLike] | None = None,
+    wall: tuple[float, float, ArrayLike, float] | None = None,
+    reverse_at: float = 0.0,
+    profile: str | Iterable[tuple[float, float]] | None = None,
+    **settings: float | str,
+) -> tuple[Experiment, str, dict[str, Any]]:
+    """What the arguments of `simulate` mean: the experiment, the law's name, the settings given.
+
+    Whether the robot can follow the path is not checked.
+
+    Raises:
+        ValueError: see `simulate`.
+    """
     entry, name = entry_named(robot), law_of(law)
     check_names(settings, entry, simulate)
     check_number("duration", duration, "s")
@@ -165,26 +222,14 @@ def simulate(
     chosen = Experiment(
         name="simulate",
         title=entry.label,
-        make=entry.make,
+        entry=entry,
         parameters=entry.parameters(),
         schedule=Schedule(),
         start=lambda robot, _: start_point(robot, chosen.curve(), start),
         path=curve,
         lifts=False,
     ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
-    experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
-    run = Run(chosen, experiments.run(chosen, name))
-    remarks = (
-        experiments.path_remark(chosen.curve()),
-        unused_text(chosen, [name], given),
-        experiments.forecast_text(chosen, [name]),
-        experiments.never_held(chosen, run.trajectory),
-        experiments.beyond_limits(run.trajectory, chosen.robot()),
-    )
-    for text in remarks:
-        if text:
-            warnings.warn(text, UserWarning, stacklevel=2)
-    return run
+    return chosen, name, given
 
 
 def robots() -> dict[str, str]:
