@@ -60,17 +60,16 @@ class ExportFigure:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             written = figure(
-                self.file,
                 robot=entry,
-                laws=self.law or tuple(DEFAULT_LAWS.values()),
-                paths={path_name(each): read_path(each, robot) for each in self.path} or PATHS,
+                law=self.law or tuple(DEFAULT_LAWS.values()),
+                path={path_name(each): read_path(each, robot) for each in self.path} or PATHS,
                 sliders=self.slider or None,
                 controls=self.control or None,
                 choices=self.choice,
                 title=self.title,
                 language=self.language,
                 **parameters,
-            )
+            ).save(self.file)
         for each in caught:
             print(f"onpath: {each.message}", file=sys.stderr)
         print(f"{written}: {written.stat().st_size / 1e3:.0f} kB, needs no server")
