@@ -23,7 +23,8 @@ def announced(text: str) -> Iterator[None]:
 
     def say() -> None:
         said.append(text)
-        print(f"\r{text}", end="", file=sys.stderr, flush=True)
+        sys.stderr.write(f"\r{text}")
+        sys.stderr.flush()
 
     timer = Timer(PATIENCE, say)
     timer.daemon = True
@@ -34,4 +35,5 @@ def announced(text: str) -> Iterator[None]:
         timer.cancel()
         timer.join()
         if said:
-            print(f"\r{' ' * len(text)}\r", end="", file=sys.stderr, flush=True)
+            sys.stderr.write(f"\r{' ' * len(text)}\r")
+            sys.stderr.flush()

@@ -13,7 +13,7 @@ from onpath.app.common.own_laws import compiled_law
 from onpath.app.exports.standalone.figure import ENDINGS, Figure, check_language
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.notebook.arguments import curve_of
-from onpath.app.notebook.simulate import by_declared_names, entry_named
+from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
@@ -21,6 +21,7 @@ from onpath.models.studies.experiments import forecast_text, on_path, path_remar
 from onpath.models.studies.unused import unused_text
 from onpath.models.systems.robots import RobotEntry
 
+LAWS = tuple(DEFAULT_LAWS.values())
 PATHS = ("circle", "ellipse", "rounded square", "clover")
 OLD = {"file": "figure(...).save(file)", "laws": "law", "paths": "path"}
 """Former arguments -> what is written instead."""
@@ -29,7 +30,7 @@ OLD = {"file": "figure(...).save(file)", "laws": "law", "paths": "path"}
 def figure(
     robot: str | RobotEntry = "five_bar",
     path: Curve | str | Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
-    law: Any = tuple(DEFAULT_LAWS.values()),
+    law: Any = LAWS,
     *,
     sliders: str | Sequence[str] | None = None,
     controls: str | Sequence[str] | None = None,
@@ -81,8 +82,8 @@ def figure(
     named = path if isinstance(path, Mapping) else {str(each): each for each in _several(path)}
     curves = {name: curve_of("path", each) for name, each in named.items()}
     laws, others = ([compiled_law(each) for each in _several(given)] for given in (law, choices))
-    given = by_declared_names(settings, entry := entry_named(robot), figure)
-    values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
+    check_names(settings, entry := entry_named(robot), figure)
+    values = settings if settings.keys() & NEWCOMER.keys() else {**NEWCOMER, **settings}
     with announced("OnPath: checking a figure …"):
         choice = chosen(
             entry.name,
@@ -97,7 +98,7 @@ def figure(
     first = on_path(choice.entry, choice.parameters, curve)
     laws = choice.every_law
     remarks = [path_remark(raised(each, choice.parameters)) for each in curves.values()]
-    for text in (*remarks, unused_text(first, laws, given), forecast_text(first, laws)):
+    for text in (*remarks, unused_text(first, laws, settings), forecast_text(first, laws)):
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     return Figure(

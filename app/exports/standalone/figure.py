@@ -124,7 +124,7 @@ class Figure:
         return figure_numbers(self.choice)
 
     def _laws(self, words: Words) -> str:
-        return " / ".join(law_titles([run.controller for run in self._runs], words).values())
+        return " / ".join(law_titles([run.law for run in self._runs], words).values())
 
     def __repr__(self) -> str:
         kind = "figure" if self.choice else "picture"
@@ -134,19 +134,16 @@ class Figure:
         """Picture and page for a notebook, which shows the first kind that it can."""
         words = Words(self.language)
         page = b64encode(gzip.compress(self.html.encode(), mtime=0)).decode()
+        picture = b64encode(self.png).decode()
         html = render(
             "standalone/cell.html",
-            picture=b64encode(self.png).decode(),
+            picture=picture,
             described=words("standalone.still", laws=self._laws(words)),
             named=self.title or self._laws(words),
             height=HEIGHT,
             page=page,
         )
-        return {
-            "text/html": html,
-            "image/png": b64encode(self.png).decode(),
-            "text/plain": f"{self!r}",
-        }
+        return {"text/html": html, "image/png": picture, "text/plain": repr(self)}
 
 
 def check_language(language: str) -> None:

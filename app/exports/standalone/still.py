@@ -51,7 +51,7 @@ def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) 
         runs: one or two, of the same robot on this path.
     """
     drawn = Figure(figsize=SIZE, layout="constrained")
-    titles = law_titles([run.controller for run in runs], words)
+    titles = law_titles([run.law for run in runs], words)
     colours = [palette.OF_SIDE[side].hex for side in ((LEFT, RIGHT) if runs[1:] else (RIGHT,))]
     shown = [int(run.distance.argmax()) for run in runs]
     names = [f"robot {number}" for number in range(len(runs))]
@@ -63,7 +63,7 @@ def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) 
         axes.sharey(scenes[0])
     for axes, run, row, colour in zip(scenes, runs, shown, colours, strict=True):
         _draw_scene(axes, robot, curve, run, row, colour)
-        values = {"law": titles[run.controller], "far": f"{1e3 * run.distance[row]:.1f}"}
+        values = {"law": titles[run.law], "far": f"{1e3 * run.distance[row]:.1f}"}
         axes.set_title(words("standalone.still_robot", **values), fontsize=10)
         chart.plot(run.t, 1e3 * run.distance, color=colour, linewidth=1.6)
         chart.plot(run.t[row], 1e3 * run.distance[row], "o", color=colour, markersize=4)
