@@ -19,6 +19,8 @@ from onpath.models.studies.experiments import Experiment, never_held, summary
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from onpath.app.exports.standalone.figure import Figure as LiveFigure
+
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Run:
@@ -180,6 +182,28 @@ class Run:
             if experiment.robot() is not robot or not same_path:
                 raise ValueError("only runs of one robot on one path can be shown together")
         return [self.trajectory, *(other.trajectory for other in others)]
+
+    def figure(self, *others: Run, title: str = "", language: str = "en") -> LiveFigure:
+        """The figure of what was recorded: a picture, and a page on which it can be tried.
+
+        Args:
+            others: another run of the same robot and path, shown beside this one.
+            title: title above the figure.
+            language: language of its words.
+
+        Raises:
+            ValueError: another robot or path, more than two runs, or an unknown language.
+        """
+        from onpath.app.notebook.display import run_figure  # slow to import
+
+        runs = self._with(others)
+        alike = all(run.experiment.parameters == self.experiment.parameters for run in others)
+        return run_figure(self.experiment, runs, alike, title, language)
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from onpath.app.notebook.display import run_bundle  # slow to import
+
+        return run_bundle(repr(self), self.experiment, self.trajectory, self.reason)
 
     def __repr__(self) -> str:
         lines = [f"{law_title(self.law)}, {self.experiment.title}, {len(self.t)} ms"]

@@ -88,15 +88,8 @@ def grid_of(robot: Robot, curve_points: Array) -> Array:
 
 
 def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
-    """The projection from the robot's frame to the picture, (2, 3), and `place` of y = 0.
-
-    A robot that moves in the vertical plane is seen at right angles to it.
-    """
-    drawing, flat = robot.drawing, robot.system.p == 2
-    up, turn = (0.0, 0.0) if flat else (drawing.elevation, drawing.azimuth)
-    right = [np.cos(turn), np.sin(turn), 0.0]
-    above = [-np.sin(turn) * np.sin(up), np.cos(turn) * np.sin(up), np.cos(up)]
-    seen = ca.DM([right, above])
+    """`Robot.seen`, (2, 3), and `place` of y = 0."""
+    seen = ca.DM(robot.seen)
     return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
 
 

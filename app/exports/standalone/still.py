@@ -20,7 +20,6 @@ from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.page_functions import placed, view_of
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.curves import Curve
@@ -82,19 +81,16 @@ def _draw_scene(
     axes: Axes, robot: Robot, curve: Curve, run: Trajectory, row: int, colour: str
 ) -> None:
     """The robot in one row of a run, seen as on the page, in [mm]."""
-    seen, offset = view_of(robot)
-    y = ca.SX.sym("y", robot.system.p)
-    placing = ca.Function("place", [y], [placed(robot, y, seen) + offset])
-    bars, joints = robot.skeleton(robot.system.q, ca.SX(1))
-    picture = ca.Function("picture", [robot.system.q], [seen @ bars, seen @ joints])
+    q = robot.system.q
+    picture = ca.Function("picture", [q], [*robot.skeleton(q, ca.SX(1))])
 
     def place(points: Array) -> Array:
-        return 1e3 * np.array(placing(points.T))
+        return 1e3 * robot.seen @ robot.place(points).T
 
     path = robot.frame.lift(curve.at(np.linspace(-np.pi, np.pi, 361)))
     axes.plot(*place(path), color=palette.GREY.hex, linewidth=1.2)
     axes.plot(*place(run.fields["y"][max(0, row - TRACE) : row + 1]), color=colour, linewidth=1.8)
-    lines, pins = (1e3 * np.array(part) for part in picture(run.fields["q"][row]))
+    lines, pins = (1e3 * robot.seen @ np.array(part) for part in picture(run.fields["q"][row]))
     for begin, end in zip(lines.T[::2], lines.T[1::2], strict=True):
         axes.plot(*np.transpose([begin, end]), color=colour, linewidth=5, alpha=0.45)
     axes.plot(*pins, "o", color=palette.STEEL.hex, markersize=5)

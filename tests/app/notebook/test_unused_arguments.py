@@ -78,7 +78,8 @@ def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
         warnings.simplefilter("error")
         onpath.figure("flexible", output="redefined", alpha=0.3, **circle)
     assert (
-        run_command(["export", "figure", str(file), "--robot=flexible", "--set=output=redefined"]) == 0
+        run_command(["export", "figure", str(file), "--robot=flexible", "--set=output=redefined"])
+        == 0
     )
 
 
