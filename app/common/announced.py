@@ -12,19 +12,22 @@ PATIENCE = 1.0  # [s]
 
 @contextmanager
 def announced(text: str) -> Iterator[None]:
-    """Say on the error stream what is being done, if it takes longer than a second.
+    """Say what is being done, if it takes longer than a second.
 
-    Only in a terminal or a notebook; there, the line is blanked when the work is done.
+    On the error stream of a terminal, or in a notebook's cell; nowhere else. The line is blanked
+    when the work is done.
     """
-    if not (sys.stderr.isatty() or "ipykernel" in sys.modules):
+    in_notebook = "ipykernel" in sys.modules
+    if not (in_notebook or sys.stderr.isatty()):
         yield
         return
+    stream = sys.stdout if in_notebook else sys.stderr  # which a notebook shows as a fault
     said = list[str]()
 
     def say() -> None:
         said.append(text)
-        sys.stderr.write(f"\r{text}")
-        sys.stderr.flush()
+        stream.write(f"\r{text}")
+        stream.flush()
 
     timer = Timer(PATIENCE, say)
     timer.daemon = True
@@ -35,5 +38,5 @@ def announced(text: str) -> Iterator[None]:
         timer.cancel()
         timer.join()
         if said:
-            sys.stderr.write(f"\r{' ' * len(text)}\r")
-            sys.stderr.flush()
+            stream.write(f"\r{' ' * len(text)}\r")
+            stream.flush()

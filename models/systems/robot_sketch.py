@@ -60,7 +60,7 @@ def described(label: str, name: str, text: str, drawing: str, joints: Iterable[J
     ]
     table = html_table(("joint", "range", "largest torque or force"), rows) if rows else ""
     words = f"<b>{escape(label)}</b> ({escape(name)})<br>{escape(text)}"
-    shade = "<br>Shaded: where the end-point can be. It is drawn at home."
+    shade = "<br>Shaded: where the end-point can be in the path's plane. It is drawn at home."
     return f"<div>{drawing}<p>{words}{shade}</p>{table}</div>"
 
 

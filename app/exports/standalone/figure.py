@@ -21,11 +21,14 @@ from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import Curve
+from onpath.models.studies import experiments
 from onpath.models.systems.robots import Robot
 
 ENDINGS = (".html", ".htm")
 HEIGHT = 900
 """Of the frame in a notebook until its page says how high it is, [px]."""
+HOLD, END = (0.7, 1.7), 2.4
+"""The interval in which a brake holds the robots of a picture back, and the end of the run, [s]."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -111,8 +114,6 @@ class Figure:
 
     @cached_property
     def _runs(self) -> tuple[Trajectory, ...]:
-        from onpath.app.exports.standalone.still import held_runs  # slow to import
-
         if self.recorded is not None:
             return self.recorded
         assert self.choice is not None
@@ -144,6 +145,14 @@ class Figure:
             page=page,
         )
         return {"text/html": html, "image/png": picture, "text/plain": repr(self)}
+
+
+def held_runs(figure: FigureChoice) -> list[Trajectory]:
+    """A run of each of a figure's laws on its first path, in which the robot is held back."""
+    path = next(iter(figure.paths.values()))
+    held = {"duration": END, "hold_from": HOLD[0], "hold_to": HOLD[1]}
+    experiment = experiments.on_path(figure.entry, figure.parameters, path).with_values(held)
+    return [experiments.run(experiment, law) for law in figure.laws]
 
 
 def check_language(language: str) -> None:

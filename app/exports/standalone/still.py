@@ -16,30 +16,18 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from onpath.app.common import palette
-from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.paths.curves import Curve
-from onpath.models.studies import experiments
 from onpath.models.systems.robots import Robot
 
-HOLD, END = (0.7, 1.7), 2.4
-"""The interval in which a brake holds the robots back, and the end of the run, [s]."""
 SIZE, DPI = (7.6, 5.2), 100
 COLOURS = 48
 """Of the picture: many enough for smooth lines, few enough for a small file."""
 TRACE = 1000  # rows
-
-
-def held_runs(figure: FigureChoice) -> list[Trajectory]:
-    """A run of each of a figure's laws on its first path, in which the robot is held back."""
-    path = next(iter(figure.paths.values()))
-    held = {"duration": END, "hold_from": HOLD[0], "hold_to": HOLD[1]}
-    experiment = experiments.on_path(figure.entry, figure.parameters, path).with_values(held)
-    return [experiments.run(experiment, law) for law in figure.laws]
 
 
 def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) -> bytes:
