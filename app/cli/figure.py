@@ -63,11 +63,10 @@ class FigureCommand:
         settings = {name: value_of(parameters, name) for name in given}
         laws = laws_named(self.law or ("both",), (), calls=False)
         paths = {path_name(each): curve_of("--path", each, robot) for each in self.path}
-        figure(
-            self.file,
-            robot=entry,
-            laws=laws,
-            paths=paths or PATHS,
+        made = figure(
+            entry,
+            paths or PATHS,
+            laws,
             sliders=self.slider or None,
             controls=self.control or None,
             choices=laws_named(self.choice, (), calls=False),
@@ -75,4 +74,5 @@ class FigureCommand:
             language=self.language,
             **settings,
         )
-        print(f"{self.file}: {self.file.stat().st_size / 1e3:.0f} kB, needs no server")
+        file = made.save(self.file)
+        print(f"{file}: {file.stat().st_size / 1e3:.0f} kB, needs no server")

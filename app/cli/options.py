@@ -172,12 +172,15 @@ def items(text: str) -> list[str]:
     """
     if re.match(r"\s*(\{|\[|implicit)", text) or re.search(r"[;\n]", text):
         return [text]
-    if text.startswith("@"):
-        comma = r",\s*(?=@)"
-    elif "=" in text:
-        comma = r",\s*(?=[^,=\s]+=)"
-    elif " " in text:
-        comma = r",(?!\s*[-+.]?\d)"
-    else:
-        comma = ","
-    return [item.strip() for item in re.split(comma, text)]
+    found = list[str]()
+    for part in re.split(r",\s*(?=@)", text):  # files, whose options may have commas
+        if part.startswith("@"):
+            comma = None
+        elif "=" in part:
+            comma = r",\s*(?=[^,=\s]+=)"
+        elif " " in part:
+            comma = r",(?!\s*[-+.]?\d)"
+        else:
+            comma = ","
+        found += [part] if comma is None else re.split(comma, part)
+    return [item.strip() for item in found]

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from onpath.app.common.own_laws import law_given
 from onpath.app.exports.arena_page import Contents, run_rows, table_rows
 from onpath.app.exports.arena_run import Arena, ArenaOptions
-from onpath.app.notebook.simulate import entry_named
+from onpath.app.notebook.simulate import entry_named, law_of
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.studies.arena import ROBOT_NAMES
 from onpath.models.systems.robots import RobotEntry
+
+GivenRobot = str | Path | RobotEntry
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -53,7 +54,7 @@ class ArenaResult:
 
 
 def arena(
-    robot: str | RobotEntry | Sequence[str | RobotEntry] = ROBOT_NAMES,
+    robot: GivenRobot | Sequence[GivenRobot] = ROBOT_NAMES,
     law: Any = (),
     *,
     only: bool = False,
@@ -72,7 +73,7 @@ def arena(
     shared among processes by joblib, as those of `onpath.sweep`: also among those of a cluster.
 
     Args:
-        robot: one of `onpath.robots()`, what `onpath.robot` returns, or several of these.
+        robot: one as for `onpath.simulate`, or several.
         law: a law of one's own, or several, as for `onpath.simulate`.
         only: compare only the laws given, which may also be names of `onpath.laws()`.
         rounds: number of rounds. Each has five obstructions for each robot; the first is on the
@@ -95,11 +96,11 @@ def arena(
         UserWarning: the arena was interrupted.
     """
     laws = law if isinstance(law, list | tuple) else [law]
-    robots = [robot] if isinstance(robot, str | RobotEntry) else robot
+    robots = [robot] if isinstance(robot, str | Path | RobotEntry) else robot
     for each in robots:
         if callable(each) or hasattr(each, "command") or each in LAWS:
             raise ValueError(f"arena: {each!r:.60} is a law: arena(law=…)")
-    names = [law_given(each) for each in laws]
+    names = [law_of(each) for each in laws]
     entries = [entry_named(each).name for each in robots]
     given = {"robot": entries, "only": only, "rounds": rounds, "seed": seed}
     told = ", ".join([f"law={names!r}", *(f"{name}={value!r}" for name, value in given.items())])
@@ -110,9 +111,9 @@ def arena(
         rounds=rounds,
         seed=seed,
         processes=processes,
-        folder=None if folder is None else Path(folder),
-        html=None if html is None else Path(html),
-        csv=None if csv is None else Path(csv),
+        folder=None if folder is None else Path(folder).expanduser(),
+        html=None if html is None else Path(html).expanduser(),
+        csv=None if csv is None else Path(csv).expanduser(),
         figures=figures,
         language=language,
         command=f"onpath.arena({told})",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.common.user_files import user_file
@@ -66,6 +66,11 @@ class IdentificationResult:
             with whole_file(target) as path:
                 save(figure, path)
         return figure
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from onpath.app.notebook.display import identification_bundle  # slow to import
+
+        return identification_bundle(repr(self), self.found)
 
     def __repr__(self) -> str:
         from onpath.app.exports.identification import identification_text

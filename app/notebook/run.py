@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from pandas import DataFrame
 
+    from onpath.app.exports.standalone.figure import Figure as LiveFigure
+
 FORMAT = 1
 """Of a pickled run; another number for each change after which it must be read differently."""
 
@@ -184,7 +186,7 @@ class Run:
         Raises:
             ValueError: another robot or path, or a file that cannot be written.
         """
-        path = Path(file)
+        path = Path(file).expanduser()
         check_writable(path)
         trajectories = self._with(others)
         with whole_file(path) as scratch, scratch.open("w", encoding="utf-8", newline="") as opened:
@@ -222,6 +224,28 @@ class Run:
                 raise ValueError("only runs of one robot on one path can be shown together")
         return [self.trajectory, *(other.trajectory for other in others)]
 
+    def figure(self, *others: Run, title: str = "", language: str = "en") -> LiveFigure:
+        """The figure of what was recorded: a picture, and a page on which it can be tried.
+
+        Args:
+            others: another run of the same robot and path, shown beside this one.
+            title: title above the figure.
+            language: language of its words.
+
+        Raises:
+            ValueError: another robot or path, more than two runs, or an unknown language.
+        """
+        from onpath.app.notebook.display import run_figure  # slow to import
+
+        runs = self._with(others)
+        alike = all(run.experiment.parameters == self.experiment.parameters for run in others)
+        return run_figure(self.experiment, runs, alike, title, language)
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from onpath.app.notebook.display import run_bundle  # slow to import
+
+        return run_bundle(repr(self), self.experiment, self.trajectory, self.reason)
+
     def __repr__(self) -> str:
         lines = [f"{law_title(self.law)}, {self.experiment.title}, {len(self.t)} ms"]
         lines += summary_lines(self.summary())
@@ -255,7 +279,7 @@ def written(figure: Figure, file: str | Path | None) -> Figure:
     from onpath.app.exports.figures import save
 
     if file is not None:
-        path = Path(file)
+        path = Path(file).expanduser()
         check_plot(path, "plot")
         with whole_file(path) as scratch:
             save(figure, scratch)

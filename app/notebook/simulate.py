@@ -27,6 +27,7 @@ from onpath.app.notebook.arguments import (
     schedule_of,
     start_point,
 )
+from onpath.app.notebook.display import LawText, Table
 from onpath.app.notebook.robot import robot as robot_from
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS
@@ -239,7 +240,8 @@ def robots() -> dict[str, str]:
     >>> onpath.robots()["five_bar"]
     'Two motors, rigid links, a pen in a vertical plane.'
     """
-    return {name: entry.text for name, entry in ROBOTS.items()}
+    texts = {name: entry.text for name, entry in ROBOTS.items()}
+    return Table(texts, ("robot", "what it is"), texts.items())
 
 
 def laws() -> dict[str, str]:
@@ -249,7 +251,8 @@ def laws() -> dict[str, str]:
     >>> onpath.laws()["virtual_constraint"]
     'Holds the end-point on the curve by a virtual constraint, and leaves it alone along it.'
     """
-    return {name: law.text for name, law in LAWS.items()}
+    texts = {name: LawText(name) for name in LAWS}
+    return Table(texts, ("law", "what it does"), texts.items())
 
 
 def paths() -> dict[str, str]:
@@ -261,7 +264,8 @@ def paths() -> dict[str, str]:
     >>> onpath.paths()["figure of eight"]
     'closed, 429 mm; the path crosses itself: at the crossing, the closest point is not unique'
     """
-    return {name: _measured(design) for name, design in presets().items()}
+    texts = {name: _measured(design) for name, design in presets().items()}
+    return Table(texts, ("path", "what it is"), texts.items())
 
 
 def _measured(design: PathDesign) -> str:
@@ -283,7 +287,9 @@ def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     """
     entry = entry_named(robot)
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
-    return {name: _described(spec, defaults[name]) for name, spec in known.items()}
+    texts = {name: _described(spec, defaults[name]) for name, spec in known.items()}
+    rows = [(name, *_columns(spec, defaults[name]), spec.help) for name, spec in known.items()]
+    return Table(texts, ("setting", "default", "range", "unit", "what it does"), rows)
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
@@ -413,7 +419,13 @@ def check_names(
 
 
 def _described(spec: Spec, default: Any) -> str:
+    value, allowed, unit = _columns(spec, default)
+    choice = "one of " if spec.options else ""
+    return f"{value}, {choice}{allowed}{unit and ' ' + unit}: {spec.help}"
+
+
+def _columns(spec: Spec, default: Any) -> tuple[str, str, str]:
+    """Default, range or options, and unit."""
     if spec.options:
-        return f"{default}, one of {', '.join(map(str, spec.options))}: {spec.help}"
-    unit = f" {spec.unit}" if spec.unit else ""
-    return f"{default:g}, {spec.low:g} to {spec.high:g}{unit}: {spec.help}"
+        return str(default), ", ".join(map(str, spec.options)), ""
+    return f"{default:g}", f"{spec.low:g} to {spec.high:g}", spec.unit

@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from onpath.app.common.kept import Kept, key_of
-from onpath.app.common.own_laws import law_given
 from onpath.app.common.workers import Job
 from onpath.app.notebook.run import Run, data_frame, written
-from onpath.app.notebook.simulate import entry_named, planned
+from onpath.app.notebook.simulate import entry_named, law_of, planned
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.paths.curves import Curve
 from onpath.models.studies import experiments
@@ -206,7 +205,7 @@ def sweep(
     """
     kept = Kept(folder)
     robots = [entry_named(each) for each in _values("robot", robot)]
-    laws = [law_given(each) for each in _values("law", law)]
+    laws = [law_of(each) for each in _values("law", law)]
     given = {"robot": robots, "path": _values("path", path), "law": laws}
     given |= {name: _values(name, value) for name, value in settings.items()}
     asked = {"robot": robot, "path": path, "law": law, **settings}

@@ -1584,6 +1584,11 @@ standalone-coincide = zwei Kontrollpunkte würden zusammenfallen
 standalone-selected = Kontrollpunkt { $number } von { $all } ist gewählt: Mit den Pfeiltasten wird er bewegt.
 standalone-drag_hint = Die Punkte der Bahn lassen sich ziehen; die Taste N wählt den nächsten, und die Pfeiltasten bewegen ihn.
 standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschaltet oder von der Content-Security-Policy des Servers verboten ist.
+standalone-only_picture = Ein Bild des Aufgezeichneten. Die Roboter bewegen sich hier nicht: { $reason }
+standalone-still = Die Roboter in ihrem größten Abstand von der Bahn und der Abstand über der Zeit: { $laws }
+standalone-still_robot =
+    { $law }
+    bis zu { $far } mm von der Bahn
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 

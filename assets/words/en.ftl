@@ -1222,6 +1222,11 @@ standalone-coincide = two control points would coincide
 standalone-selected = Control point { $number } of { $all } is selected: move it with the arrow keys.
 standalone-drag_hint = Drag the points of the path, or press N to select the next one and move it with the arrow keys.
 standalone-no_script = This figure needs JavaScript, which is switched off here or forbidden by the Content-Security-Policy of the server.
+standalone-only_picture = A picture of what was recorded. The robots do not move here: { $reason }
+standalone-still = The robots at their largest distance from the path, and the distance over time: { $laws }
+standalone-still_robot =
+    { $law }
+    up to { $far } mm from the path
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
 

@@ -162,7 +162,7 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     folder = tmp_path_factory.mktemp("seen")
     found = {name: Seen() for name in (FIGURE, LESSONS, FREE)}
     laws = (OWN, "path_following")
-    file = onpath.figure(folder / "figure.html", laws=laws, choices=["set_point"])
+    file = onpath.figure(law=laws, choices=["set_point"]).save(folder / "figure.html")
     figure = SiteReader(browser, file.as_uri())
     wait_for(lambda: figure.page.evaluate("'onpath' in window"), WAIT)
     for each in _before_and_while_held(figure):

@@ -181,7 +181,7 @@ def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_p
 def test_it_moves_as_a_run_with_the_same_arguments(
     browser: Browser, tmp_path: Path, robot: str, given: dict[str, Any]
 ) -> None:
-    file = onpath.figure(tmp_path / "a.html", robot, LAWS, "ellipse", sliders=(), **given)
+    file = onpath.figure(robot, "ellipse", LAWS, sliders=(), **given).save(tmp_path / "a.html")
     opened = Opened(browser, file)
     opened.press("Pause")
     opened.do(("reset", None), ("advance", 300))
@@ -199,7 +199,7 @@ def test_a_heavy_arm_moves_as_in_python_and_says_that_it_exceeds_its_file(
     source = tmp_path / "heavy.urdf"
     source.write_text(urdf("heavy", HEAVY), "utf-8")
     arm = onpath.robot(source)
-    file = onpath.figure(tmp_path / "a.html", arm, LAWS, "circle 0.1", sliders=(), speed=6.0)
+    file = onpath.figure(arm, "circle 0.1", LAWS, sliders=(), speed=6.0).save(tmp_path / "a.html")
     opened = Opened(browser, file)
     opened.press("Pause")
     opened.do(("reset", None), ("advance", 300))
@@ -453,7 +453,7 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
 
 
 def test_what_is_not_chosen_is_not_there(browser: Browser, tmp_path: Path) -> None:
-    figure = onpath.figure(tmp_path / "a.html", controls=["hold"], sliders=[], laws="set_point")
+    figure = onpath.figure(law="set_point", controls="hold", sliders=[]).save(tmp_path / "a.html")
     opened = Opened(browser, figure)
     names = opened.page.get_by_role("button").all_inner_texts()
     assert names == ["Hold back", "Hold while pressed"]
@@ -608,7 +608,7 @@ def test_a_path_that_crosses_itself_is_followed_with_the_lab_s_warning(
     browser: Browser, tmp_path: Path
 ) -> None:
     with pytest.warns(UserWarning, match="crosses itself"):
-        file = onpath.figure(tmp_path / "a.html", paths=["figure of eight"], controls=["drag"])
+        file = onpath.figure(path="figure of eight", controls="drag").save(tmp_path / "a.html")
     opened, rng = Opened(browser, file), np.random.default_rng(2)
     design = presets()["figure of eight"]
     assert "crosses itself" in opened.page.locator(".note").inner_text()

@@ -33,7 +33,7 @@ WITHOUT = "delete globalThis.WebAssembly"
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A site, and a figure in it."""
     site = exported_site(tmp_path_factory.mktemp("site"), ("en",))
-    onpath.figure(site / "figure.html")
+    onpath.figure().save(site / "figure.html")
     return site
 
 

@@ -30,7 +30,6 @@ from onpath.app.cli.paper import NAMES
 from onpath.models.studies.paper_figures import FIGURES
 from tests.support.checkout import ROOT
 
-OTHERS = "figure", "arena"
 ORDER = "robot", "path", "law", "set"
 READMES = [
     *(file for file in ROOT.glob("*.md") if file.name != "CHANGELOG.md"),
@@ -134,7 +133,7 @@ def test_robot_path_law_and_settings_come_in_one_order_and_take_files() -> None:
 
 def test_a_call_can_be_copied_from_one_function_to_the_other() -> None:
     """The same names and the same order: robot, path or file, law; settings come last."""
-    functions = [getattr(onpath, name) for name in onpath.__all__ if name not in OTHERS]
+    functions = [getattr(onpath, name) for name in onpath.__all__]
     simulated = inspect.signature(onpath.simulate).parameters
     for function in filter(inspect.isfunction, functions):
         parameters = inspect.signature(function).parameters
@@ -180,6 +179,7 @@ def test_assignments_are_joined_by_commas_whatever_commas_a_value_has(
         ("closed 0.05 0, 0 0.04, -0.05 0", ["closed 0.05 0, 0 0.04, -0.05 0"]),
         ('{"points": [[0.05, 0], [0, 0.04]]}', ['{"points": [[0.05, 0], [0, 0.04]]}']),
         ("@a.svg centre=0,0.01,@b.svg fit=0.1", ["@a.svg centre=0,0.01", "@b.svg fit=0.1"]),
+        ("circle,clover,@a.svg centre=0,0.01", ["circle", "clover", "@a.svg centre=0,0.01"]),
         ("across = atan2(xi, 1); along = 0", ["across = atan2(xi, 1); along = 0"]),
     ],
 )

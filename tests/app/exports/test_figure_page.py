@@ -123,7 +123,7 @@ def test_a_page_with_all_laws_has_at_most_a_megabyte_and_a_half(robot: str, tmp_
     system = ROBOTS[robot].make(ROBOTS[robot].parameters()).system
     laws = [name for name in onpath.laws() if law_named(name).suits(system)]
     assert len(laws) > 4
-    file = onpath.figure(tmp_path / "a.html", robot, choices=laws)
+    file = onpath.figure(robot, choices=laws).save(tmp_path / "a.html")
     assert file.stat().st_size < LARGEST
 
 
@@ -181,15 +181,13 @@ def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
     arguments = ["figure", str(file), "--path", f"@{oval}", "--path", "circle"]
     assert run_command(arguments) == 0
     named = {"My oval": onpath.ellipse(0.06, 0.03), "circle": "circle"}
-    assert file.read_bytes() == onpath.figure(tmp_path / "b.html", paths=named).read_bytes()
+    assert file.read_bytes() == onpath.figure(path=named).save(tmp_path / "b.html").read_bytes()
 
 
-def test_one_law_and_paths_of_one_s_own(tmp_path: Path) -> None:
+def test_one_law_and_paths_of_one_s_own() -> None:
     paths = {"my oval": onpath.ellipse(0.06, 0.03), "line": "segment"}
     law = "across = -K1*xi - K2*dxi; along = 9*(5 - dtheta)"
-    page = onpath.figure(tmp_path / "a.html", laws=law, paths=paths, title="Mine").read_text(
-        "utf-8"
-    )
+    page = onpath.figure(law=law, path=paths, title="Mine").html
     assert "my oval" in page and "<title>Mine</title>" in page
 
 

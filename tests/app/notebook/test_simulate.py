@@ -269,7 +269,7 @@ def test_an_invalid_path_is_refused() -> None:
         (lambda: onpath.through([[0, 0], [1]]), "points: expected"),  # type: ignore[list-item]
         (lambda: onpath.simulate(path=np.eye(2)), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
         (lambda: onpath.simulate(path=[(0, 1)]), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
-        (lambda: onpath.figure("a.html", paths=[[(0, 1)]]), "paths: onpath.through"),  # type: ignore[list-item]
+        (lambda: onpath.figure(path=[[(0, 1)]]), "path: onpath.through"),  # type: ignore[list-item]
         (lambda: onpath.simulate(law=3), "but nothing of type int"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)):
