@@ -23,6 +23,7 @@ from onpath.app.cli.lessons import CheckLessons, ListLessons, ListNames
 from onpath.app.cli.names import NamesCommand
 from onpath.app.cli.paper import PaperCommand
 from onpath.app.cli.serve import Serve
+from onpath.app.cli.sweep import SweepCommand
 
 
 class Subcommand(Protocol):
@@ -62,6 +63,7 @@ COMMANDS: Mapping[str, type[Subcommand] | Group] = {
     "serve": Serve,
     "experiment": ExperimentCommand,
     "compare": CompareCommand,
+    "sweep": SweepCommand,
     "arena": ArenaCommand,
     "figure": FigureCommand,
     "paper": PaperCommand,

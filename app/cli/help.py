@@ -21,7 +21,7 @@ EXAMPLES = (
     ("onpath --classroom --host 0.0.0.0", "a class, for other devices too"),
     ("onpath experiment obstruction --plot held.png", "the paper's experiment, drawn"),
     ("onpath figure held.html --law both --path circle,clover", "a live page without a server"),
-    ("onpath arena --law my_law.py:MyLaw", "your law beside all others"),
+    ("onpath sweep --law both --set K1=400,900 --hold 1 2", "a table of runs"),
 )
 
 

@@ -27,6 +27,7 @@ FORMER = {"--controller": "--law", "--folder": "--lessons"}
 """Options that have another name now."""
 PLAIN = tyro.conf.DisallowNone, tyro.conf.FlagCreatePairsOff
 """What keeps {None}|TEXT and --no-json out of the help."""
+FOLDERS = "folder", "lessons", "target"
 METAVARS = {Path: "FILE", int: "NUMBER", float: "NUMBER", str: "TEXT"}
 
 
@@ -85,7 +86,7 @@ def described(command: type[C]) -> type[C]:
             fields.append((field.name, field_type, described_kind()))
             continue
         positional = tyro.conf.Positional in get_args(hint)
-        metavar = field.name.upper() if positional else _metavar(kind)
+        metavar = field.name.upper() if positional else _metavar(field.name, kind)
         plain = tyro.conf.arg(help=text, help_behavior_hint=_hint(field), metavar=metavar)
         again = dataclasses.field(default=field.default)
         fields.append((field.name, Annotated[hint, plain], again))
@@ -98,9 +99,14 @@ def described(command: type[C]) -> type[C]:
     )
 
 
-def _metavar(kind: Any) -> str | None:
-    several = [each for each in get_args(kind) if each not in (type(None), ...)]
-    return METAVARS.get(several[0] if len(several) == 1 else kind)
+def _metavar(name: str, kind: Any) -> str | None:
+    if name in FOLDERS:
+        return "FOLDER"
+    if kind in METAVARS:
+        return METAVARS[kind]
+    inner = [each for each in get_args(kind) if each not in (type(None), ...)]
+    words = [_metavar("", each) for each in inner if not isinstance(each, str)]
+    return " ".join(word for word in words if word) or None
 
 
 def _hint(field: dataclasses.Field[Any]) -> str:

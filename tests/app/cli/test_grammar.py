@@ -193,7 +193,7 @@ def test_a_home_folder_is_expanded_wherever_there_is_a_file(
     monkeypatch.setenv("HOME", str(tmp_path))
     for words, command in LEAVES.items():
         for action in as_tyro_says(words):
-            if action.metavar == "FILE" and action.option_strings:
+            if action.metavar in ("FILE", "FOLDER") and action.option_strings:
                 (flag,) = action.option_strings
                 found = parsed(command, "", [*required_by(words, action), f"{flag}=~/x"])
                 assert _value(found, flag[2:]) == tmp_path / "x"
