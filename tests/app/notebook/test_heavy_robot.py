@@ -119,19 +119,18 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
     heavy: RobotEntry, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
     command = ["compare", "--robot", str(written(tmp_path)), "--path", "circle 0.1", "--json"]
-    command += ["--law", LAWS[0], "--set", "speed=1"]
-    assert run_command([*command, "--obstruction", "none"]) == 0
+    command += ["--law", LAWS[0], "--obstruction", "none", "--set", "speed=1"]
+    assert run_command([*command, "--set", "torque_limit=100"]) == 0
     printed = capsys.readouterr()
     assert "more than the" not in printed.err
     assert json.loads(printed.out)["beyond_efforts"] == {}
-    assert run_command([*command, "--obstruction", "push_across"]) == 0
+    assert run_command(command) == 0
     printed = capsys.readouterr()
     told = json.loads(printed.out)["beyond_efforts"][LAWS[0]]
     assert told.startswith("the motor of joint") and f"path following: {told}" in printed.err
-    results, picture = compared(
-        heavy.name, heavy.parameters(), circle(0.1), {}, LAWS[0], "push_across", "en"
-    )
-    page = comparison_html(results, picture, Words("de"), heavy.make(heavy.parameters()))
+    parameters = with_values(heavy.parameters(), {"speed": 1.0})
+    results, picture = compared(heavy.name, parameters, circle(0.1), {}, LAWS[0], "none", "en")
+    page = comparison_html(results, picture, Words("de"), heavy.make(parameters))
     assert "der Motor von joint" in page
 
 
