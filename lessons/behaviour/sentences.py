@@ -59,6 +59,7 @@ SAYING = tuple(name for name in ("", *KNOWN) if name not in ("scene", "script", 
 """Blocks with sentences; the empty name is that of the text outside blocks."""
 OPTION = re.compile(r"""\btext = ("(?:[^"\\]|\\.)*"|'[^']*'),""")
 """The text of an option in a question: what a student may believe."""
+RIGHT = "right = true"
 FENCE = re.compile(r"\s*(`{3,}|~{3,})\s*(\S*)")
 END = re.compile(r"(?<=[.!?;:|])(?:[\"”“)*]*)\s+")
 
@@ -115,8 +116,8 @@ def found_sentences(text: str, language: str, of_law: bool = False) -> Iterator[
 
     A sentence is found by a subject (the lab, the page, a robot, a path, a button) and a verb
     (refuses, stops, says, hides, shows, warns, allows), or by a robot and, a few words away, what
-    it does (waits, is torn off, leaves, stays, comes back). Questions, and the options of
-    questions, say nothing.
+    it does (waits, is torn off, leaves, stays, comes back). Questions, and their wrong
+    options, say nothing.
 
     Args:
         text: in one language.
@@ -157,7 +158,7 @@ def _paragraphs(text: str) -> Iterator[tuple[int, str]]:
             inside = not inside
             block = (mark[2] or "code") if inside else ""
         elif line.strip() and block in SAYING and not line.startswith(NOT_SAID):
-            kept.append(OPTION.sub("", line))
+            kept.append(line if RIGHT in line else OPTION.sub("", line))
             if block not in FENCES:
                 continue
             yield number, kept.pop()

@@ -69,8 +69,13 @@ def test_a_sentence_on_the_lab_is_found_wherever_it_stands(language: str, senten
         'goals = "say what the lab does."',
     ],
 )
-def test_questions_and_options_say_nothing(text: str) -> None:
+def test_questions_and_wrong_options_say_nothing(text: str) -> None:
     assert not list(found_sentences(text, "en"))
+
+
+def test_a_right_option_says_what_is_so() -> None:
+    option = '{ text = "The lab stops it", right = true, answer = "Yes." },'
+    assert len(list(found_sentences(f"```quiz\n{option}\n```", "en"))) == 1
 
 
 def test_the_text_of_a_law_need_not_name_it() -> None:
