@@ -27,7 +27,7 @@ from onpath.models.systems.robots import Robot
 ENDINGS = (".html", ".htm")
 HEIGHT = 900
 """Of the frame in a notebook until its page says how high it is, [px]."""
-HOLD, END = (0.7, 1.7), 2.4
+HOLD, END = (0.5, 1.5), 2.0
 """The interval in which a brake holds the robots of a picture back, and the end of the run, [s]."""
 
 
