@@ -11,6 +11,7 @@ In Python, without a browser:
 arguments. Robot, path and law come first, in this order, in every function, and on the command line
 as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A law of one's own
 in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`.
+`onpath.sweep` and `onpath.arena` take several of each, and `onpath.figure` makes a live page.
 Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
 in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.

@@ -173,7 +173,7 @@ class Run:
         if len(files) > 1:
             raise ValueError("plot: it writes one file, not " + " and ".join(map(str, files)))
         file = files[0] if files else None
-        check_plot(None if file is None else Path(file), "plot")
+        check_plot(None if file is None else Path(file).expanduser(), "plot")
         runs = tuple(each for each in others if not isinstance(each, str | Path))
         return written(experiment_figure(self.experiment, self._with(runs)), file)
 

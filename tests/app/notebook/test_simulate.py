@@ -222,6 +222,9 @@ def test_files_are_read_wherever_a_robot_a_path_or_a_law_is_given(
     way = "@~/way.csv unit=mm"
     run = onpath.simulate("~/arm.urdf", way, "~/law.py:same", duration=0.02)
     assert run.law == "same" and len(run.q[0]) == 3
+    run.to_csv("~/run.csv")
+    run.plot("~/run.png")
+    assert {"run.csv", "run.png"} < {each.name for each in tmp_path.iterdir()}
     assert onpath.check_path("five_bar", way).ok
     assert "K1" in onpath.parameters("~/arm.urdf")
 
