@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from textwrap import dedent
-from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeGuard, TypeVar, get_args, get_origin, get_type_hints
 
 import tyro
 
@@ -63,7 +63,8 @@ def options(command: type) -> list[Option]:
     found = list[Option]()
     for field, hint, text in _fields(command):
         marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
-        if dataclasses.is_dataclass(kind := _kind(hint)):
+        kind = _kind(hint)
+        if _is_command(kind):
             found += options(kind)
         elif tyro.conf.Positional not in marks:
             flag = f"--{field.name.replace('_', '-')}"
@@ -80,7 +81,7 @@ def described(command: type[C]) -> type[C]:
     fields = list[tuple[str, Any, Any]]()
     for field, hint, text in _fields(command):
         kind = _kind(hint)
-        if dataclasses.is_dataclass(kind):
+        if _is_command(kind):
             described_kind = described(kind)
             field_type = Annotated[described_kind, tyro.conf.arg(name="")]
             fields.append((field.name, field_type, described_kind()))
@@ -134,6 +135,11 @@ def _docstrings(command: type) -> dict[str, str]:
     return found
 
 
+def _is_command(kind: Any) -> TypeGuard[type]:
+    """Whether a field of a command has options of its own."""
+    return isinstance(kind, type) and dataclasses.is_dataclass(kind)
+
+
 def _kind(hint: Any) -> Any:
     return get_args(hint)[0] if get_origin(hint) is Annotated else hint
 
@@ -157,7 +163,7 @@ def _finished(command: type[C], given: Any) -> C:
     values = dict[str, Any]()
     for field, hint, _ in _fields(command):
         value, kind = getattr(given, field.name), _kind(hint)
-        if dataclasses.is_dataclass(kind):
+        if _is_command(kind):
             value = _finished(kind, value)
         elif isinstance(value, Path):
             value = value.expanduser()

@@ -10,7 +10,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -232,7 +232,10 @@ def test_files_are_read_wherever_a_robot_a_path_or_a_law_is_given(
 @pytest.mark.parametrize(
     ("call", "told"),
     [
-        (lambda: onpath.check_path(onpath.circle(0.05), "five_bar"), "robot comes first"),
+        (
+            lambda: cast("Any", onpath.check_path)(onpath.circle(0.05), "five_bar"),
+            "robot comes first",
+        ),
         (lambda: onpath.check_path("clover"), "robot comes first"),
         (lambda: onpath.identify("arm.csv"), "identify(robot, file)"),
         (lambda: onpath.identify("arm.csv", "five_bar"), "identify(robot, file)"),
