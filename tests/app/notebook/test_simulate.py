@@ -229,6 +229,9 @@ def test_files_are_read_wherever_a_robot_a_path_or_a_law_is_given(
     assert "K1" in onpath.parameters("~/arm.urdf")
 
 
+WAY_FIRST = onpath.circle(0.05), "five_bar"
+
+
 @pytest.mark.parametrize(
     ("call", "told"),
     [
