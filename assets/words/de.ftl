@@ -1223,10 +1223,10 @@ parameter-pendulum-option-upright = steht
 parameter-mass-label = Masse
 parameter-mass-help = Masse des Pendels
 
-parameter-law-label = Ausgang
-parameter-law-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
-parameter-law-option-redefined = neu definiert
-parameter-law-option-composite = zusammengesetzt
+parameter-output-label = Ausgang
+parameter-output-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
+parameter-output-option-redefined = neu definiert
+parameter-output-option-composite = zusammengesetzt
 
 parameter-tip_damping-label = Spitze dämpfen
 parameter-tip_damping-help = Dämpfungsgrad, den die Hüfte dem Balken gibt
@@ -1647,7 +1647,7 @@ site-plot = das Diagramm „{ $plot }“
 site-picture = Was geschieht, { $quantity } [{ $unit }] über { $seconds } s. Die größten Werte: { $peaks }.
 site-answers = Antworten
 site-hint = Hinweis { $number }
-site-why = Warum es geht
+site-why = Warum hat das geklappt? Finde einen Grund, dann öffne
 site-progress = Dein Fortschritt
 site-kept = Dein Fortschritt wird nur in diesem Browser gespeichert. Sichere ihn als Datei, um anderswo weiterzumachen.
 site-save = Als Datei sichern

@@ -233,11 +233,11 @@ def caution(parameters: Parameters) -> Message | None:
     chosen = own_parameters(FlexibleParameters, parameters)
     measured = chosen.encoder_counts > 0 or chosen.sensor_noise > 0
     filtered = measured and chosen.observer_time == 0
-    slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.law]
+    slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.output]
     if chosen.control_rate < slowest:
         return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})
     least = np.inf if filtered else LEAST_LIMIT
-    if measured and chosen.law == "composite" and 0 < chosen.torque_limit < least:
+    if measured and chosen.output == "composite" and 0 < chosen.torque_limit < least:
         return Message("caution.flexible_weak", {"limit": f"{chosen.torque_limit:g}"})
     return None
 
