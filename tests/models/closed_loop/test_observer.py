@@ -34,6 +34,7 @@ from onpath.models.control.settable import specs
 from onpath.models.control.speed_limit import SHARE
 from onpath.models.control.standing_torque import standing_torque
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.flexible_robot import LEAST_LIMIT
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 from tests.support.observed import RATES, SENSORS, farthest, paths
@@ -224,6 +225,17 @@ def test_no_torque_limit_stops_the_follower_of_a_rigid_robot_if_nothing_is_said_
     changes = {**sensors, "control_rate": rate, "torque_limit": limit}
     assert not of_a_stop(said(name, path, changes))
     assert np.isfinite(farthest(name, FOLLOWER, [(paths()[path], changes)])[0])
+
+
+@pytest.mark.thorough
+def test_a_weak_flexible_link_is_stopped_by_the_errors_of_its_sensors_alone() -> None:
+    circle = paths()["circle"]
+    cases = [(circle, {**SENSORS, "torque_limit": limit}) for limit in (0.6, LEAST_LIMIT)]
+    weak, strong = farthest("flexible", FOLLOWER, cases)
+    (exact,) = farthest("flexible", FOLLOWER, [(circle, {"torque_limit": 0.1})])
+    assert weak == np.inf and strong < 5e-3 and exact < 5e-3
+    assert of_a_stop(said("flexible", "circle", cases[0][1]))
+    assert not of_a_stop(said("flexible", "circle", cases[1][1]))
 
 
 # The largest K2 and the look-ahead at 100 Hz, as models/closed_loop/sensing.py states them
