@@ -38,7 +38,7 @@ TWICE = (
     *(Action(at=7.0, hold=True), Action(at=9.1, hold=False)),
 )
 STIFF = Action(at=0.2, set={"K1": 1600.0, "K2": 80.0, "K5": 5.0})
-CHEATS, TASKS = 400, 3
+CHEATS, TASKS = 120, 3
 EXPLOITS = [
     ("01", "hold-two-seconds", 6.0, (Action(set={"speed": 0.0}), *HELD)),
     ("01", "hold-two-seconds", 6.0, (Action(set={"K5": 0.0}), *HELD)),
