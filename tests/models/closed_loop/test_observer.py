@@ -131,7 +131,7 @@ def test_the_follower_stays_near_its_path(name: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", drawn([*ROBOTS], 3))
 def test_every_follower_stays_near_every_path(name: str) -> None:
     check_near(name, [*paths()], RATES if name in RIGID else (250, 1000), seeds=3)
 
@@ -183,14 +183,15 @@ PULLS = 12  # for each of these robots and paths: 336 at each rate
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("rate", RATES)
-def test_no_pull_stops_the_follower_and_it_is_back_within_twice_its_distance(rate: int) -> None:
-    """With one of the robots, another one every day."""
-    (name,) = drawn(PULLED, 1)
+@pytest.mark.parametrize("name", drawn(PULLED, 1))
+def test_no_pull_stops_the_follower_and_it_is_back_within_twice_its_distance(
+    name: str, rate: int
+) -> None:
     parameters = replace(ROBOTS[name].parameters(), control_rate=rate, **SENSORS)
     for number, (path, curve) in enumerate(paths().items()):
         seeds = [{**SENSORS, "control_rate": rate, "seed": float(seed)} for seed in range(4)]
         alone = max(farthest(name, FOLLOWER, [(curve, each) for each in seeds]))
         bound = max(2 * alone, NEAR[rate])
         for each in troubled(name, parameters, FOLLOWER, 100 * rate + number, PULLS, curve):
-            assert each.fault is None, (name, path, each.trouble, each.fault)
-            assert each.late <= bound, (name, path, each.trouble, each.late, alone)
+            assert each.fault is None, (path, each.trouble, each.fault)
+            assert each.late <= bound, (path, each.trouble, each.late, alone)
