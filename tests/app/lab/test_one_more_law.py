@@ -41,7 +41,6 @@ def test_no_list_and_no_test_has_to_be_changed_for_it() -> None:
         "tests/lessons/test_names_listed.py",
         "tests/app/page/test_words.py",
         "tests/app/notebook/test_same_motion.py",
-        "tests/app/notebook/test_simulate.py",
         "tests/models/control/laws/test_laws.py",
         "tests/models/systems/test_parameters.py",
     )
