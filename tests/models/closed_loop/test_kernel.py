@@ -424,7 +424,7 @@ def test_hand_written_c_loop_agrees(
             )
             for i in range(lanes)
         ]
-        arguments = starts, [settings] * lanes, [curve.table()] * lanes, 1000 // lanes
+        arguments = starts, [settings] * lanes, [curve.table()] * lanes, 1000
         for ours, theirs in zip(
             InterpretedLoop(rig.kernel(FOLLOWING)).run_many(*arguments),
             reference.run_many(*arguments),
