@@ -109,7 +109,7 @@ FILTERED = {**NOISY, "observer_time": 0.0}  # with the observer, the delay found
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("values", [{"encoder_counts": 500}, {"sensor_noise": 1e-3}, NOISY])
-@pytest.mark.parametrize("robot", drawn(RIGID, 2))
+@pytest.mark.parametrize("robot", RIGID)
 def test_the_file_has_the_angles_that_the_loop_reads(robot: str, values: dict[str, float]) -> None:
     """The loop keeps them in its state after each tick."""
     chosen = experiments(robot)["obstruction"].with_values({"duration": 0.1, "seed": 3} | values)
