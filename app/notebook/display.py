@@ -119,7 +119,7 @@ def identification_bundle(text: str, found: FileEstimate) -> dict[str, Any]:
 
     title, *others = remarks(found)
     table = html_table(("parameter (SI)", "value", "± (95 %)"), parameter_rows(found))
-    picture = residual_figure(found)._repr_png_()
+    picture = residual_figure(found).png()
     return bundle(text, paragraphs(title) + table + paragraphs(*others), picture)
 
 

@@ -133,16 +133,18 @@ class Figure:
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         """Picture and page for a notebook, which shows the first kind that it can."""
-        words = Words(self.language)
-        page = b64encode(gzip.compress(self.html.encode(), mtime=0)).decode()
-        picture = b64encode(self.png).decode()
+        words, picture, page = Words(self.language), b64encode(self.png).decode(), ""
+        if self.choice is not None:
+            with announced("OnPath: making a figure …"):
+                page = figure_page(self.choice, words, self.title, self._numbers)
         html = render(
             "standalone/cell.html",
             picture=picture,
             described=words("standalone.still", laws=self._laws(words)),
             named=self.title or self._laws(words),
             height=HEIGHT,
-            page=page,
+            page=b64encode(gzip.compress(page.encode(), mtime=0)).decode() if page else "",
+            text=words("standalone.only_picture", reason=self.reason),
         )
         return {"text/html": html, "image/png": picture, "text/plain": repr(self)}
 
