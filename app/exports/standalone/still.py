@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -42,8 +43,8 @@ def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) 
     colours = [palette.OF_SIDE[side].hex for side in ((LEFT, RIGHT) if runs[1:] else (RIGHT,))]
     shown = [int(run.distance.argmax()) for run in runs]
     names = [f"robot {number}" for number in range(len(runs))]
-    rows = [names, ["chart"] * len(runs)]
-    all_axes = drawn.subplot_mosaic(rows, height_ratios=(1.7, 1))
+    layout: list[Any] = [names, ["chart"] * len(runs)]
+    all_axes = drawn.subplot_mosaic(layout, height_ratios=(1.7, 1))
     scenes, chart = [all_axes[name] for name in names], all_axes["chart"]
     for axes in scenes[1:]:
         axes.sharex(scenes[0])

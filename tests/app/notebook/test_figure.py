@@ -46,10 +46,8 @@ def test_a_cell_has_the_picture_and_the_page_and_is_small(
     assert shown.png.startswith(b"\x89PNG") and bundle["image/png"] in bundle["text/html"]
     picture = re.search('<img class="still"[^>]*>', shown.html)
     assert picture and bundle["image/png"] in picture[0]
-    policy = "img-src data:;", "img-src 'none';"
-    assert unescape(page_in(bundle)) == unescape(shown.html.replace(picture[0], "")).replace(
-        *policy
-    )
+    without = unescape(shown.html.replace(picture[0], ""))
+    assert unescape(page_in(bundle)) == without.replace("img-src data:", "img-src 'none'")
     assert "script" not in re.sub(r'srcdoc="[^"]*"', "", bundle["text/html"])
     assert not list(tmp_path.iterdir())  # nothing is written unasked
 
