@@ -32,7 +32,7 @@ class PlayLesson:
     """Name or number of the lesson, as 1b or 01b-let-the-clock-wait."""
     step: Annotated[int, tyro.conf.Positional]
     """Number of the step, from 1."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     json: bool = False
     """Print everything as JSON."""
@@ -47,7 +47,7 @@ class PlayLesson:
         """
         from onpath.lessons.course import BUILT_IN, read_course
 
-        folder = self.folder or BUILT_IN
+        folder = self.lessons or BUILT_IN
         course, problems = read_course([folder])
         if problems:
             raise ValueError(str(problems[0]))

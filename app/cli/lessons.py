@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from onpath.app.cli.lesson_pages import WriteGuide, WriteWorksheet
-from onpath.app.cli.lesson_play import PlayLesson
-
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
     from onpath.lessons.problems import Problem
@@ -83,27 +80,6 @@ class ListNames:
 
         print(names_markdown(), end="")
         return 0
-
-
-LessonsAction = (
-    Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
-    | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
-    | Annotated[ListNames, tyro.conf.subcommand("names", prefix_name=False)]
-    | Annotated[PlayLesson, tyro.conf.subcommand("play", prefix_name=False)]
-    | Annotated[WriteGuide, tyro.conf.subcommand("guide", prefix_name=False)]
-    | Annotated[WriteWorksheet, tyro.conf.subcommand("worksheet", prefix_name=False)]
-)
-
-
-@dataclass(frozen=True)
-class LessonsCommand:
-    """List, check, play or print the lessons, the built-in ones or your own."""
-
-    do: Annotated[LessonsAction, tyro.conf.arg(name="")]
-
-    def run(self) -> int:
-        """Run the chosen action; return its exit code."""
-        return self.do.run() or 0
 
 
 def minutes_table(course: Course, steps: bool) -> str:

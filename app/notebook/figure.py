@@ -12,9 +12,10 @@ from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.common.own_laws import compiled_law
 from onpath.app.exports.standalone.figure import ENDINGS, Figure, check_language
 from onpath.app.exports.standalone.figure_choice import chosen
-from onpath.app.notebook.arguments import curve_of
+from onpath.app.notebook.arguments import curve_of, looked_up, path_name
 from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.closed_loop.simulation import raised
+from onpath.models.control.settable import with_values
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.curves import Curve
 from onpath.models.studies.experiments import forecast_text, on_path, path_remark
@@ -23,13 +24,14 @@ from onpath.models.systems.robots import RobotEntry
 
 LAWS = tuple(DEFAULT_LAWS.values())
 PATHS = ("circle", "ellipse", "rounded square", "clover")
+GivenPath = str | Path | Curve
 OLD = {"file": "figure(...).save(file)", "laws": "law", "paths": "path"}
 """Former arguments -> what is written instead."""
 
 
 def figure(
-    robot: str | RobotEntry = "five_bar",
-    path: Curve | str | Sequence[Curve | str] | Mapping[str, Curve | str] = PATHS,
+    robot: str | Path | RobotEntry = "five_bar",
+    path: GivenPath | Sequence[GivenPath] | Mapping[str, GivenPath] = PATHS,
     law: Any = LAWS,
     *,
     sliders: str | Sequence[str] | None = None,
@@ -79,10 +81,12 @@ def figure(
     """
     _check_old(robot, settings)
     check_language(language)
-    named = path if isinstance(path, Mapping) else {str(each): each for each in _several(path)}
-    curves = {name: curve_of("path", each) for name, each in named.items()}
-    laws, others = ([compiled_law(each) for each in _several(given)] for given in (law, choices))
     check_names(settings, entry := entry_named(robot), figure)
+    made = entry.make(with_values(entry.parameters(), settings))
+    named = path if isinstance(path, Mapping) else {_name(each): each for each in _several(path)}
+    with looked_up("onpath.paths()"):
+        curves = {name: curve_of("path", each, made) for name, each in named.items()}
+    laws, others = ([compiled_law(each) for each in _several(given)] for given in (law, choices))
     values = settings if settings.keys() & NEWCOMER.keys() else {**NEWCOMER, **settings}
     with announced("OnPath: checking a figure …"):
         choice = chosen(
@@ -108,6 +112,11 @@ def figure(
         title=title,
         language=language,
     )
+
+
+def _name(path: GivenPath) -> str:
+    """The name of a path among those to choose from."""
+    return path_name(f"@{path}" if isinstance(path, Path) else str(path))
 
 
 def _several(given: Any) -> list[Any]:

@@ -353,9 +353,13 @@ class FlexibleLink:
     critical_alpha: Callable[[Parameters, Array], float]
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RobotEntry:
     """An entry of the catalogue.
+
+    Two entries are equal if they have the same name and, if they come from files, the same bodies,
+    joints, end-point, home and outputs. It is pickled by its name, or with its bodies, so that
+    where it is read its file is not needed.
 
     Attributes:
         name: as on the command line and in files, the name of its equations of motion.
@@ -385,6 +389,17 @@ class RobotEntry:
     caution: Callable[[Parameters], Message | None] = lambda _: None
     linkage: BalancedLinkage | None = None
     source: ChainSource | None = None
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RobotEntry):
+            return NotImplemented
+        if self is other or self.name != other.name or self.source is other.source:
+            return self.name == other.name
+        sources = self.source, other.source
+        return sources[0] is not None and sources[1] is not None and sources[0].is_as(sources[1])
+
+    def __hash__(self) -> int:
+        return hash(self.name)
 
     def __repr__(self) -> str:
         return f"<robot {self.name}: {self.label}. {self.text}>"

@@ -157,7 +157,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--law", "set_point"] * 3, "one or two"),
         (["--path", "circle", "--path", "circle 0.3"], "path 'circle 0.3': "),
         (["--path", "circle 0,05"], "write 0.05 instead of 0,05"),
-        (["--path", "@missing.txt"], "--path @missing.txt: No such file"),
+        (["--path", "@missing.txt"], "missing.txt: there is no such file"),
         (["--set", "K1=nothing"], "K1"),
         (["--slider", "torque_limit"], "cannot be changed in a figure"),
         (["--slider", "task"], "cannot be changed in a figure"),
@@ -169,16 +169,16 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--choice", "path_folowing"], "path_following"),
     ]
     for arguments, hint in wrong:
-        assert run_command(["export", "figure", target, *arguments]) == 2, arguments
+        assert run_command(["figure", target, *arguments]) == 2, arguments
         said = capsys.readouterr().err
         assert said.count("\n") == 1 and hint in said and not list(tmp_path.iterdir())
-    assert run_command(["export", "figure", str(tmp_path / "no" / "a.html")]) == 2
+    assert run_command(["figure", str(tmp_path / "no" / "a.html")]) == 2
 
 
 def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
     oval, file = tmp_path / "My oval.txt", tmp_path / "a.html"
     oval.write_text("ellipse 0.06 0.03", "utf-8-sig")
-    arguments = ["export", "figure", str(file), "--path", f"@{oval}", "--path", "circle"]
+    arguments = ["figure", str(file), "--path", f"@{oval}", "--path", "circle"]
     assert run_command(arguments) == 0
     named = {"My oval": onpath.ellipse(0.06, 0.03), "circle": "circle"}
     assert file.read_bytes() == onpath.figure(path=named).save(tmp_path / "b.html").read_bytes()

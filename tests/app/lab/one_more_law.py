@@ -91,7 +91,7 @@ def test_it_runs_on_the_command_line(capsys: pytest.CaptureFixture[str]) -> None
 
 def test_it_is_exported_with_sliders_for_its_gains(tmp_path: Path) -> None:
     file = tmp_path / "page.html"
-    assert run_command(["export", "figure", str(file), "--law", LAW, "--set", "reach=3"]) == 0
+    assert run_command(["figure", str(file), "--law", LAW, "--set", "reach=3"]) == 0
     assert "Sliding mode" in file.read_text("utf-8")
     figure = chosen("five_bar", (LAW,), {"circle": circle(0.05)}, {"reach": 3.0})
     assert {"boundary", "reach"} <= {*figure.sliders}

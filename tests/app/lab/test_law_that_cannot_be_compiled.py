@@ -111,7 +111,7 @@ def test_an_exported_figure_is_refused_in_one_line(
     tmp_path: Path, law: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "a.html"
-    assert run_command(["export", "figure", str(file), "--law", law]) == 2
+    assert run_command(["figure", str(file), "--law", law]) == 2
     error = capsys.readouterr().err
     assert law in error and "OP_" in error and "WebAssembly" in error
     assert error.count("\n") == 1 and not list(tmp_path.iterdir())

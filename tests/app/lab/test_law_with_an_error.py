@@ -46,7 +46,7 @@ ERRORS = {
 COMMANDS = [
     ["experiment", "obstruction"],
     ["compare", "--obstruction", "none"],
-    ["export", "figure", "page.html"],
+    ["figure", "page.html"],
 ]
 
 

@@ -173,7 +173,7 @@ def test_the_command_line_says_it_and_refuses(
 def test_the_export_of_a_figure_says_it_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    own = ["export", "figure", str(tmp_path / "gantry.html"), "--robot", GANTRY.name, "--set"]
+    own = ["figure", str(tmp_path / "gantry.html"), "--robot", GANTRY.name, "--set"]
     assert run_command([*own, "alpha=1.1"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("onpath: ") and UNSTABLE in line

@@ -77,10 +77,8 @@ def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         onpath.figure("flexible", output="redefined", alpha=0.3, **circle)
-    assert (
-        run_command(["export", "figure", str(file), "--robot=flexible", "--set=output=redefined"])
-        == 0
-    )
+    command = ["figure", str(file), "--robot=flexible", "--set=output=redefined"]
+    assert run_command(command) == 0
 
 
 @pytest.mark.parametrize("command", [["experiment", "obstruction"], ["compare"]])
