@@ -16,8 +16,8 @@ from onpath.app.common.templates import render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_numbers
 from onpath.app.exports.standalone.figure_page import figure_page, picture_page
+from onpath.app.exports.standalone.figure_words import run_titles
 from onpath.assets.messages import languages
-from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import Curve
@@ -125,7 +125,7 @@ class Figure:
         return figure_numbers(self.choice)
 
     def _laws(self, words: Words) -> str:
-        return " / ".join(law_titles([run.law for run in self._runs], words).values())
+        return " / ".join(run_titles(self._runs, words))
 
     def __repr__(self) -> str:
         kind = "figure" if self.choice else "picture"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gzip
 import json
 import re
@@ -139,6 +140,15 @@ def test_a_run_that_no_page_can_show_is_a_picture_and_says_why() -> None:
         assert "data:image/png" in page
         html = shown._repr_mimebundle_()["text/html"]
         assert "iframe" not in html and shown.reason in unescape(html)
+
+
+def test_a_run_of_a_law_from_elsewhere_is_drawn_with_the_label_of_its_record() -> None:
+    run = onpath.simulate(duration=0.1)
+    afar = dataclasses.replace(run.trajectory, law="nowhere", label="Law from afar")
+    shown = onpath.Run(run.experiment, afar).figure()
+    assert shown.choice is None and "nowhere" in shown.reason
+    assert "Law from afar" in repr(shown) and "Law from afar" in shown.html
+    assert onpath.Run(run.experiment, afar)._repr_mimebundle_()["image/png"]
 
 
 def shown_things() -> dict[str, Any]:
