@@ -28,6 +28,10 @@ class ShownFigure(Figure):
     """A figure that a notebook shows whether or not pyplot is in use."""
 
     def _repr_png_(self) -> bytes:
+        return self.png()
+
+    def png(self) -> bytes:
+        """The picture as a PNG file."""
         file = io.BytesIO()
         self.savefig(file, format="png", dpi=80)
         return file.getvalue()

@@ -13,7 +13,7 @@ from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.summary_text import rows_of
 from onpath.lessons.words import ENGLISH
 from onpath.models.closed_loop.trajectory import Trajectory
-from onpath.models.control.laws.own import law_title
+from onpath.models.control.laws.own import is_text, law_title
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import SIDES
@@ -82,8 +82,11 @@ def run_figure(
     try:
         if not alike:
             raise ValueError("the runs have different settings")
-        if ROBOTS.get(robot.name) is None:
-            raise ValueError(f"the robot {robot.name} is not known here")
+        if ROBOTS.get(first.entry.name) != first.entry:
+            raise ValueError(f"there is another robot named {first.entry.name} here")
+        for run in runs:
+            if not (is_text(run.law) or run.law in LAWS):
+                raise ValueError(f"the law {run.law} is not known here")
         choice = chosen(
             robot.name,
             [compiled_law(run.law) for run in runs],
@@ -119,7 +122,7 @@ def identification_bundle(text: str, found: FileEstimate) -> dict[str, Any]:
 
     title, *others = remarks(found)
     table = html_table(("parameter (SI)", "value", "± (95 %)"), parameter_rows(found))
-    picture = residual_figure(found)._repr_png_()
+    picture = residual_figure(found).png()
     return bundle(text, paragraphs(title) + table + paragraphs(*others), picture)
 
 

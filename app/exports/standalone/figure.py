@@ -16,8 +16,8 @@ from onpath.app.common.templates import render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_data import figure_numbers
 from onpath.app.exports.standalone.figure_page import figure_page, picture_page
+from onpath.app.exports.standalone.figure_words import run_titles
 from onpath.assets.messages import languages
-from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.paths.curves import Curve
@@ -125,7 +125,7 @@ class Figure:
         return figure_numbers(self.choice)
 
     def _laws(self, words: Words) -> str:
-        return " / ".join(law_titles([run.law for run in self._runs], words).values())
+        return " / ".join(run_titles(self._runs, words))
 
     def __repr__(self) -> str:
         kind = "figure" if self.choice else "picture"
@@ -133,16 +133,18 @@ class Figure:
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         """Picture and page for a notebook, which shows the first kind that it can."""
-        words = Words(self.language)
-        page = b64encode(gzip.compress(self.html.encode(), mtime=0)).decode()
-        picture = b64encode(self.png).decode()
+        words, picture, page = Words(self.language), b64encode(self.png).decode(), ""
+        if self.choice is not None:
+            with announced("OnPath: making a figure …"):
+                page = figure_page(self.choice, words, self.title, self._numbers)
         html = render(
             "standalone/cell.html",
             picture=picture,
             described=words("standalone.still", laws=self._laws(words)),
             named=self.title or self._laws(words),
             height=HEIGHT,
-            page=page,
+            page=b64encode(gzip.compress(page.encode(), mtime=0)).decode() if page else "",
+            text=words("standalone.only_picture", reason=self.reason),
         )
         return {"text/html": html, "image/png": picture, "text/plain": repr(self)}
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -16,7 +17,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from onpath.app.common import palette
-from onpath.lessons.sides import law_titles
+from onpath.app.exports.standalone.figure_words import run_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -38,19 +39,20 @@ def still(robot: Robot, curve: Curve, runs: Sequence[Trajectory], words: Words) 
         runs: one or two, of the same robot on this path.
     """
     drawn = Figure(figsize=SIZE, layout="constrained")
-    titles = law_titles([run.law for run in runs], words)
     colours = [palette.OF_SIDE[side].hex for side in ((LEFT, RIGHT) if runs[1:] else (RIGHT,))]
     shown = [int(run.distance.argmax()) for run in runs]
     names = [f"robot {number}" for number in range(len(runs))]
-    rows = [names, ["chart"] * len(runs)]
-    all_axes = drawn.subplot_mosaic(rows, height_ratios=(1.7, 1))
+    layout: list[Any] = [names, ["chart"] * len(runs)]
+    all_axes = drawn.subplot_mosaic(layout, height_ratios=(1.7, 1))
     scenes, chart = [all_axes[name] for name in names], all_axes["chart"]
     for axes in scenes[1:]:
         axes.sharex(scenes[0])
         axes.sharey(scenes[0])
-    for axes, run, row, colour in zip(scenes, runs, shown, colours, strict=True):
+    titles = run_titles(runs, words)
+    each = zip(scenes, runs, shown, colours, titles, strict=True)
+    for axes, run, row, colour, title in each:
         _draw_scene(axes, robot, curve, run, row, colour)
-        values = {"law": titles[run.law], "far": f"{1e3 * run.distance[row]:.1f}"}
+        values = {"law": title, "far": f"{1e3 * run.distance[row]:.1f}"}
         axes.set_title(words("standalone.still_robot", **values), fontsize=10)
         chart.plot(run.t, 1e3 * run.distance, color=colour, linewidth=1.6)
         chart.plot(run.t[row], 1e3 * run.distance[row], "o", color=colour, markersize=4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import gzip
 import json
 import re
@@ -44,7 +45,10 @@ def test_a_cell_has_the_picture_and_the_page_and_is_small(
     assert len(json.dumps(bundle)) < LARGEST
     assert b64decode(bundle["image/png"]) == shown.png
     assert shown.png.startswith(b"\x89PNG") and bundle["image/png"] in bundle["text/html"]
-    assert page_in(bundle) == shown.html and bundle["image/png"] in shown.html
+    picture = re.search('<img class="still"[^>]*>', shown.html)
+    assert picture and bundle["image/png"] in picture[0]
+    without = unescape(shown.html.replace(picture[0], ""))
+    assert unescape(page_in(bundle)) == without.replace("img-src data:", "img-src 'none'")
     assert "script" not in re.sub(r'srcdoc="[^"]*"', "", bundle["text/html"])
     assert not list(tmp_path.iterdir())  # nothing is written unasked
 
@@ -134,6 +138,17 @@ def test_a_run_that_no_page_can_show_is_a_picture_and_says_why() -> None:
         assert unescape(shown.reason) in unescape(page) and "<script" not in page
         assert "script-src 'none'" in unescape(page)
         assert "data:image/png" in page
+        html = shown._repr_mimebundle_()["text/html"]
+        assert "iframe" not in html and shown.reason in unescape(html)
+
+
+def test_a_run_of_a_law_from_elsewhere_is_drawn_with_the_label_of_its_record() -> None:
+    run = onpath.simulate(duration=0.1)
+    afar = dataclasses.replace(run.trajectory, law="nowhere", label="Law from afar")
+    shown = onpath.Run(run.experiment, afar).figure()
+    assert shown.choice is None and "nowhere" in shown.reason
+    assert "Law from afar" in repr(shown) and "Law from afar" in shown.html
+    assert onpath.Run(run.experiment, afar)._repr_mimebundle_()["image/png"]
 
 
 def shown_things() -> dict[str, Any]:
