@@ -31,6 +31,7 @@ from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
+from tests.support.cases import drawn
 from tests.support.observed import RATES, SENSORS, farthest, paths
 from tests.support.pulls import troubled
 
@@ -130,7 +131,7 @@ def test_the_follower_stays_near_its_path(name: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ROBOTS)
+@pytest.mark.parametrize("name", drawn([*ROBOTS], 3))
 def test_every_follower_stays_near_every_path(name: str) -> None:
     check_near(name, [*paths()], RATES if name in RIGID else (250, 1000), seeds=3)
 
@@ -182,7 +183,7 @@ PULLS = 12  # for each of these robots and paths: 336 at each rate
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("name", PULLED)
+@pytest.mark.parametrize("name", drawn(PULLED, 1))
 def test_no_pull_stops_the_follower_and_it_is_back_within_twice_its_distance(
     name: str, rate: int
 ) -> None:
