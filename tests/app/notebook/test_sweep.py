@@ -109,7 +109,8 @@ def test_a_list_is_several_where_one_value_is_none(name: str, one: Any, several:
 
 def test_what_no_run_could_be_is_refused_and_what_one_cannot_do_is_a_row() -> None:
     wrong: list[dict[str, Any]] = [{"K1": [400, 9e9]}, {"K1": []}, {"K9": [1, 2]}]
-    for bad in (*wrong, {"law": ["path_folowing"]}):
+    wrong.append({"law": ["path_folowing"]})
+    for bad in wrong:
         with pytest.raises(ValueError, match=r"K1|K9|path_following"):
             onpath.sweep(**bad, duration=0.1)
     with pytest.raises(ValueError, match="it returned 'ab'"):
