@@ -15,6 +15,7 @@ from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
 
+VERSION = version("onpath")
 FILE = "results.jsonl"
 """A line for each result: its key, and the result as JSON."""
 
@@ -77,7 +78,7 @@ def key_of(experiment: Experiment, law: str, *others: str) -> str:
     """
     data, curve, source = experiment.data(), experiment.curve(), experiment.entry.source
     made_of = (
-        version("onpath"),
+        VERSION,
         experiment.entry.name,
         None if source is None else source.mechanics(),
         sorted(data["settings"].items()),

@@ -3,8 +3,8 @@
     with joblib.parallel_config("dask"):
         onpath.sweep(...)
 
-Without such a setting there is one process for each processor. Items of one kind, which need the
-same compiled loop, go to a process together.
+Without such a setting there is one process for each processor, if that is worth it. Items of one
+kind, which need the same compiled loop, go to a process together.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from typing import Any, Generic, TypeVar
 
 import cloudpickle
 from joblib import Parallel, delayed
-from joblib.parallel import get_active_backend
+from joblib.parallel import BACKENDS, DEFAULT_BACKEND, get_active_backend
 from typing_extensions import override
 
 from onpath.models.closed_loop.simulation import forget_kernels
@@ -88,6 +88,8 @@ class Job(Generic[Item, Result]):
         lost: the result of an item whose process has died, again and again.
         laws, robots: those that the items need.
         title: of the progress bar.
+        is_small: whether it takes less time than processes take to start; then it is done in this
+            one, unless joblib is set to something.
     """
 
     items: Sequence[Item]
@@ -97,6 +99,7 @@ class Job(Generic[Item, Result]):
     laws: Iterable[str]
     robots: Iterable[RobotEntry]
     title: str
+    is_small: bool = False
 
     def results(self) -> Iterator[tuple[int, Result]]:
         """The number of each item, and its result, in the order in which they are finished.
@@ -118,8 +121,9 @@ class Job(Generic[Item, Result]):
                 yield found
 
     def _results(self) -> Iterator[tuple[int, Result]]:
-        backend, jobs = get_active_backend()
-        jobs = -1 if jobs is None else jobs
+        backend, chosen = get_active_backend()
+        unset = chosen is None and isinstance(backend, BACKENDS[DEFAULT_BACKEND])
+        jobs = chosen or (1 if unset and self.is_small else -1)
         workers = max(1, backend.effective_n_jobs(jobs))
         luggage = luggage_of(self.laws if workers > 1 else (), self.robots)
         waiting, losses = self._batches(workers), 0

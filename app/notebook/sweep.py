@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 NESTED = {"start": 1, "velocity": 1, "hold": 1, "push": 1, "wall": 1, "profile": 2}
 """Arguments that are sequences, and how deep: those that are deeper are several."""
 SEVERAL = list, tuple, range, np.ndarray
+SMALL = 20.0  # [s], simulated, that take less time than processes take to start
 SHOWN = 40  # rows of a table in a cell
 MOST_LINES = 12  # of a picture that are named
 LOST = "the process that simulated it has died"
@@ -167,7 +168,7 @@ def sweep(
 ) -> SweepResult:
     """Simulate all combinations of robots, paths, laws and settings; a row of a table for each.
 
-    The runs are shared among processes by joblib, one for each processor; with
+    More than a few runs are shared among processes by joblib, one for each processor; with
 
         with joblib.parallel_config("dask"):
             result = onpath.sweep(...)
@@ -211,17 +212,20 @@ def sweep(
     asked = {"robot": robot, "path": path, "law": law, **settings}
     varied = tuple(name for name, value in asked.items() if _is_several(name, value))
     shown = {name: _labels(name, values) for name, values in given.items() if name in varied}
-    trials, rows, unused = list[Trial](), list[dict[str, Any]](), list[str]()
+    trials, rows = list[Trial](), list[dict[str, Any]]()
+    unused: str | None = None
     for choice in product(*(range(len(values)) for values in given.values())):
         chosen = {name: given[name][i] for name, i in zip(given, choice, strict=True)}
         experiment, name, values = planned(**chosen)
-        unused.append(unused_text(experiment, [name], values))
+        if unused is None or unused:
+            told = unused_text(experiment, [name], values)
+            unused = told if unused in (None, told) else ""
         check_called(experiment, name)
         trials.append((experiment, name))
         row = {each: shown[each][i] for each, i in zip(given, choice, strict=True) if each in shown}
         rows.append(row)
-    if unused[0] and len({*unused}) == 1:
-        warnings.warn(unused[0], UserWarning, stacklevel=2)
+    if unused:
+        warnings.warn(unused, UserWarning, stacklevel=2)
     found = dict[int, dict[str, Any]]()
     try:
         for number, numbers in _simulated(trials, kept):
@@ -253,6 +257,7 @@ def _simulated(trials: Sequence[Trial], kept: Kept) -> Iterator[tuple[int, dict[
         laws=[law for _, law in trials],
         robots=(),  # they are in the trials
         title="sweep",
+        is_small=sum(trials[number][0].schedule.duration for number in wanted) < SMALL,
     )
     for i, numbers in job.results():
         kept.keep(keys[wanted[i]], numbers)

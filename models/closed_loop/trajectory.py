@@ -175,7 +175,8 @@ def numbers_of(robot: Robot, run: Trajectory, measured: bool) -> Array:
     names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
     seen = [f[name] for name in names]
     sensed = [f.get(MEASURED, f["q"][:, : robot.system.joints])] if measured else []  # exact: q
-    return np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
+    held = run.held.astype(float)
+    return np.column_stack([*seen, run.distance, f["u"], f["force"], held, *sensed])
 
 
 def write_csv(

@@ -311,7 +311,8 @@ def chebyshev_curve(coefficients: Array) -> Curve:
 
 def curve_from(data: Mapping[str, Any]) -> Curve:
     """The inverse of `Curve.data`, to the last bit of what is computed from it."""
-    return Curve(**{**data, "series": _by_terms([*data["series"]])})
+    values: dict[str, Any] = {**data, "series": _by_terms([*data["series"]])}
+    return Curve(**values)
 
 
 def _by_terms(orders: list[Array]) -> Array:

@@ -127,8 +127,8 @@ def result_from(data: Mapping[str, Any], row: Row, trial: Trial) -> Result:
     """The inverse of `Result.data`."""
     told, shown = data["reason"], np.array(data["shown"]).reshape(-1, 4)
     reason = told if isinstance(told, str) else msgspec.convert(told, Message)
-    law, remedy = row
-    return Result(law, remedy, trial, **{**data, "reason": reason, "shown": shown})
+    values: dict[str, Any] = {**data, "reason": reason, "shown": shown}
+    return Result(*row, trial, **values)
 
 
 STEPS = {

@@ -34,7 +34,7 @@ class _Contents(cloudpickle.Pickler):
         if isinstance(obj, CodeType):
             code = (obj.co_code, obj.co_consts, obj.co_names, obj.co_varnames)
             return tuple, ((*code, obj.co_freevars, obj.co_argcount, obj.co_flags),)
-        found = super().reducer_override(obj)
+        found: Any = super().reducer_override(obj)
         if isinstance(obj, type) and isinstance(found, tuple):  # it cannot be imported
             members = {name: each for name, each in vars(obj).items() if name not in OF_A_CLASS}
             return _none, (obj.__name__, obj.__bases__), members  # which may refer to the class

@@ -63,7 +63,8 @@ def arrays_of(run: Run) -> dict[str, Any]:
 
 def test_a_run_is_read_elsewhere_without_the_files_of_its_robot_and_law(tmp_path: Path) -> None:
     made, other = tmp_path / "made", tmp_path / "other"
-    made.mkdir(), other.mkdir()
+    made.mkdir()
+    other.mkdir()
     (made / "arm.urdf").write_text(urdf("arm", PLANAR), "utf-8")
     (made / "law.py").write_text(f"import onpath\n{LAW}", "utf-8")
     arm = onpath.robot(made / "arm.urdf", armature=0.001)

@@ -8,6 +8,7 @@ import os
 import random
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -107,7 +108,9 @@ def test_a_list_is_several_where_one_value_is_none(name: str, one: Any, several:
 
 
 def test_what_no_run_could_be_is_refused_and_what_one_cannot_do_is_a_row() -> None:
-    for bad in ({"K1": [400, 9e9]}, {"law": ["path_folowing"]}, {"K1": []}, {"K9": [1, 2]}):
+    wrong: list[dict[str, Any]] = [{"K1": [400, 9e9]}, {"K1": []}, {"K9": [1, 2]}]
+    wrong.append({"law": ["path_folowing"]})
+    for bad in wrong:
         with pytest.raises(ValueError, match=r"K1|K9|path_following"):
             onpath.sweep(**bad, duration=0.1)
     with pytest.raises(ValueError, match="it returned 'ab'"):
@@ -191,15 +194,18 @@ def test_it_shows_itself_as_a_table_and_a_picture(tmp_path: Path) -> None:
     file = tmp_path / "a.svg"
     axes = result.plot(str(file), y="rms_distance_m").axes[0]
     assert file.stat().st_size > 1e4 and axes.get_xlabel() == "K1"
-    names = [text.get_text() for text in axes.get_legend().get_texts()]
+    legend = axes.get_legend()
+    assert legend is not None
+    names = [text.get_text() for text in legend.get_texts()]
     assert names == ["path_following", "contouring"]
     lines = {line.get_label(): line for line in axes.get_lines()}
     rms = [1e3 * row["rms_distance_m"] for row in result.table if row["law"] == "contouring"]
-    np.testing.assert_allclose(lines["contouring"].get_ydata(), rms)
+    np.testing.assert_allclose(np.array(lines["contouring"].get_ydata()), rms)
     with pytest.raises(ValueError, match="expected one of max_distance_m"):
         result.plot(y="nothing")
     with pytest.raises(ValueError, match=r"ending in \.png"):
         result.plot("a.txt")
+    varied: dict[str, Any]
     for varied in ({"law": ["path_following"]}, {}, {"path": ["circle", onpath.circle(0.4)]}):
         onpath.sweep(**varied, duration=0.05).plot(file)
     stopped = SweepResult(("law",), [{"law": "<b>", "max_distance_m": math.inf, "reason": "&"}], [])
@@ -210,6 +216,13 @@ def test_a_sweep_over_a_gain_compiles_one_loop() -> None:
     arena._loop.cache_clear()
     onpath.sweep(K1=[*range(300, 330)], duration=0.02)
     assert arena._loop.cache_info().misses == 1
+
+
+def test_a_few_short_runs_start_no_processes() -> None:
+    arena._loop.cache_clear()
+    with ThreadPoolExecutor(1) as unset:  # joblib is set for each thread
+        unset.submit(onpath.sweep, K1=[300, 400], duration=0.02).result()
+    assert arena._loop.cache_info().misses == 1  # in this process
 
 
 def _misses(_: int) -> tuple[int, int]:
