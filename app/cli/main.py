@@ -8,7 +8,6 @@ import os
 import re
 import sys
 from dataclasses import dataclass
-from functools import partial
 from importlib.metadata import version
 from typing import Protocol
 
@@ -71,7 +70,11 @@ def main() -> None:
     arguments = sys.argv[1:]
     if arguments and arguments[0] in COMMANDS.keys() - {"serve"}:
         sys.exit(run_command(arguments))
-    sys.exit(supervised(partial(run_command, arguments)))
+
+    def serve(again: bool) -> int:
+        return run_command([*arguments, "--no-open"] if again else arguments)  # its tab comes back
+
+    sys.exit(supervised(serve))
 
 
 def _print_any_text() -> None:
