@@ -30,7 +30,7 @@ STUDENTS = 100
 """Students of a task who draw at random."""
 MOST_PASS = 10
 """How many of them may pass."""
-PANELS = {"flexible": ("law", "alpha")}
+PANELS = {"flexible": ("output", "alpha")}
 """Parameters on panels that a step shows under one name."""
 POINTS = 8
 """Control points of a preset path, of which a student moves any."""

@@ -21,9 +21,9 @@ def main() -> None:
     onpath = sys.argv[1]
     command = [onpath, "experiment", "obstruction", "--json"]
     output = subprocess.run(command, capture_output=True, text=True, check=True).stdout
-    controllers = json.loads(output)["laws"]
-    assert controllers["path_following"]["max_distance_m"] <= 0.003, output
-    assert controllers["trajectory_tracking"]["max_distance_m"] >= 0.04, output
+    laws = json.loads(output)["laws"]
+    assert laws["path_following"]["max_distance_m"] <= 0.003, output
+    assert laws["trajectory_tracking"]["max_distance_m"] >= 0.04, output
 
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "figure.html"

@@ -94,8 +94,8 @@ class ExperimentCommand:
                 draw_experiment(chosen, runs, path)
         for each in runs:
             if text := beyond_limits(each, chosen.robot()):
-                print(f"onpath: {law_title(each.controller)}: {text}", file=sys.stderr)
-        reasons = {each.controller: each.reason or never_held(chosen, each) for each in runs}
+                print(f"onpath: {law_title(each.law)}: {text}", file=sys.stderr)
+        reasons = {each.law: each.reason or never_held(chosen, each) for each in runs}
         print(json.dumps(finite(result), indent=2) if self.json else _table(result, reasons))
 
 

@@ -56,7 +56,6 @@ class ExportFigure:
         given = assignments(self.set)
         entry = self.file_options.entry_of(self.robot)
         robot = entry.make(with_values(entry.parameters(), given))
-        parameters = {"output" if name == "law" else name: given[name] for name in given}
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", UserWarning)
             written = figure(
@@ -69,7 +68,7 @@ class ExportFigure:
                 choices=self.choice,
                 title=self.title,
                 language=self.language,
-                **parameters,
+                **given,
             )
         for each in caught:
             print(f"onpath: {each.message}", file=sys.stderr)

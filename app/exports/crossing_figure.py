@@ -60,8 +60,8 @@ def _draw_plane(axes: Axes, experiment: Experiment, run: Trajectory) -> None:
     path = 1e3 * experiment.curve().at(np.linspace(-np.pi, np.pi, 400))
     z = 1e3 * experiment.robot().frame.planar(run.fields["y"])
     axes.plot(*path.T, color="0.8", linewidth=5)
-    axes.plot(*z.T, color=of_law(run.controller).hex, linewidth=1.6)
-    axes.plot(*z[-1], "s", color=of_law(run.controller).hex, markersize=7)
+    axes.plot(*z.T, color=of_law(run.law).hex, linewidth=1.6)
+    axes.plot(*z[-1], "s", color=of_law(run.law).hex, markersize=7)
     jumped = z[np.isin(run.t, jumps(run))]
     axes.plot(*jumped.T, "x", color=WARNING.hex, markersize=9, markeredgewidth=2)
     axes.set_aspect("equal")
@@ -69,7 +69,7 @@ def _draw_plane(axes: Axes, experiment: Experiment, run: Trajectory) -> None:
 
 
 def _draw_parameter(axes: Axes, run: Trajectory) -> None:
-    axes.plot(run.t, run.fields["theta"][:, 0], color=of_law(run.controller).hex, linewidth=1.2)
+    axes.plot(run.t, run.fields["theta"][:, 0], color=of_law(run.law).hex, linewidth=1.2)
     for time in jumps(run):
         axes.axvline(float(time), color=WARNING.hex, linewidth=0.8)
     axes.set_xlabel("t  [s]")

@@ -49,7 +49,7 @@ def experiment_figure(experiment: Experiment, runs: list[Trajectory]) -> Figure:
     _draw_space(axes["space"], experiment, runs)
     for name, label, column in panels:
         for run in runs:
-            draw_column(axes[name], run, of_law(run.controller), *column(run))
+            draw_column(axes[name], run, of_law(run.law), *column(run))
         axes[name].set_ylabel(label)
         axes[name].grid(alpha=0.25)
         _shade_held(axes[name], runs)
@@ -133,12 +133,12 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
         z = 1e3 * frame.planar(run.fields["y"])
         axes.plot(
             *z.T,
-            color=of_law(run.controller).hex,
+            color=of_law(run.law).hex,
             linewidth=1.6,
-            label=law_named(run.controller).label,
+            label=law_named(run.law).label,
         )
-        axes.plot(*z[0], "o", color=of_law(run.controller).hex, markersize=6)
-        axes.plot(*z[-1], "s", color=of_law(run.controller).hex, markersize=7)
+        axes.plot(*z[0], "o", color=of_law(run.law).hex, markersize=6)
+        axes.plot(*z[-1], "s", color=of_law(run.law).hex, markersize=7)
     axes.plot([], [], "o", color="0.3", label="start")
     axes.plot([], [], "s", color="0.3", label="end")
     if any(run.held.any() for run in runs):

@@ -167,7 +167,7 @@ def _add_styles(axis: Axes, names: list[str]) -> None:
 
 def _legend(runs: Runs, words: Words) -> list[Line2D | Patch]:
     """The robots' colours, and the marks of holds and changes of law, if there are any."""
-    laws = {side: tuple(run.controller for run in parts) for side, parts in runs.items()}
+    laws = {side: tuple(run.law for run in parts) for side, parts in runs.items()}
     titles = side_titles(laws, words)
     found: list[Line2D | Patch] = [
         Line2D([], [], color=OF_SIDE[side].hex, label=title) for side, title in titles.items()

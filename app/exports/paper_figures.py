@@ -194,7 +194,7 @@ def _plane(picture: Figure, experiment: Experiment, runs: list[Trajectory]) -> N
         axes.plot(*y.T, color=colour.hex, linewidth=1.8, label="end-point")
         axes.plot(*y[0], "o", color=colour.hex, markersize=7, label="start")
         axes.plot(*target, "*", color="0.1", markersize=12, label=r"$\eta_2^{1\mathrm{ref}}$")
-        axes.set_title(LAWS[run.controller].label, fontsize=11)
+        axes.set_title(LAWS[run.law].label, fontsize=11)
         axes.set_aspect("equal")
         axes.set_xlabel("$y_1$  [mm]")
         axes.grid(alpha=0.25)

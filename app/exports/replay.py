@@ -34,7 +34,7 @@ def replay(robot: Robot, history: list[Segment]) -> dict[str, list[Trajectory]]:
     """
     found = {side: _replayed(robot, side, history) for side in history[0].drives}
     runs = {
-        side: [join(law, list(same)) for law, same in groupby(parts, lambda p: p.controller)]
+        side: [join(law, list(same)) for law, same in groupby(parts, lambda p: p.law)]
         for side, parts in found.items()
         if parts
     }
@@ -59,7 +59,7 @@ def _replayed(robot: Robot, side: str, history: list[Segment]) -> list[Trajector
         loop = _fast_loop(robots[id(segments[0].drives[side].parameters)], kind)
         logged = [(rows, s.curve, held) for s, rows, held in _rows(loop, side, segments)]
         times = np.concatenate([s.time + dt * np.arange(s.ticks, dtype=float) for s in segments])
-        log, law = loop.layouts.log, kind.controller
+        log, law = loop.layouts.log, kind.law
         part = record(robot, log, law, merged(logged), dt, times).thinned()
         parts.append(replace(part, level_set=kind.level_set))
     return _of_one_unit(parts)

@@ -22,7 +22,7 @@ def summary_lines(values: Mapping[str, Any]) -> list[str]:
     """One line per quantity; quantities that a run lacks are omitted.
 
     Args:
-        values: summary of one controller, from `models.studies.experiments.summary`.
+        values: summary of one law, from `models.studies.experiments.summary`.
     """
     return [
         f"{title:26s} {STOPPED if math.isinf(values[key]) else show(values[key])}"

@@ -165,9 +165,7 @@ def _faults(
         return [None] * len(members)
     faults = [robot.fault(q[i], v[i], each.parameters) for i, (_, each) in enumerate(members)]
     return [
-        (ticks.count, not_finite(run.kind.controller))
-        if fault is None and not numbers.all()
-        else fault
+        (ticks.count, not_finite(run.kind.law)) if fault is None and not numbers.all() else fault
         for fault, numbers, (run, _) in zip(faults, finite, members, strict=True)
     ]
 

@@ -128,7 +128,7 @@ class ClosedLoopRun:
         before = self.kind
         self.robot, self._made_with, self._inputs = robot, parameters, None
         self.configure(parameters, curve, push)
-        if self.law != before.controller:
+        if self.law != before.law:
             self._go_on_from(self.state, before)
 
     def _go_on_from(self, state: Array, kind: Kind) -> None:
@@ -137,12 +137,12 @@ class ClosedLoopRun:
         If it was under another law, the reference point starts at the closest point, and the
         present law's integral and memory start at 0.
         """
-        self._change(state if kind.controller == self.law else self._under_law(state, kind))
+        self._change(state if kind.law == self.law else self._under_law(state, kind))
         self._prime(kind)
 
     def _under_law(self, state: Array, kind: Kind) -> Array:
         """Convert a state under another law to an initial state under the present one."""
-        memory, layout = law_named(kind.controller).memory, self._layouts.state
+        memory, layout = law_named(kind.law).memory, self._layouts.state
         before = state_layout(self.robot.system, memory)
         values = {name: np.zeros(size) for name, size in layout.fields}
         remembered = {name for name, _ in law_named(self.law).memory}
@@ -335,7 +335,7 @@ class ClosedLoopRun:
             self.settings = pushed(self._layouts, self.settings, push)
         else:
             self.settings = settings_vector(self.robot, self._layouts, parameters, curve, push)
-        if before is not None and before.controller != self.law:
+        if before is not None and before.law != self.law:
             self._go_on_from(self.state, before)
         elif before is not None:
             self._prime(before)

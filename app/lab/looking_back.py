@@ -45,7 +45,7 @@ def go_on(session: Session) -> tuple[float, float] | None:
         session.note("let_go")
         session.note("release")
         for side, drive in segment.drives.items():
-            if (law := session.laws[side]) != drive.kind.controller:
+            if (law := session.laws[side]) != drive.kind.law:
                 session.note("law", short_name(law), (side,))
         session.undo_timeline = replaced
     session.viewing, session.running = None, True

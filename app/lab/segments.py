@@ -187,7 +187,7 @@ class Segment:
     def instant(self) -> Instant:
         """The instant at its beginning."""
         drives = self.drives.values()
-        laws = tuple(d.kind.controller for d in drives)
+        laws = tuple(d.kind.law for d in drives)
         return Instant(
             time=self.time,
             laws=laws,

@@ -13,7 +13,7 @@ from onpath.app.common.own_laws import compiled_law
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_page import figure_page
 from onpath.app.notebook.arguments import curve_of
-from onpath.app.notebook.simulate import by_declared_names, entry_named
+from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import raised
@@ -88,8 +88,8 @@ def figure(
     laws, choices = ([compiled_law(law) for law in each] for each in (laws, choices))
     named = paths if isinstance(paths, Mapping) else {str(each): each for each in paths}
     curves = {name: curve_of("paths", each) for name, each in named.items()}
-    given = by_declared_names(parameters, entry := entry_named(robot), figure)
-    values = given if given.keys() & NEWCOMER.keys() else {**NEWCOMER, **given}
+    check_names(parameters, entry := entry_named(robot), figure)
+    values = parameters if parameters.keys() & NEWCOMER.keys() else {**NEWCOMER, **parameters}
     choice = chosen(
         entry.name,
         laws,
@@ -102,7 +102,7 @@ def figure(
     first = on_path(choice.entry, choice.parameters, next(iter(curves.values())))
     laws = choice.every_law
     remarks = [path_remark(raised(each, choice.parameters)) for each in curves.values()]
-    for text in (*remarks, unused_text(first, laws, given), forecast_text(first, laws)):
+    for text in (*remarks, unused_text(first, laws, parameters), forecast_text(first, laws)):
         if text:
             warnings.warn(text, UserWarning, stacklevel=2)
     with whole_file(path) as scratch:

@@ -37,7 +37,7 @@ class Run:
     @property
     def law(self) -> str:
         """Name of the control law."""
-        return self.trajectory.controller
+        return self.trajectory.law
 
     @property
     def t(self) -> Array:

@@ -89,8 +89,7 @@ def simulate(
             instead of `speed` and `ramp`; it is fed forward, as in (19).
         parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
             robot's defaults, which are those of the lab, the command line and figures, too. A new
-            lab begins more slowly, as with **onpath.NEWCOMER. What `--set law=` sets for the
-            flexible robot is called `output` here.
+            lab begins more slowly, as with **onpath.NEWCOMER.
 
     Raises:
         ValueError: an unknown name (the message lists the nearest ones), an invalid value (the
@@ -138,8 +137,8 @@ def simulate(
     onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
     """
     entry, name = entry_named(robot), law_given(law)
-    given = by_declared_names(parameters, entry, simulate)
-    given |= _without_none({"profile": profile, "clock_offset": clock_offset or None})
+    check_names(parameters, entry, simulate)
+    given = parameters | _without_none({"profile": profile, "clock_offset": clock_offset or None})
     given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
     given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
     curve = curve_of("path", path)
@@ -219,8 +218,7 @@ def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
     """
     entry = entry_named(robot)
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
-    names = _names(entry).items()
-    return {public: _described(known[name], defaults[name]) for public, name in names}
+    return {name: _described(spec, defaults[name]) for name, spec in known.items()}
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
@@ -311,20 +309,15 @@ def _check_name(name: Any, known: Iterable[str], what: str) -> None:
         raise unknown_name(str(name), list(known), what)
 
 
-def _names(entry: RobotEntry) -> dict[str, str]:
-    """Public parameter names -> declared names; they differ where `law` is the control law."""
-    return {"output" if name == "law" else name: name for name in specs(entry.parameters)}
-
-
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     """The values that are not None."""
     return {name: value for name, value in values.items() if value is not None}
 
 
-def by_declared_names(
+def check_names(
     parameters: Mapping[str, Any], entry: RobotEntry, function: Callable[..., Any]
-) -> dict[str, Any]:
-    """Parameters by the names that they are declared with.
+) -> None:
+    """Refuse parameters that a robot does not have.
 
     Args:
         function: the function whose arguments they are.
@@ -332,12 +325,11 @@ def by_declared_names(
     Raises:
         ValueError: an unknown name; the message lists the nearest ones.
     """
-    names = _names(entry)
+    names = specs(entry.parameters)
     arguments = [name for name in signature(function).parameters if name != "parameters"]
     for name in parameters:
         if name not in names:
             raise unknown_name(name, [*names, *arguments])
-    return {names[name]: value for name, value in parameters.items()}
 
 
 def _described(spec: Spec, default: Any) -> str:

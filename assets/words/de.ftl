@@ -1223,10 +1223,10 @@ parameter-pendulum-option-upright = steht
 parameter-mass-label = Masse
 parameter-mass-help = Masse des Pendels
 
-parameter-law-label = Ausgang
-parameter-law-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
-parameter-law-option-redefined = neu definiert
-parameter-law-option-composite = zusammengesetzt
+parameter-output-label = Ausgang
+parameter-output-help = was der Regler auf die Bahn bringt: y mit einem Anteil der Durchbiegung, oder die Spitze selbst
+parameter-output-option-redefined = neu definiert
+parameter-output-option-composite = zusammengesetzt
 
 parameter-tip_damping-label = Spitze dämpfen
 parameter-tip_damping-help = Dämpfungsgrad, den die Hüfte dem Balken gibt

@@ -42,7 +42,7 @@ def callable_loop(robot: Robot, kind: Kind, kernel: Kernel, loop: Loop) -> Loop:
         kernel: of the robot and the kind.
         loop: of this kernel.
     """
-    law = law_named(kind.controller)
+    law = law_named(kind.law)
     return loop if law.called is None else CalledLoop(robot, kind, law, kernel, loop)
 
 
@@ -190,7 +190,7 @@ def _seen(robot: Robot, kind: Kind, law: Law) -> Callable[..., Now]:
     values, h = ca.SX.sym("values", kind.table_shape[0], 1), settings["look_ahead"]
     q, v, _ = measure(system, kind, state, settings)
     q, v = look_ahead(system, state, settings, q, v, h)
-    beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
+    beam = beam_estimate(system, state, settings, q, v, h) if kind.output == "composite" else None
     plane = frame.at(settings["plane"])
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     output, gains, limit = view.output, view.gains, settings["torque_limit"]

@@ -130,8 +130,8 @@ def build_kernel(
             error here, of which the message gives file and line; or a space curve for a robot that
             takes none.
     """
-    law = law_named(kind.controller)
-    if not law.suits(system) or (kind.law == "composite" and not law.commands_acceleration):
+    law = law_named(kind.law)
+    if not law.suits(system) or (kind.output == "composite" and not law.commands_acceleration):
         raise CodedError("error.law_does_not_suit", law=law.label)
     if kind.space:
         frame = _space(system, frame, kind)
@@ -164,7 +164,7 @@ def _kernel(
 
 def _space(system: MechanicalSystem, frame: Frame, kind: Kind) -> Frame:
     """The frame of space curves."""
-    if frame.space is None or kind.level_set or kind.law == "composite":
+    if frame.space is None or kind.level_set or kind.output == "composite":
         raise ValueError(f"{system.name}: a space curve cannot be followed here")
     return frame.space
 
@@ -201,7 +201,7 @@ def _advance(
     measured_q, measured_v, reading = measure(system, kind, state, settings)
     measured, h = (measured_q, measured_v), settings["look_ahead"]
     q, v = look_ahead(system, state, settings, measured_q, measured_v, h)
-    beam = beam_estimate(system, state, settings, q, v, h) if kind.law == "composite" else None
+    beam = beam_estimate(system, state, settings, q, v, h) if kind.output == "composite" else None
     view = law_view(system, plane, kind, law, state, settings, values, (q, v), beam)
     command = commanded(law, view)
     wanted, memory = wanted_torque(kind, state, settings, view, command, beam)

@@ -84,7 +84,7 @@ def measured_output(
     """The virtual output of the measured (q, v), at the beginning of the tick."""
     q, v = measured
     y, y_rate = controlled(system, settings, q, v)
-    if kind.law == "composite":
+    if kind.output == "composite":
         beam = beam_estimate(system, state, settings, q, v, ca.SX(0))
         y, y_rate = beam.y, beam.y_rate
     return coordinates(frame, kind, state, settings, values, y, y_rate)[0]
@@ -102,7 +102,7 @@ def lag(system: MechanicalSystem, kind: Kind, settings: Fields) -> ca.SX:
         age += settings["observer_time" if kind.observer else "encoder_filter"]
     if kind.delay:
         age += settings["delay_ticks"] * settings["dt"]
-    if kind.law == "composite":
+    if kind.output == "composite":
         omega1 = settings["model"][system.parameter_names.index("omega1")]
         age += 1 / (settings["tip_prediction"] * omega1)
     return age
@@ -111,7 +111,7 @@ def lag(system: MechanicalSystem, kind: Kind, settings: Fields) -> ca.SX:
 def clock_at(kind: Kind, law: Law, state: Fields, settings: Fields, ahead: ca.SX) -> Clock:
     """The reference point at the beginning of the tick; its rate is that `ahead` [s] later."""
     task = task_at(state, settings, ahead)
-    if kind.law == "composite":
+    if kind.output == "composite":
         task = replace(task, speed=state["speed_chain"][0], acceleration=ca.SX(0))
     return Clock(
         theta=state["theta_ref"],

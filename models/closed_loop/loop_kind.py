@@ -13,7 +13,7 @@ class Kind:
     """The choices that need a kernel of their own; everything else is a run-time setting.
 
     Attributes:
-        controller: name of a law of `models/control/laws`.
+        law: name of a law of `models/control/laws`.
         closed: whether the path is a closed curve.
         level_set: whether λ is the paper's s(y) instead of the signed distance.
         encoder: whether the controller gets quantised angles instead of the exact state.
@@ -21,7 +21,7 @@ class Kind:
             torques, for speed. It is equivalent to the full loop while none of these act.
         space: whether the path is a space curve.
         level: with `level_set`, λ of a path given by an equation; None for that of a conic.
-        law: the controlled output of a flexible robot: "redefined" (with a share α of the
+        output: the controlled output of a flexible robot: "redefined" (with a share α of the
             deflection) or "composite" (the tip, see models/control/composite_control.py).
         across_first: whether a torque limit first reduces the motion along the path; see
             `admissible_along`.
@@ -34,12 +34,12 @@ class Kind:
             the laws of a figure share one vector.
     """
 
-    controller: str
+    law: str
     closed: bool = True
     level_set: bool = False
     encoder: bool = False
     free: bool = False
-    law: str = "redefined"
+    output: str = "redefined"
     across_first: bool = False
     delay: bool = False
     stiction: bool = False

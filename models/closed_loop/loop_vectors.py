@@ -43,14 +43,14 @@ def loop_layouts(system: MechanicalSystem, kind: Kind) -> LoopLayouts:
     Raises:
         ValueError: an unknown law.
     """
-    memory = law_named(kind.controller).memory
+    memory = law_named(kind.law).memory
     return LoopLayouts(
         state=state_layout(system, memory),
         settings=settings_layout(system, kind),
         log=log_layout(system),
         changed=kept_layout(system, kind, memory).size,
         table_shape=kind.table_shape,
-        law=kind.controller,
+        law=kind.law,
     )
 
 
@@ -111,7 +111,7 @@ def settings_layout(system: MechanicalSystem, kind: Kind) -> Layout:
     loop's law, and `Kind.further_gains`.
     """
     p, k = system.p, len(system.parameter_names)
-    own = {gain.name for gain in law_named(kind.controller).own_gains}
+    own = {gain.name for gain in law_named(kind.law).own_gains}
     scalars = (*GAINS, "position", "target", "speed", "ramp", "speed_limit", "tracker_integral")
     flexible = (*composite.GAINS, "strain_noise") if system.modes else ()
     realism = ("torque_limit", "coulomb", "encoder_step", "encoder_filter", "hold_ticks", "dt")

@@ -82,13 +82,11 @@ def check_level_set(parameters: Parameters, curve: Curve) -> None:
         check_level(curve)
 
 
-def kind_of(
-    controller: str, parameters: Parameters, curve: Curve, push: Push | None = None
-) -> Kind:
+def kind_of(law: str, parameters: Parameters, curve: Curve, push: Push | None = None) -> Kind:
     """The kind of loop that these parameters need.
 
     Args:
-        controller: name of a law of `models/control/laws`.
+        law: name of a law of `models/control/laws`.
         curve: the path. While one path blends into another, which may have no level set, λ is the
             signed distance; elsewhere `check_level_set` refuses such a path.
         push: the external action. If it is given and nothing acts, the kind may be `free`, except
@@ -99,29 +97,29 @@ def kind_of(
     encoder = parameters.encoder_counts > 0
     noise = parameters.sensor_noise > 0 or getattr(parameters, "strain_noise", 0.0) > 0
     every_tick = parameters.control_rate * TICK >= 1
-    untouched = push is not None and not push.acts and not is_text(controller)
+    untouched = push is not None and not push.acts and not is_text(law)
     return _kind(
-        controller=controller,
+        law=law,
         closed=curve.closed,
         level_set=(level_set := parameters.across == LEVEL_SET and has_level_set(curve)),
         level=implicit_level(curve) if level_set else None,
         encoder=encoder,
         observer=(encoder or noise) and parameters.observer_time > 0,
-        law=getattr(parameters, "law", "redefined"),
+        output=getattr(parameters, "output", "redefined"),
         space=curve.dimension == 3,
         free=plain and exact and every_tick and untouched,
-        across_first=_gives_way(controller, parameters),
+        across_first=_gives_way(law, parameters),
         delay=parameters.delay > 0,
         stiction=parameters.stiction > 0,
         noise=noise,
     )
 
 
-def _gives_way(controller: str, parameters: Parameters) -> bool:
+def _gives_way(law: str, parameters: Parameters) -> bool:
     """Whether a law gives up speed along the path at a torque limit."""
     if parameters.torque_limit == 0 or parameters.at_limit == "cut":
         return False
-    follows = is_text(controller) or controller == "path_following"
+    follows = is_text(law) or law == "path_following"
     return follows or parameters.at_limit_for == "all"
 
 
@@ -130,7 +128,7 @@ def kernel_of(robot: Robot, kind: Kind) -> Kernel:
 
     Only the latest ones are kept: a compiled loop no longer needs its kernel.
     """
-    return (_typed_kernel if is_text(kind.controller) else _kernel)(robot.core, kind)
+    return (_typed_kernel if is_text(kind.law) else _kernel)(robot.core, kind)
 
 
 def _built(robot: Robot, kind: Kind) -> Kernel:

@@ -24,7 +24,7 @@ class Trajectory:
     """The record of one robot under one control law.
 
     Attributes:
-        controller: name of the control law.
+        law: name of the control law.
         t: time, shape (n,), [s].
         fields: the log by name (models/closed_loop/loop_vectors.py), each shape (n, size); where
             sensors are not exact also `MEASURED`, the joint angles that they read, [rad].
@@ -36,7 +36,7 @@ class Trajectory:
         level_set: whether the first component of ξ is s(y), [m²], instead of a distance, [m].
     """
 
-    controller: str
+    law: str
     t: Array
     fields: dict[str, Array]
     distance: Array
@@ -63,16 +63,16 @@ class Trajectory:
         )
 
 
-def join(controller: str, parts: list[Trajectory]) -> Trajectory:
+def join(law: str, parts: list[Trajectory]) -> Trajectory:
     """Consecutive parts of a run as one trajectory.
 
     Raises:
         ValueError: `parts` is empty.
     """
     if not parts:
-        raise ValueError(f"{controller}: there is nothing to show")
+        raise ValueError(f"{law}: there is nothing to show")
     return Trajectory(
-        controller=controller,
+        law=law,
         t=np.concatenate([part.t for part in parts]),
         fields={
             name: np.concatenate([part.fields[name] for part in parts]) for name in parts[0].fields
@@ -87,7 +87,7 @@ def join(controller: str, parts: list[Trajectory]) -> Trajectory:
 def record(
     robot: Robot,
     log: Layout,
-    controller: str,
+    law: str,
     segments: list[tuple[Array, Curve, bool]],
     dt: float,
     times: Array | None = None,
@@ -107,7 +107,7 @@ def record(
     ]
     held = [np.full(len(part), hold) for part, _, hold in segments]
     return Trajectory(
-        controller=controller,
+        law=law,
         t=np.arange(len(rows), dtype=float) * dt if times is None else times,
         fields=fields,
         distance=np.concatenate(distance),
@@ -186,7 +186,7 @@ def write_csv(
             [f.get(MEASURED, f["q"][:, : robot.system.joints])] if read else []
         )  # exact: as they are
         columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
-        law = f'"{run.controller}"' if "," in run.controller else run.controller
+        law = f'"{run.law}"' if "," in run.law else run.law
         name = law if sides is None else f"{sides[number]},{law}"
         line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"
         columns += 0.0  # turns -0 into 0

@@ -55,7 +55,7 @@ def forecast(robot: Robot, law: str, parameters: Parameters, q: Array) -> Messag
     Source: eqs. (10), (11).
     """
     system = robot.core.system
-    composite = getattr(parameters, "law", "redefined") == "composite"
+    composite = getattr(parameters, "output", "redefined") == "composite"
     if system.n == system.m or composite or not law_named(law).commands_acceleration:
         return None
     if not rank_number(robot, parameters, q, by_model=True) > LEAST_RANK:

@@ -266,7 +266,7 @@ def entrants(robot: str, asked: Sequence[str] = (), only: bool = False) -> list[
         only: whether to leave out OnPath's laws that were not asked for.
     """
     machine = ROBOTS[robot].make(ROBOTS[robot].parameters())
-    composite = getattr(ROBOTS[robot].parameters(), "law", "") == "composite"
+    composite = getattr(ROBOTS[robot].parameters(), "output", "") == "composite"
     rows = list[Row]()
     for name in dict.fromkeys([*asked, *(() if only else LAWS)]):
         law = law_named(name)

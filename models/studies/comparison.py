@@ -167,7 +167,7 @@ class Contest:
         Raises:
             ValueError: there is no such law.
         """
-        law, composite = law_named(name), getattr(self.parameters, "law", "") == "composite"
+        law, composite = law_named(name), getattr(self.parameters, "output", "") == "composite"
         suits = law.suits(self.robot.system) and (law.commands_acceleration or not composite)
         return law.travels and suits
 

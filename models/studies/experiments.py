@@ -270,7 +270,7 @@ def _there_and_back() -> Experiment:
         name="flexible",
         title="Flexible link: there and back along the path",
         make=FLEXIBLE.make,
-        parameters=FlexibleParameters(law="redefined"),
+        parameters=FlexibleParameters(output="redefined"),
         schedule=Schedule(duration=6.0, reverse_at=3.0),
         start=lambda robot, _: _off_the_ellipse(robot),
     )
@@ -291,7 +291,7 @@ def _off_the_ellipse(robot: Robot) -> Array:
 
 def run(
     experiment: Experiment,
-    controller: str,
+    law: str,
     loop: Callable[[Kernel], Loop] = InterpretedLoop,
 ) -> Trajectory:
     """Simulate an experiment under one control law.
@@ -303,16 +303,16 @@ def run(
         One row per millisecond; shorter than the schedule, with `stopped_at`, if the run diverged.
 
     Raises:
-        ValueError: the controller is unknown, the path is out of the robot's reach, or no run is
+        ValueError: the law is unknown, the path is out of the robot's reach, or no run is
             possible from the start.
     """
-    law_named(controller)
+    law_named(law)
     robot, curve = experiment.robot(), experiment.curve()
     check_level_set(experiment.parameters, curve)
-    kind = kind_of(controller, experiment.parameters, curve)
+    kind = kind_of(law, experiment.parameters, curve)
     kernel = kernel_of(robot, kind)
     schedule, start = experiment.schedule, experiment.begin()
-    check_possible(robot, controller, experiment.parameters, robot.rest(start))
+    check_possible(robot, law, experiment.parameters, robot.rest(start))
     running = callable_loop(robot, kind, kernel, loop(kernel))
     scheduled = ScheduledRun(
         robot=robot,
@@ -326,18 +326,18 @@ def run(
     fault: tuple[int, Message] | None = None
     done = 0
     for rows, held in scheduled.parts():
-        fault = fault_in(robot, kernel.log, controller, rows, experiment.parameters)
+        fault = fault_in(robot, kernel.log, law, rows, experiment.parameters)
         if fault is not None:
             tick, reason = fault
             rows = rows[:tick]
-            message = explained(reason, robot, kernel.log, controller, rows, experiment.parameters)
+            message = explained(reason, robot, kernel.log, law, rows, experiment.parameters)
             failed = running.failure if isinstance(running, CalledLoop) else None
             fault = tick, failed or message
         segments.append((rows, curve, held))
         done += len(rows)
         if fault is not None:
             break
-    return _finished(robot, kernel, controller, _joined(segments), experiment, fault)
+    return _finished(robot, kernel, law, _joined(segments), experiment, fault)
 
 
 def _joined(segments: list[tuple[Array, Curve, bool]]) -> list[tuple[Array, Curve, bool]]:
@@ -352,7 +352,7 @@ def _joined(segments: list[tuple[Array, Curve, bool]]) -> list[tuple[Array, Curv
 def _finished(
     robot: Robot,
     kernel: Kernel,
-    controller: str,
+    law: str,
     segments: list[tuple[Array, Curve, bool]],
     experiment: Experiment,
     fault: tuple[int, Message] | None,
@@ -360,9 +360,9 @@ def _finished(
     """The trajectory of a run, cut off at the fault if there was one."""
     dt = time_step(experiment.parameters)
     level_set = experiment.parameters.across == LEVEL_SET and experiment.curve().equation is None
-    whole = record(robot, kernel.log, controller, segments, dt)
+    whole = record(robot, kernel.log, law, segments, dt)
     whole = dataclasses.replace(whole, level_set=level_set)
-    kind = kind_of(controller, experiment.parameters, experiment.curve())
+    kind = kind_of(law, experiment.parameters, experiment.curve())
     if kind.encoder or kind.noise:
         settings = settings_vector(robot, kernel, experiment.parameters, experiment.curve(), FREE)
         angles = readings(robot.system, kind, kernel.settings, settings, whole.fields["q"])
@@ -381,7 +381,7 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     """
     held = experiment.schedule.hold_from < experiment.schedule.hold_to
     laws = {
-        run.controller: {
+        run.law: {
             **(_summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)),
             "never_held": bool(never_held(experiment, run)),
         }

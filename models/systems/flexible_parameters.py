@@ -51,7 +51,7 @@ class FlexibleParameters(Parameters):
         group="basic",
         label="α",
     )
-    law: str = choice(
+    output: str = choice(
         "composite",  # the only one that is stable under every pull
         ("redefined", "composite"),
         "what the controller puts on the path: y with a share of the deflection, or the tip itself",

@@ -229,7 +229,7 @@ def caution(parameters: Parameters) -> Message | None:
     chosen = own_parameters(FlexibleParameters, parameters)
     measured = chosen.encoder_counts > 0 or chosen.sensor_noise > 0
     filtered = measured and chosen.observer_time == 0
-    slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.law]
+    slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.output]
     if chosen.control_rate >= slowest:
         return None
     return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})

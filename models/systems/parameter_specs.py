@@ -14,6 +14,8 @@ MINUS = "\N{MINUS SIGN}"  # typesetters and phones replace a hyphen by it
 _WITH_COMMA = re.compile(r"[-+]?\d+,\d+")
 LONGEST_NAME = 60  # [characters] of an unknown name in a message
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
+FORMER_NAMES = {"law": "output"}
+"""Former name of a parameter -> its present one, which is suggested and read in stored set-ups."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +138,10 @@ def path_rise() -> Any:
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
     """The error for an unknown name, which suggests the nearest known ones; a long one is cut."""
     name = name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME]}…"
-    near = get_close_matches(name, known, n=3, cutoff=0.4) or get_close_matches(
-        name.lower(), known, n=3, cutoff=0.3
+    near = (
+        [each for each in known if each == FORMER_NAMES.get(name)]
+        or get_close_matches(name, known, n=3, cutoff=0.4)
+        or get_close_matches(name.lower(), known, n=3, cutoff=0.3)
     )
     names = ", ".join(near or known)
     hint = Message("error.did_you_mean" if near else "error.there_are", {"names": names})

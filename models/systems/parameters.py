@@ -175,7 +175,7 @@ def look_ahead_time(parameters: Parameters) -> float:
     Composite control always looks half a tick ahead, because its filters advance in every tick;
     with half an interval of 5 ms it would be unstable.
     """
-    composite = getattr(parameters, "law", "") == "composite"
+    composite = getattr(parameters, "output", "") == "composite"
     if parameters.look_ahead == "half_interval" and not composite:
         return 1 / parameters.control_rate / 2
     return time_step(parameters) / 2

@@ -122,11 +122,11 @@ def _yardstick(folder: Path, repeats: int) -> None:
 
 
 def _prepared(
-    entry: RobotEntry, parameters: Parameters, controller: str, lean: bool
+    entry: RobotEntry, parameters: Parameters, law: str, lean: bool
 ) -> dict[str, Callable[[], object]]:
     """The calls to time, of `TICKS` ticks."""
     robot, curve = entry.make(parameters), circle(0.05)
-    kernel = kernel_of(robot, kind_of(controller, parameters, curve, FREE if lean else None))
+    kernel = kernel_of(robot, kind_of(law, parameters, curve, FREE if lean else None))
     start = robot.rest(robot.frame.lift(curve.at(np.array(0.0))))
     loops: dict[str, Loop] = {
         "interpreted": InterpretedLoop(kernel),

@@ -104,7 +104,7 @@ def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     tab.enter("Drawn larger", "5")
     wait_for(lambda: lab.session.exaggeration == 5.0)
     tab.enter("α", "0.95")
-    wait_for(lambda: lab.session.parameters.law == "redefined")  # type: ignore[attr-defined]
+    wait_for(lambda: lab.session.parameters.output == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: str(UNSTABLE) in tab.said())
     assert deflection(tab) > 0.01  # the last instant before: seen at a glance
     bar = tab.page.get_by_text("zero dynamics unstable")
@@ -128,7 +128,7 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     browser: Browser, server: LabServer
 ) -> None:
     tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
-    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
     wait_for(tab.is_built)
     tab.ask(c.SetRunning(True))
     time = tab.session.time
@@ -156,7 +156,7 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
 
 def blow_up(tab: Tab) -> None:
     """Make the actual tip the output of the flexible robot, until it has stopped."""
-    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
     wait_for(tab.is_built)
     tab.ask(c.SetRunning(True))
     tab.ask(c.SetParameter("alpha", 1.0))

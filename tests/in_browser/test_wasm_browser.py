@@ -48,7 +48,7 @@ CASES = [
     *((robot, law, {}) for robot in ROBOTS for law in NAMES),
     *(("five_bar", law, {}) for law in laws_for() if law not in NAMES),
     ("five_bar", TYPED, {}),
-    ("flexible", "path_following", {"law": "composite", "modes": 2}),
+    ("flexible", "path_following", {"output": "composite", "modes": 2}),
     ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 0.002}),
 ]
 QUICK = [
@@ -99,8 +99,8 @@ def assert_same_run(page: Page, name: str, law: str, values: dict[str, Any], cur
     A difference of `FEW_BITS` at the start tells how much rounding makes of this run. It ends where
     it has diverged: there, lab and figure stop it.
     """
-    output = {"law": "redefined"} if name == "flexible" else {}  # composite diverges in some kinds
-    parameters: Parameters = replace(ROBOTS[name].parameters(), **{**output, **values})
+    calm = {"output": "redefined"} if name == "flexible" else {}  # composite diverges in some kinds
+    parameters: Parameters = replace(ROBOTS[name].parameters(), **{**calm, **values})
     robot = ROBOTS[name].make(parameters)
     kernel = kernel_of(robot, kind_of(law, parameters, curve))
     start = robot.frame.lift(curve.at(np.array(0.3)))

@@ -25,7 +25,7 @@ SPEED = 2.0  # [rad/s], as the lesson's scenes have it
 @cache
 def going(who: str = FOLLOWER, until: float = 10.0, **settings: Any) -> Driven:
     """Round the circle and nothing else."""
-    return Driven(who, "flexible", **{"speed": SPEED, "law": "redefined"} | settings).run(until)
+    return Driven(who, "flexible", **{"speed": SPEED, "output": "redefined"} | settings).run(until)
 
 
 def gone(settings: dict[str, Any], until: float = 10.0) -> Driven:
@@ -36,18 +36,18 @@ def gone(settings: dict[str, Any], until: float = 10.0) -> Driven:
 
 
 def test_the_link_bends_four_times_as_far_at_twice_the_speed() -> None:
-    runs = [gone({"law": "composite", "speed": speed}) for speed in (2.0, 4.0)]
+    runs = [gone({"output": "composite", "speed": speed}) for speed in (2.0, 4.0)]
     bent = [largest(robot.deflection, 2, 10) for robot in runs]
     assert_stated(said(LESSON, "You should get # mm and # mm: *four* times."), bent)
     assert_stated(said(LESSON, "At 2 rad/s it is # mm, too little to see."), bent[:1])
     (near,) = said(LESSON, "both robots keep their tips within about # mm of the path")
     for who in (FOLLOWER, TRACKER):
-        off = largest(going(who, law="composite", speed=4.0).distance, 2, 10)
+        off = largest(going(who, output="composite", speed=4.0).distance, 2, 10)
         assert agrees(near, off) and off > largest(runs[0].distance, 2, 10)
 
 
 def test_a_quiet_output() -> None:
-    robot = Driven(FOLLOWER, "flexible", speed=SPEED, law="redefined", alpha=0.0).run(2.0)
+    robot = Driven(FOLLOWER, "flexible", speed=SPEED, output="redefined", alpha=0.0).run(2.0)
     robot.pull(20, 0).run(2.5).let_go().run(8.0)
     jolt = said(LESSON, "a jolt of # mJ as the hand grips, # mJ while it pulls")
     assert_stated(jolt, [largest(robot.energy, 2, 2.1), largest(robot.energy, 2.2, 2.5)])
@@ -72,7 +72,7 @@ def test_more_alpha_less_error(alpha: str) -> None:
 
 @cache
 def past_the_limit(law: str) -> Driven:
-    robot = Driven(law, "flexible", speed=SPEED, law="redefined", alpha=0.5).run(3.0)
+    robot = Driven(law, "flexible", speed=SPEED, output="redefined", alpha=0.5).run(3.0)
     return robot.set(alpha=0.75).run(7.0)
 
 
@@ -106,7 +106,7 @@ def test_past_the_limit() -> None:
 
 def stepped(alpha: float, modes: int = 3) -> float:
     """From the step to the stop, [s]."""
-    robot = Driven(FOLLOWER, "flexible", speed=SPEED, law="redefined", alpha=0.5, modes=modes)
+    robot = Driven(FOLLOWER, "flexible", speed=SPEED, output="redefined", alpha=0.5, modes=modes)
     robot.run(3.0).set(alpha=alpha).run(6.0)
     assert robot.stopped is not None
     return robot.stopped - 3
@@ -146,15 +146,15 @@ def test_composite_control() -> None:
         "the tip is at most # mm off the path, compared with # at α = 0.5. It needs a good model:"
         " with the beam's frequency wrong by 10 % it is up to # mm.",
     )
-    wrong = [{"law": "composite", "error_omega1": error} for error in (-10.0, 10.0)]
-    settings: list[dict[str, Any]] = [{"law": "composite"}, {"alpha": 0.5}, *wrong]
+    wrong = [{"output": "composite", "error_omega1": error} for error in (-10.0, 10.0)]
+    settings: list[dict[str, Any]] = [{"output": "composite"}, {"alpha": 0.5}, *wrong]
     good, half, *off = (largest(gone(each).distance, 2, 10) for each in settings)
     assert_stated(texts, [good, half, max(off)])
 
 
 @cache
 def held(law: str, begin: float, output: str) -> Driven:
-    robot = Driven(law, "flexible", speed=SPEED, law=output, alpha=0.5).run(begin).hold()
+    robot = Driven(law, "flexible", speed=SPEED, output=output, alpha=0.5).run(begin).hold()
     return robot.run(begin + 2.2)
 
 
@@ -172,7 +172,7 @@ def test_holding_the_tip() -> None:
 @cache
 def turned(law: str, begin: float, k5: float) -> tuple[float, float]:
     """Largest distance and deflection, [mm], from the reversal on."""
-    robot = Driven(law, "flexible", speed=SPEED, law="redefined", alpha=0.5, K5=k5).run(begin)
+    robot = Driven(law, "flexible", speed=SPEED, output="redefined", alpha=0.5, K5=k5).run(begin)
     robot.set(speed=-SPEED).run(begin + 4.5)
     distance, deflection = robot.distance, robot.deflection
     return largest(distance, begin, begin + 4.5), largest(deflection, begin, begin + 4.5)
@@ -245,7 +245,7 @@ def test_composite_control_is_told_with_its_window() -> None:
         " # mm off.)"
     )
     found, whole = [2.0, 6.0], list[float]()
-    for settings in ({"law": "composite"}, {"alpha": 0.5}):
+    for settings in ({"output": "composite"}, {"alpha": 0.5}):
         log = flexible(**settings)
         distance, late = 1e3 * log.distance, log.t >= 2
         found += [float(np.sqrt(np.mean(distance[late] ** 2))), float(distance[late].max())]

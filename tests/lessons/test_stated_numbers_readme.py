@@ -22,8 +22,8 @@ pytestmark = pytest.mark.thorough
 FOLLOWER, TRACKER = "path_following", "trajectory_tracking"
 
 
-def did(name: str, controller: str, /, **settings: object) -> Trajectory:
-    return run(experiments()[name].with_values(settings), controller)
+def did(name: str, law: str, /, **settings: object) -> Trajectory:
+    return run(experiments()[name].with_values(settings), law)
 
 
 def millimetres(distance: np.ndarray) -> float:
@@ -64,7 +64,7 @@ def test_a_wall_gives_way() -> None:
 def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
     grams, stopped, rms, begin, without = stated_in_readme(
         "hangs # g on the tip, of which no controller knows: with `alpha=0.5` the run is stopped"
-        " after # s, and `law=composite` is # mm rms off from # s on, for the most part by the"
+        " after # s, and `output=composite` is # mm rms off from # s on, for the most part by the"
         " weight (# mm without it)"
     )
     load = value(grams) / 1e3
@@ -75,7 +75,7 @@ def test_twenty_grams_on_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
         with monkeypatch.context() as patch:
             patch.setattr(tip_load, "GRAVITY", gravity)
             patch.setattr(flexible_robot, "_robot", lru_cache(flexible_robot._made))
-            tip = did("flexible", FOLLOWER, law="composite", payload=load)
+            tip = did("flexible", FOLLOWER, output="composite", payload=load)
         found.append(1e3 * float(np.sqrt(np.mean(tip.distance[tip.t >= value(begin)] ** 2))))
     assert_stated([stopped, rms, without], found)
 

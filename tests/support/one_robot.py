@@ -42,7 +42,7 @@ class Driven:
     """A robot that starts at rest at the right-hand end of the default circle, and its log.
 
     Args:
-        who: name of the controller.
+        who: name of the law.
         robot: name of the robot.
         settings: parameters that differ from the lab's.
     """

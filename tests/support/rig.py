@@ -94,7 +94,7 @@ class Rig:
         values = {"plant": self.balanced, "model": self.balanced, **DEFAULTS, **changes}
         values.setdefault("look_ahead", values["dt"] / 2)
         values.setdefault("plane", Plane().numbers)
-        own = law_named(kind.controller).own_gains
+        own = law_named(kind.law).own_gains
         values = {gain.name: gain.default for gain in own} | values
         return self.kernel(kind).settings.pack(values)
 
@@ -106,7 +106,7 @@ class Rig:
         values |= {"speed_ref": 0, "integral": (0, 0), "u": (0, 0), "phase": 0}
         values |= {"estimate": q, "estimate_rate": v}
         values |= {"encoder": q, "encoder_rate": v, "ticks": 0, "queue": np.zeros(2 * LONGEST)}
-        values |= {name: 0 for name, _ in LAWS[kind.controller].memory}
+        values |= {name: 0 for name, _ in LAWS[kind.law].memory}
         return self.kernel(kind).state.pack({**values, **changes})
 
     def on_path(self, kind: Kind, curve: Curve, theta: float, rate: float, **changes: Any) -> Array:

@@ -23,7 +23,7 @@ from onpath.models.systems.robots import Robot
 
 def suits(law: str, robot: Robot, parameters: Parameters) -> bool:
     """Whether a law can be used with a robot and its controlled output."""
-    entry, composite = law_named(law), getattr(parameters, "law", "") == "composite"
+    entry, composite = law_named(law), getattr(parameters, "output", "") == "composite"
     return entry.suits(robot.system) and (entry.commands_acceleration or not composite)
 
 
@@ -104,7 +104,7 @@ class LawChanges:
 
     def _goes_on(self, side: str, run: ClosedLoopRun, key: Key) -> bool:
         """Whether a law has its loop; if it cannot have one, the side gets a new lab's law."""
-        if run.law != key[1].controller:  # it has just been changed
+        if run.law != key[1].law:  # it has just been changed
             return True
         ready = self._is_ready(key)
         if ready is None:
@@ -121,7 +121,7 @@ class LawChanges:
         self._asked = bool(keys)
         for robot, kind in keys:
             for push in (FREE, None):
-                self._store.prepare(robot, kind_of(kind.controller, parameters, curve, push))
+                self._store.prepare(robot, kind_of(kind.law, parameters, curve, push))
 
     def _is_ready(self, key: Key) -> bool | None:
         """Whether a loop is ready; None if it cannot be made, of which the user is told."""

@@ -172,7 +172,7 @@ class LoopCache:
         try:
             kernel = kernel_of(robot, kind)
         except Exception as error:
-            typed = is_text(kind.controller)  # by a user; another one is a programmer's
+            typed = is_text(kind.law)  # by a user; another one is a programmer's
             log.warning("a law cannot be used: %s", error.__cause__ or error, exc_info=not typed)
             refused = error if isinstance(error, ValueError) else None
             return without_frames(refused or CodedError("error.law_cannot_run")), None
@@ -180,7 +180,7 @@ class LoopCache:
             prepare_speed_limit(robot)
             return self._translate(kernel), None
         except Exception as error:  # labs use the interpreted loop
-            log.warning("%s is not compiled, it is interpreted: %s", kind.controller, error)
+            log.warning("%s is not compiled, it is interpreted: %s", kind.law, error)
             return InterpretedLoop(kernel), message_of(error)
 
 

@@ -21,10 +21,11 @@ from onpath.models.control.settable import specs
 from onpath.models.errors import Message
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import FORMER_NAMES
 
 UNTIL = date(2027, 9, 30)
-"""These readers stay until the end of the academic year. Then the present `CHANGES` and `RENAMED`
-may be deleted, and a set-up that needs them is refused as invalid."""
+"""These readers stay until the end of the academic year. Then the present `CHANGES`, `RENAMED` and
+`FORMER_NAMES` may be deleted, and a set-up that needs them is refused as invalid."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +83,10 @@ def brought_up(robots: Mapping[str, RobotSetup], version: int) -> dict[str, Robo
     for name in dict.fromkeys([*ROBOTS, *robots]):
         former = former_defaults(name, version) if name in ROBOTS else {}
         robot = robots.get(name, RobotSetup())
+        own = {FORMER_NAMES.get(name, name): value for name, value in robot.parameters.items()}
         parameters = {
             parameter: RENAMED.get((parameter, value), value)
-            for parameter, value in {**former, **robot.parameters}.items()
+            for parameter, value in {**former, **own}.items()
         }
         if parameters != robot.parameters:
             current[name] = msgspec.structs.replace(robot, parameters=parameters)

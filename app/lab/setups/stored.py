@@ -20,6 +20,7 @@ from onpath.models.control.settable import specs
 from onpath.models.control.sides import checked_laws
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameter_specs import FORMER_NAMES
 
 T = TypeVar("T")
 
@@ -61,6 +62,7 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
     except msgspec.ValidationError:
         return data, ()
     known = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
+    known |= FORMER_NAMES.keys()
     gains = {n for robot in stored.robots.values() for n in robot.parameters if n not in known}
     chosen = stored.laws.items()
     absent = {side: law for side, law in chosen if not is_text(law) and law not in LAWS}

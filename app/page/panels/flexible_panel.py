@@ -115,7 +115,7 @@ class FlexiblePanel:
         self._shown: tuple[float, float, bool, tuple[int, float]] | None = None
         with gui.add_folder(words("flexible.title")):
             output = ParameterWidgets(
-                gui, words, post=self._set, names=["law", "alpha"], first=first
+                gui, words, post=self._set, names=["output", "alpha"], first=first
             )
             self._widgets = [output]
             self._bar = gui.add_html("")
@@ -139,7 +139,7 @@ class FlexiblePanel:
             widgets.follow(snapshot)
         self._larger.follow(snapshot)
         alpha, critical = float(parameters["alpha"]), self._critical_alpha(snapshot)
-        used = parameters["law"] == "redefined"
+        used = parameters["output"] == "redefined"
         beam = int(parameters["modes"]), float(parameters["zeta"])
         shown = alpha, critical, used, beam
         if shown != self._shown:
@@ -162,7 +162,7 @@ class FlexiblePanel:
         """Post a command; changing alpha also selects output redefinition, which uses it."""
         self._post(command)
         if isinstance(command, c.SetParameter) and command.name == "alpha":
-            self._post(c.SetParameter("law", "redefined"))
+            self._post(c.SetParameter("output", "redefined"))
 
 
 def deflections(snapshot: PageSnapshot, words: Words) -> str:

@@ -319,6 +319,7 @@ def test_bad_input_gives_one_line_and_code_two(
         (["experiment", "obstructoin"], "obstruction"),
         (["experiment", "obstruction", "--set", "k1=1"], "did you mean K1"),
         (["experiment", "obstruction", "--set", "holdfrom=1"], "hold_from"),
+        (["experiment", "flexible", "--set", "law=redefined"], "did you mean output?"),
         (["experiment", "obstruction", "--contrller", "both"], "--controller"),
         (["experiment", "obstruction", "--controller", "pid"], "unknown law 'pid'"),
         (["experiment", "obstruction", "--law", "path_folowing"], "did you mean path_following"),

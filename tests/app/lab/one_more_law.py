@@ -42,7 +42,7 @@ def test_both_loops_have_the_same_bits(name: str) -> None:
     entry = ROBOTS[name]
     parameters = with_values(entry.parameters(), {"reach": 3.0})
     if name == "flexible":
-        parameters = replace(parameters, law="redefined")  # type: ignore[call-arg]
+        parameters = replace(parameters, output="redefined")  # type: ignore[call-arg]
     robot, curve = entry.make(parameters), circle(0.05)
     kernel = kernel_of(robot, kind_of(LAW, parameters, curve))
     start = robot.rest(robot.frame.lift(curve.at(np.array(0.3))) * 1.002)

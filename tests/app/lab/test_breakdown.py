@@ -19,7 +19,7 @@ from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 def blown_up() -> Lab:
     """The flexible robot, whose actual tip has become the output after a while."""
     lab = new_lab()
-    do(lab, c.ChooseRobot("flexible"), c.SetParameter("law", "redefined"))
+    do(lab, c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
     run(lab, 1.5)
     do(lab, c.SetParameter("alpha", 1.0))
     run(lab, 0.5)

@@ -73,7 +73,7 @@ class SlowCache(LoopCache):
     ready = False
 
     def find(self, robot: Robot, kind: Kind) -> Loop | None:
-        known = self.ready or kind.controller in DEFAULT_LAWS.values()
+        known = self.ready or kind.law in DEFAULT_LAWS.values()
         return super().find(robot, kind) if known else None
 
 
@@ -153,7 +153,7 @@ def test_history_is_replayed_to_the_last_bit_across_changes() -> None:
                 row = own.shown()
                 seen.append((side, lab.session.time, row["q"].copy(), row["u"].copy()))
     runs = replay(lab.session.robot, lab.session.history.all())
-    names = [trajectory.controller for trajectory in runs[LEFT]]
+    names = [trajectory.law for trajectory in runs[LEFT]]
     assert names == ["trajectory_tracking", WITH_MEMORY, "set_point", "trajectory_tracking"]
     fields = {
         side: {n: np.concatenate([p.fields[n] for p in parts]) for n in ("q", "u")}
@@ -189,7 +189,7 @@ def test_going_on_from_before_a_change_and_undoing_that() -> None:
     assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}  # those of now
     for side, own in lab.session.runs.items():
         drive = past.drives[side]
-        assert drive.kind.controller == DEFAULT_LAWS[side]
+        assert drive.kind.law == DEFAULT_LAWS[side]
         assert np.array_equal(own.fields()["q"], drive.state[:2])
         assert own.fields()["theta_ref"] == own.fields()["theta"]
     told = [(event.detail, event.sides) for event in lab.session.events if event.name == "law"]

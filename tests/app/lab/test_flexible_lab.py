@@ -97,7 +97,7 @@ def test_going_on_from_the_past_is_the_same_motion_again() -> None:
 
 
 def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
-    lab = flexible(1.0, law="redefined")
+    lab = flexible(1.0, output="redefined")
     own = lab.session.parameters
     assert isinstance(own, FlexibleParameters)
     critical = critical_alpha(own, lab.session.runs[FOLLOWER].shown()["q"][:3])

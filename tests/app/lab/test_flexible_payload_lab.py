@@ -76,7 +76,7 @@ def test_going_back_to_before_the_load_goes_on_with_it() -> None:
 
 def test_a_typed_law_goes_on_too() -> None:
     lab = flexible_lab(0.2)
-    do(lab, c.SetParameter("law", "redefined"))
+    do(lab, c.SetParameter("output", "redefined"))
     for side in SIDES:
         do(lab, c.TypeLaw(side, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
     run(lab, 0.5)

@@ -31,13 +31,14 @@ from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.former import CHANGES, DEFAULTS, Change, former_defaults
 from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.setups.stored import from_data, to_data
+from onpath.app.lab.setups.stored import from_data, to_data, without_absent_laws
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.app.storage.records import Records, file_url
 from onpath.models.control.settable import value_of, values_of
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
+from onpath.models.systems.parameter_specs import FORMER_NAMES
 from tests.support.built_in import built_in_course
 from tests.support.checkout import ROOT
 from tests.support.lab import do, new_lab, run, states, store, y
@@ -60,7 +61,7 @@ CODES: dict[str, tuple[str, dict[str, dict[str, Any]]]] = {
     ),
     "flexible link": (
         "ONPATH1-VNDISD44OGAOD522UATZBIYPFXFGAALOAQGDP5HYVAC6TRM2RDIBGSZNAA-2FWQ3ZY",
-        {"five_bar": {"control_rate": 100}, "flexible": {"law": "redefined", "alpha": 0.25}},
+        {"five_bar": {"control_rate": 100}, "flexible": {"output": "redefined", "alpha": 0.25}},
     ),
     "K3 with a flexible link": (
         "ONPATH1-VPDBKH5IOEAPFARJFBKIATWCCKV3KAA-GBN4THY",
@@ -95,7 +96,9 @@ def held(lab: Lab) -> dict[str, np.ndarray]:
 
 
 def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
-    return {**WRITTEN["defaults"][robot], **own}
+    """A robot's parameters as they were written, by their present names."""
+    values: dict[str, Any] = {**WRITTEN["defaults"][robot], **own}
+    return {FORMER_NAMES.get(name, name): value for name, value in values.items()}
 
 
 @pytest.mark.thorough
@@ -146,7 +149,7 @@ def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
 def test_a_default_that_has_changed_has_a_line(robot: str) -> None:
     present = values_of(ROBOTS[robot].parameters())
     then = former_defaults(robot, WRITTEN["version"])
-    for name, value in WRITTEN["defaults"][robot].items():
+    for name, value in as_then(robot, {}).items():
         assert then.get(name, present[name]) == value, f"add a line to CHANGES for {name}"
 
 
@@ -294,6 +297,21 @@ def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     do(lab, c.CloseLesson())
     assert lab.session.parameters.K1 == 900.0 and lab.session.editor.design.name == "edited"
     records.close()
+
+
+# What the flexible robot controls was called `law`, now `output`.
+
+
+def test_a_lab_that_called_the_output_law_is_restored_and_stored_with_its_new_name() -> None:
+    old = {"benches": {"flexible": {"parameters": {"law": "redefined"}}}, "robot": "flexible"}
+    remaining, absent = without_absent_laws({"defaults": DEFAULTS, **old})
+    assert absent == () and from_data(remaining) == from_data({"defaults": DEFAULTS, **old})
+    lab, kept = new_lab(), list[dict[str, Any]]()
+    put_back(lab, {"setup": {"defaults": DEFAULTS, **old}, "lessons": {}, "before": None})
+    assert value_of(lab.session.parameters, "output") == "redefined"
+    keep(lab, lambda state: kept.append(state()))
+    stored = {"parameters": {"output": "redefined"}}
+    assert kept[0]["setup"]["benches"]["flexible"] == stored
 
 
 # The plant unit_modes was called as_printed.

@@ -273,8 +273,8 @@ def test_the_next_loop_is_for_the_lab_that_has_taken_least(
         number = labs.index(lab)  # type: ignore[arg-type]
         waiting = [n for n, keys in last.items() if set(keys) - made]
         assert spent[number] == min(spent[n] for n in waiting)
-        assert int(kind.controller) == next(k for k in last[number] if k not in made)
-        made.add(int(kind.controller))
+        assert int(kind.law) == next(k for k in last[number] if k not in made)
+        made.add(int(kind.law))
         store._keep(task[1], CodedError("error.law_cannot_run"))
         spent[number] += 1.0 + number
         store._spent[labs[number]] = spent[number]

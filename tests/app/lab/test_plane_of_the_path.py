@@ -55,7 +55,7 @@ def flexible(**plane: float) -> Lab:
 
 
 def test_an_experiment_follows_the_ellipse_of_its_numbers() -> None:
-    values = {"law": "composite", "duration": 2.5, "reverse_at": 0, **PLANE}
+    values = {"output": "composite", "duration": 2.5, "reverse_at": 0, **PLANE}
     trajectory = run_experiment(experiments()["flexible"].with_values(values), "path_following")
     late = trajectory.t > 2
     distance = off_the_ellipse(trajectory.fields["y"][late][::20], **PLANE)

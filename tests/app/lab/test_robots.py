@@ -303,8 +303,8 @@ def test_what_draws_and_simulates_knows_no_single_robot() -> None:
 @pytest.mark.parametrize("name", ["position", "obstruction"])
 def test_the_experiments_can_be_done_with_it(entry: RobotEntry, name: str) -> None:
     chosen = experiments(entry.name)[name].with_values({"duration": "0.4", "r": "0.04"})
-    for controller in DEFAULT_LAWS.values():
-        log = run(chosen, controller)
+    for law in DEFAULT_LAWS.values():
+        log = run(chosen, law)
         assert log.t[-1] > 0.3 and np.isfinite(log.distance).all()
 
 

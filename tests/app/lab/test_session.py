@@ -337,8 +337,8 @@ def test_parameters_within_their_ranges_are_packed_to_finite_numbers(data: st.Da
             values = st.sampled_from(spec.options) if spec.options else bounds
             parameters = changed(parameters, name, data.draw(values))
     robot, curve = entry.make(parameters), presets()["ellipse"].curve
-    for controller in DEFAULT_LAWS.values():
-        kernel = kernel_of(robot, kind_of(controller, parameters, curve))
+    for law in DEFAULT_LAWS.values():
+        kernel = kernel_of(robot, kind_of(law, parameters, curve))
         assert np.isfinite(settings_vector(robot, kernel, parameters, curve, FREE)).all()
 
 

@@ -207,7 +207,7 @@ def test_history_replay_and_files() -> None:
             seen.append((lab.session.time, lab.session.runs[LEFT].shown()["u"].copy()))
     history = lab.session.history.all()
     parts = replay(lab.session.robot, history)[LEFT]
-    assert [part.controller for part in parts] == [CHASING, "set_point", SLOW]
+    assert [part.law for part in parts] == [CHASING, "set_point", SLOW]
     u = np.concatenate([part.fields["u"] for part in parts])
     for time, torque in seen:
         assert np.array_equal(u[round(time * 1e3) - 1], torque)
@@ -244,11 +244,11 @@ def test_it_goes_with_the_robot_if_it_suits_and_else_the_usual_law_comes() -> No
 def test_torques_for_an_output_that_takes_none() -> None:
     """Composite control takes accelerations alone; the parameter can be changed under a law."""
     lab, law = Lab(STORE), "u1 = -xi; u2 = 0; u3 = 0"
-    do(lab, c.ChooseRobot(FLEXIBLE.name), c.SetParameter("law", "redefined"))
+    do(lab, c.ChooseRobot(FLEXIBLE.name), c.SetParameter("output", "redefined"))
     do(lab, c.TypeLaw(LEFT, law))
     run(lab, 0.05)
     assert lab.session.laws[LEFT] == law
-    do(lab, c.SetParameter("law", "composite"))
+    do(lab, c.SetParameter("output", "composite"))
     run(lab, 0.1)
     assert lab.session.laws == DEFAULT_LAWS and "not possible" in lab.message
     do(lab, c.TypeLaw(LEFT, law))

@@ -61,11 +61,11 @@ def arguments(draw: st.DrawFn, robot: str) -> tuple[str, str, dict[str, Any]]:
         value = st.sampled_from(spec.options) if spec.options else st.floats(low, high)
         drawn = draw(value)
         own[name] = drawn if spec.options else float(f"{drawn:.4g}")
-    if "law" in known:
-        own |= draw(st.sampled_from([{}, {"law": "redefined"}]))
+    if "output" in known:
+        own |= draw(st.sampled_from([{}, {"output": "redefined"}]))
     parameters = ROBOTS[robot].parameters(**own)
     system = ROBOTS[robot].make(parameters).system
-    composite = getattr(parameters, "law", "") == "composite"
+    composite = getattr(parameters, "output", "") == "composite"
     laws = [
         name
         for name in LAWS
@@ -74,13 +74,9 @@ def arguments(draw: st.DrawFn, robot: str) -> tuple[str, str, dict[str, Any]]:
     return draw(st.sampled_from(PATHS)), draw(st.sampled_from(laws)), own
 
 
-def public(own: dict[str, Any]) -> dict[str, Any]:
-    return {"output" if name == "law" else name: value for name, value in own.items()}
-
-
 def in_python(robot: str, path: str, law: str, own: dict[str, Any]) -> np.ndarray:
     """End-points at the ends of ticks, a row each."""
-    run = onpath.simulate(robot, path, law, duration=SECONDS, **public(own))
+    run = onpath.simulate(robot, path, law, duration=SECONDS, **own)
     assert run.stopped_at is None
     return run.y
 
@@ -151,7 +147,7 @@ def test_same_arguments_same_motion(
         assert here == pytest.approx(there, abs=1e-9)  # digits of the file
         assert np.array_equal(here[-1], in_the_lab(robot, path, law, own))
         named = own if own.keys() & NEWCOMER.keys() else {**own, "speed": 3.0}
-        given = figure_of(monkeypatch, tmp_path, robot, law, paths=path, **public(named))
+        given = figure_of(monkeypatch, tmp_path, robot, law, paths=path, **named)
         expected = in_python(robot, path, law, named)[-1]
         assert np.array_equal(in_a_figure(given, own), expected)
 

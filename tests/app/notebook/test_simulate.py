@@ -110,7 +110,7 @@ def test_a_hand_pulls_towards_its_place_while_it_does() -> None:
 
 def test_output_of_the_flexible_robot_can_be_chosen() -> None:
     run = onpath.simulate("flexible", output="composite", duration=0.05)
-    assert getattr(run.experiment.parameters, "law", None) == "composite"
+    assert getattr(run.experiment.parameters, "output", None) == "composite"
 
 
 @pytest.mark.parametrize("robot", onpath.robots())
@@ -122,7 +122,7 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
     )
     for name, text in listed.items():
         wrong: Any = {name: "no such value"}
-        with pytest.raises(ValueError, match=re.escape(name.replace("output", "law"))):
+        with pytest.raises(ValueError, match=re.escape(name)):
             onpath.simulate(robot, **wrong)
         assert re.match(r"\S+, (one of|\S+ to \S+)", text)
     assert "output" in onpath.parameters(FLEXIBLE.name)

@@ -77,11 +77,10 @@ def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         onpath.figure(file, "flexible", output="redefined", alpha=0.3, **circle)
-    with pytest.raises(ValueError, match="unknown parameter 'law': did you mean laws"):
+    with pytest.raises(ValueError, match="unknown parameter 'law': did you mean output"):
         onpath.figure(file, "flexible", law="redefined", **circle)
-    assert (
-        run_command(["export", "figure", str(file), "--robot=flexible", "--set=law=redefined"]) == 0
-    )
+    command = ["export", "figure", str(file), "--robot=flexible", "--set=output=redefined"]
+    assert run_command(command) == 0
 
 
 @pytest.mark.parametrize("command", [["experiment", "obstruction"], ["compare"]])

@@ -137,7 +137,7 @@ def test_the_page_says_that_a_lab_is_not_kept_and_when_it_is_again(
             lab,
             c.ChoosePath("clover"),
             c.SetParameter("K1", 444),
-            c.SetParameter("law", "nonsense"),
+            c.SetParameter("output", "nonsense"),
         )
         refusal = lab.message
         until(lambda: words("keep.failed") in page(lab))

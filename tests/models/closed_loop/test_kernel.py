@@ -24,7 +24,7 @@ from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.bench.reference import LANES, reference_loop
 from tests.support.rig import DEFAULTS, FOLLOWING, TRACKING, Rig, end_point
 
-BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
+BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.law)
 CIRCLE = circle(0.05)
 TURN = 2 * np.pi
 
@@ -336,12 +336,12 @@ def test_both_stop_at_the_end_of_an_open_curve(rig: Rig, curve: Curve, speed: fl
     for kind in (replace(FOLLOWING, closed=False), replace(TRACKING, closed=False)):
         start = rig.on_path(kind, curve, -end / 2, speed)
         log = rig.run(kind, curve, start, 8000, speed=speed)
-        place = log["theta_ref" if kind.controller == "trajectory_tracking" else "theta"][:, 0]
+        place = log["theta_ref" if kind.law == "trajectory_tracking" else "theta"][:, 0]
         assert np.abs(place).max() <= np.pi + 1e-3
         assert place[-1] == pytest.approx(end, abs=1e-3)
         assert log["y"][-1] == pytest.approx(curve.at(end), abs=2e-5)
         assert np.abs(log["v"][-1]).max() < 1e-3
-        if kind.controller == "path_following":
+        if kind.law == "path_following":
             assert curve.nearest(log["y"])[1].max() < 2e-5
 
 

@@ -15,15 +15,15 @@ from onpath.models.paths.curves import Curve, chebyshev_curve, circle
 from tests.support.rig import FOLLOWING, Rig
 
 KINDS = [
-    Kind(controller, closed, level_set, encoder, free)
-    for controller in NAMES
+    Kind(law, closed, level_set, encoder, free)
+    for law in NAMES
     for closed, level_set in ((True, False), (True, True), (False, False))
     for encoder in (False, True)
     for free in (False, True)
 ]
 KINDS += [
-    Kind(controller, encoder=True, delay=True, noise=True, observer=True)
-    for controller in ("path_following", "trajectory_tracking")
+    Kind(law, encoder=True, delay=True, noise=True, observer=True)
+    for law in ("path_following", "trajectory_tracking")
 ]
 
 

@@ -9,7 +9,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import circle
 from tests.support.rig import FOLLOWING, TRACKING, Rig
 
-BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
+BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.law)
 CIRCLE = circle(0.05)
 PLACE, NORMAL = np.array([0.0, 0.03]), np.array([0.6, -0.8])
 

@@ -210,6 +210,6 @@ def test_a_robot_without_a_space_frame_refuses_a_space_curve() -> None:
         with pytest.raises(ValueError, match="space curve"):
             build_kernel(robot.system, robot.frame, Kind("path_following", space=True))
     kind = Kind("path_following", space=True)
-    for other in (dataclasses.replace(kind, level_set=True), replace(kind, law="composite")):
+    for other in (dataclasses.replace(kind, level_set=True), replace(kind, output="composite")):
         with pytest.raises(ValueError, match="space curve"):
             build_kernel(ARM.system, ARM.frame, other)

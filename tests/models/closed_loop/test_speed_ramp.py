@@ -9,7 +9,7 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.paths.curves import circle, segment
 from tests.support.rig import FOLLOWING, TRACKING, Rig
 
-BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.controller)
+BOTH = pytest.mark.parametrize("kind", [FOLLOWING, TRACKING], ids=lambda kind: kind.law)
 CIRCLE = circle(0.05)
 
 
@@ -68,7 +68,7 @@ def test_a_ramp_that_is_switched_on_begins_at_the_current_speed(rig: Rig, kind: 
 
 @BOTH
 def test_on_an_open_curve_it_still_stops_at_the_end(rig: Rig, kind: Kind) -> None:
-    kind, line = Kind(kind.controller, closed=False), segment((-0.05, 0.0), (0.05, 0.01))
+    kind, line = Kind(kind.law, closed=False), segment((-0.05, 0.0), (0.05, 0.01))
     start = rig.on_path(kind, line, -3.0, 0.0)
     log = rig.run(kind, line, start, 6000, speed=3.0, ramp=2.0)
     assert log["theta"][-1, 0] == pytest.approx(np.pi, abs=1e-2)

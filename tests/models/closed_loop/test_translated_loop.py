@@ -69,18 +69,16 @@ def test_an_operation_without_a_translation_is_named() -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("controller", NAMES)
+@pytest.mark.parametrize("law", NAMES)
 @pytest.mark.parametrize("encoder", [False, True])
 @pytest.mark.parametrize("free", [False, True])
-def test_every_loop_of_every_robot_can_be_translated(
-    controller: str, encoder: bool, free: bool
-) -> None:
+def test_every_loop_of_every_robot_can_be_translated(law: str, encoder: bool, free: bool) -> None:
     paths = [(True, False), (True, True), (False, False)]
     for closed, level_set in paths:
-        kind = Kind(controller, closed, level_set, encoder, free)
+        kind = Kind(law, closed, level_set, encoder, free)
         assert "onpath_run" in translate(kernel_of(RIGID_FIVE_BAR, kind))
-        for plant, law in product(PLANTS, ("redefined", "composite")):
-            assert translate(kernel_of(flexible(plant), replace(kind, law=law)))
+        for plant, output in product(PLANTS, ("redefined", "composite")):
+            assert translate(kernel_of(flexible(plant), replace(kind, output=output)))
 
 
 @pytest.mark.thorough
@@ -95,7 +93,7 @@ def test_no_law_takes_a_third_more_operations_than_path_following(entry: RobotEn
             for name, law in LAWS.items()
             if law.suits(robot.system)
         )
-        counts = {kind.controller: operations(kernel_of(robot, kind)) for kind in kinds}
+        counts = {kind.law: operations(kernel_of(robot, kind)) for kind in kinds}
         most = {"velocity_field": 2.0, "time_optimal_tracking": 1.8}  # plan at three places
         for name, count in counts.items():
             assert count <= most.get(name, 1.3) * counts["path_following"], (name, path)

@@ -113,13 +113,13 @@ def following(q: ca.SX, v: ca.SX, output: VirtualOutput, speed: ca.SX) -> ca.SX:
 
 
 @lru_cache
-def tick(law: str, alpha: float, changes: tuple[tuple[str, float], ...]) -> ca.Function:
+def tick(controlled: str, alpha: float, changes: tuple[tuple[str, float], ...]) -> ca.Function:
     """((q, v, memory), speed, force on the tip) -> (after, theta): a plain loop at 1 kHz."""
     x, speed, force = ca.SX.sym("x", 2 * SYSTEM.n + CHAIN), ca.SX.sym("speed"), ca.SX.sym("F", 3)
     q, v, model = x[: SYSTEM.n], x[SYSTEM.n : 2 * SYSTEM.n], ca.SX(numbers(alpha=alpha))
     chain = x[2 * SYSTEM.n :]
     memory = {name: chain[where] for name, where in composite.MEMORY.slices.items()}
-    if law == "composite":
+    if controlled == "composite":
         now = composite.compensation(SYSTEM, q, v, model, memory, turned(**dict(changes)))
         output = coordinates(now.y, now.y_rate)
         command = following(q, v, output, composite.wanted_speed(now, output, GAINS.k5))
@@ -140,10 +140,14 @@ FREE = (0.0, 0.0, 0.0)
 
 @lru_cache
 def run(
-    law: str, joints: tuple[float, ...], legs: tuple[Leg, ...], alpha: float = 0.5, **changes: float
+    controlled: str,
+    joints: tuple[float, ...],
+    legs: tuple[Leg, ...],
+    alpha: float = 0.5,
+    **changes: float,
 ) -> tuple[Array, Array]:
     """Configurations and velocities (ticks, 2n) from rest, and theta (ticks,)."""
-    step: Any = tick(law, alpha, tuple(sorted(changes.items())))
+    step: Any = tick(controlled, alpha, tuple(sorted(changes.items())))
     x, states, thetas = np.zeros(2 * SYSTEM.n + CHAIN), list[Array](), list[Array]()
     x[:RIGID] = joints
     for ticks, speed, force in legs:

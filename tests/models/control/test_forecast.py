@@ -162,13 +162,13 @@ def test_what_is_foretold_of_the_flexible_link_is_its_critical_alpha() -> None:
     link = entry.flexible_link
     assert link is not None
     for alpha in (0.5, 0.7, 0.8, 1.0):
-        own = replace(entry.parameters(), law="redefined", alpha=alpha)
+        own = replace(entry.parameters(), output="redefined", alpha=alpha)
         robot = entry.make(own)
         q = robot.rest(robot.frame.lift(np.array([0.05, 0.0])))
         found = forecast(robot, FOLLOW, own, q)
         critical = link.critical_alpha(own, q[: link.joints])
         assert (found is not None) == (alpha > critical)
-        assert forecast(robot, FOLLOW, replace(own, law="composite"), q) is None
+        assert forecast(robot, FOLLOW, replace(own, output="composite"), q) is None
 
 
 @st.composite

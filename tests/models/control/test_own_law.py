@@ -204,7 +204,7 @@ def test_in_space_the_further_components_are_numbered() -> None:
 
     def value(name: str) -> float:
         text = f"u1 = 0; u2 = 0; u3 = {name}"
-        return float(torques(text, FLEXIBLE, v, law="redefined")[2])
+        return float(torques(text, FLEXIBLE, v, output="redefined")[2])
 
     assert value("y3") == pytest.approx(robot.endpoint(robot.rest(np.zeros(3)))[2], abs=0.2)
     plane: Any = robot.frame

@@ -31,7 +31,7 @@ RADIUS = 0.05
 
 def runs_of(name: str, **values: Any) -> dict[str, Trajectory]:
     chosen = experiments()[name].with_values({k: str(v) for k, v in values.items()})
-    return {controller: run(chosen, controller) for controller in NAMES}
+    return {law: run(chosen, law) for law in NAMES}
 
 
 @pytest.fixture(scope="module")

@@ -14,9 +14,9 @@ from onpath.models.studies.experiments import experiments, run, summary
 from onpath.models.systems.flexible_robot import UNSTABLE
 
 
-def flexible(controller: str = "path_following", **values: object) -> Trajectory:
+def flexible(law: str = "path_following", **values: object) -> Trajectory:
     text = {name: str(value) for name, value in values.items()}
-    return run(experiments()["flexible"].with_values(text), controller)
+    return run(experiments()["flexible"].with_values(text), law)
 
 
 def test_half_of_the_deflection_keeps_the_tip_within_a_millimetre() -> None:
@@ -30,9 +30,9 @@ def test_half_of_the_deflection_keeps_the_tip_within_a_millimetre() -> None:
     assert rate[-1] == pytest.approx(-2.0, rel=0.01)
 
 
-@pytest.mark.parametrize("controller", ["path_following", "trajectory_tracking"])
-def test_the_actual_tip_as_output_diverges_at_once_and_says_why(controller: str) -> None:
-    log = flexible(controller, alpha=1)
+@pytest.mark.parametrize("law", ["path_following", "trajectory_tracking"])
+def test_the_actual_tip_as_output_diverges_at_once_and_says_why(law: str) -> None:
+    log = flexible(law, alpha=1)
     assert log.stopped_at is not None and log.stopped_at < 0.1
     assert log.reason == str(UNSTABLE)
     assert np.isfinite(log.fields["q"]).all()

@@ -40,7 +40,7 @@ def moved(parameters: Parameters, robot: str, law: str, **schedule: Any) -> np.n
 
 def laws_for(robot: str, parameters: Parameters) -> list[str]:
     system = ROBOTS[robot].make(parameters).system
-    composite = getattr(parameters, "law", "") == "composite"
+    composite = getattr(parameters, "output", "") == "composite"
     suit = [law for law in LAWS.values() if law.suits(system)]
     return [law.name for law in suit if law.commands_acceleration or not composite]
 
@@ -49,8 +49,8 @@ def laws_for(robot: str, parameters: Parameters) -> list[str]:
 def cases(draw: st.DrawFn) -> tuple[str, str, Parameters, str]:
     robot = draw(st.sampled_from(list(ROBOTS)))
     own = {"target": 0.02, **draw(st.sampled_from(SWITCHES))}  # a place that is reached soon
-    if "law" in specs(ROBOTS[robot].parameters):
-        own["law"] = draw(st.sampled_from(["composite", "redefined"]))
+    if "output" in specs(ROBOTS[robot].parameters):
+        own["output"] = draw(st.sampled_from(["composite", "redefined"]))
     parameters = ROBOTS[robot].parameters(**own)
     law = draw(st.sampled_from(laws_for(robot, parameters)))
     return robot, law, parameters, draw(st.sampled_from(list(specs(parameters))))

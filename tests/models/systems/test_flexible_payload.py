@@ -136,8 +136,8 @@ def test_only_a_robot_with_a_payload_has_its_equations_and_no_controller_knows()
 # Under control ------------------------------------------------------------------------------------
 
 
-def ran(law: str, load: float) -> Trajectory:
-    values = {"law": law, "alpha": 0.5, "payload": load}
+def ran(output: str, load: float) -> Trajectory:
+    values = {"output": output, "alpha": 0.5, "payload": load}
     return run(experiments()["flexible"].with_values(values), "path_following")
 
 

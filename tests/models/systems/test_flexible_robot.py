@@ -34,7 +34,7 @@ from onpath.models.systems.flexible_robot import (
 )
 from tests.support.drawing import drawn
 
-ROBOT, DEFAULTS = flexible_five_bar_robot(), FlexibleParameters(law="redefined")
+ROBOT, DEFAULTS = flexible_five_bar_robot(), FlexibleParameters(output="redefined")
 START, TIP = start_of(), beam_modes(3, LINKS.beam).tip
 SEEDS = range(6)
 
@@ -153,14 +153,14 @@ def test_the_controller_s_model_is_wrong_where_asked_and_only_there() -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("controller", ["path_following", "trajectory_tracking"])
+@pytest.mark.parametrize("law", ["path_following", "trajectory_tracking"])
 @pytest.mark.parametrize("modes, plant", [(1, "unit_modes"), (3, "lagrangian"), (6, "lagrangian")])
-def test_compiled_and_interpreted_loops_agree(controller: str, modes: int, plant: str) -> None:
+def test_compiled_and_interpreted_loops_agree(law: str, modes: int, plant: str) -> None:
     curve = circle(0.05)
     own = replace(DEFAULTS, modes=modes, plant=plant)
     robot = robot_for(own)
     push = Push(hand=np.array([0.5, 0.06, 0.02]))
-    kernel = kernel_of(robot, kind_of(controller, own, curve, push))
+    kernel = kernel_of(robot, kind_of(law, own, curve, push))
     state = first_state(robot, kernel, curve, start_of(modes))
     interpreted, compiled = (
         loop.run(state, settings_vector(robot, kernel, own, curve, push), curve.table(), 1000)[1]

@@ -162,7 +162,7 @@ def test_every_law_moves_every_robot_that_it_suits(law: str, name: str) -> None:
 
 
 def test_laws_that_command_torques_refuse_composite_control() -> None:
-    parameters = dataclasses.replace(FLEXIBLE.parameters(), law="composite")  # type: ignore[call-arg]
+    parameters = dataclasses.replace(FLEXIBLE.parameters(), output="composite")  # type: ignore[call-arg]
     with pytest.raises(CodedError, match="not possible"):
         kernel_of(FLEXIBLE.make(parameters), kind_of("velocity_field", parameters, CIRCLE))
 
