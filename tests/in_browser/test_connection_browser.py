@@ -401,18 +401,22 @@ def test_a_page_becomes_whole_by_itself(
     becomes_whole(browser, told, [delay], [fault] if fault else [])
 
 
+PHONE, LAPTOP, TAB = Away(10.0, 600.0), Away(10.0, 600.0, hidden=False), Away(10.0, 60.0, 10)
+
+
 @pytest.mark.parametrize(
-    "away",
-    [Away(10.0, 600.0), Away(10.0, 600.0, hidden=False), Away(10.0, 60.0, 10)],
-    ids=["phone", "laptop", "tab"],
-)
-@pytest.mark.parametrize(
-    "fault",
-    [None, Fault("mute", 20.0), Fault("restart", 20.0), Fault("viser", 20.0)],
-    ids=["nothing", "mute", "restart", "closed"],
+    ("away", "fault"),
+    [
+        (PHONE, None),
+        (PHONE, Fault("mute", 20.0)),
+        (LAPTOP, Fault("mute", 20.0)),
+        (TAB, Fault("restart", 20.0)),
+        (TAB, Fault("viser", 20.0)),
+    ],
+    ids=["phone", "dead phone", "dead laptop", "tab, restarted", "tab, closed"],
 )
 def test_a_page_that_stood_still_for_minutes_soon_becomes_whole(
-    browser: Browser, told: Told, fault: Fault | None, away: Away
+    browser: Browser, told: Told, away: Away, fault: Fault | None
 ) -> None:
     becomes_whole(browser, told, [0.01], [fault] if fault else [], away, within=BACK)
 
