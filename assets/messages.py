@@ -73,6 +73,13 @@ class Catalogue:
     def __contains__(self, key: str) -> bool:
         return identifier(key) in self._messages
 
+    def keys(self, group: str) -> list[str]:
+        """The keys of a group: "help" -> ["help.close", "help.text", …]."""
+        begin = f"{group}-"
+        return sorted(
+            f"{group}.{n.removeprefix(begin)}" for n in self._messages if n.startswith(begin)
+        )
+
     def text(self, key: str, arguments: Mapping[str, object]) -> str:
         """Format a message with its arguments.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import dataclasses
 import json
 import math
 import sys
@@ -53,7 +52,8 @@ class CompareCommand:
     def run(self) -> None:
         """Simulate, then write and print the requested output."""
         from onpath.app.cli.assignments import assignments
-        from onpath.models.studies.comparison import as_data
+        from onpath.models.control.laws.own import law_title
+        from onpath.models.studies.comparison import as_data, beyond_efforts, by_law, row_of
         from onpath.models.studies.experiments import forecast_text, on_path, path_remark
         from onpath.models.studies.unused import unused_text
 
@@ -71,11 +71,7 @@ class CompareCommand:
         results = self._results(contest, laws)
         if self.csv:
             with whole_file(self.csv) as path, path.open("w", encoding="utf-8", newline="") as file:
-                rows = [
-                    dataclasses.asdict(outcome)
-                    for outcomes in results.values()
-                    for outcome in outcomes
-                ]
+                rows = [row_of(outcome) for outcomes in results.values() for outcome in outcomes]
                 writer = csv.DictWriter(file, list(rows[0]))
                 writer.writeheader()
                 writer.writerows(rows)
@@ -84,6 +80,9 @@ class CompareCommand:
 
             with whole_file(self.plot) as path:
                 draw_comparison(results, path)
+        for law, outcomes in by_law(results).items():
+            if beyond := beyond_efforts(contest.robot, outcomes):
+                print(f"onpath: {law_title(law)}: {beyond}", file=sys.stderr)
         data = finite(as_data(contest, results)) if self.json else None
         print(json.dumps(data, indent=2) if self.json else table(results))
 

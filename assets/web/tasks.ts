@@ -48,7 +48,6 @@ export class Task {
         element.querySelector(".verdicts")!.replaceChildren(...lines)
         const whys = [...element.querySelectorAll<HTMLDetailsElement>(".after")]
         const told = passed ? whys.find(each => Number(each.dataset["way"]) === way) ?? whys[0] : undefined
-        for (const each of whys) each.hidden = each !== told
-        if (told) told.open = true
+        for (const each of whys) each.hidden = each !== told // closed: its title asks why
     }
 }

@@ -31,17 +31,35 @@ VERBS = {
     r"|sagt|gesagt|verbirgt|verborgen|blendet|ausgeblendet|zeigt|gezeigt|warnt|gewarnt|erlaubt"
     r"|zugelassen|angenommen",
 }
+ROBOTS = {
+    "en": r"robots?|arms?|tracker|follower|tips?|end-points?|clock|both|(?:left|right|other) one",
+    "de": r"roboters?|arme?|nachläufer|bahnfolger|spitzen?|endpunkte?|uhr|beide",
+}
+MOTIONS = {
+    "en": r"waits|not wait|torn|dragged|thrown|carried|leaves|stays?|falls|(?:not hurry|hurries)"
+    r"|(?<!the )jumps|returns?|continues?|(?:goes|runs) on|(?:comes?|springs?) (?:back|off|to rest)"
+    r"|gives? way|resists|stands? still|swings|slides|slips|sticks|creeps|turns back|catches up"
+    r"|lags|lost|diverges|oscillates|overshoots",
+    "de": r"wartet|(?:weg|ab|mit)?(?:gerissen|geworfen)|verlässt|verlassen(?! sich)|bleibt|bleiben"
+    r"|fällt|eilt|springt|kehr(?:t|en)(?=.*\b(?:um|zurück)\b)|(?:läuft|geht)(?=.*\bweiter\b)"
+    r"|holt(?=.*\b(?:auf|ein)\b)|(?:kommt|kommen|federt)(?=.*\b(?:ab|zurück|zur Ruhe)\b)"
+    r"|(?:gibt|geben)(?=.*\bnach\b)|(?:steht|stehen)(?=.*\bstill\b)|schwingt|gleitet|rutscht"
+    r"|klebt|kriecht|verloren",
+}
+"""What a robot or its clock does, rather than the lab, within `APART` words of it."""
+APART = 3
 NAMED = {
     "en": r"press|set|change|open|slider|button|folder|menu",
     "de": r"drücke?|stelle|ändere|öffne|schieber|knopf|ordner|menü",
 }
 """What stands before the bold name of a button or another control."""
-FACTS = ("summary", "needs", "goals", "misconception")
-"""What a lesson's first page says of the student."""
+NOT_SAID = ("summary", "needs", "goals", "misconception", "usual")
+"""What is said of the student, or believed by many."""
 SAYING = tuple(name for name in ("", *KNOWN) if name not in ("scene", "script", "step"))
 """Blocks with sentences; the empty name is that of the text outside blocks."""
 OPTION = re.compile(r"""\btext = ("(?:[^"\\]|\\.)*"|'[^']*'),""")
 """The text of an option in a question: what a student may believe."""
+RIGHT = "right = true"
 FENCE = re.compile(r"\s*(`{3,}|~{3,})\s*(\S*)")
 END = re.compile(r"(?<=[.!?;:|])(?:[\"”“)*]*)\s+")
 
@@ -93,23 +111,33 @@ def read_sentences(folder: Path) -> tuple[tuple[Sentence, ...] | None, list[Prob
         return (), [Problem(str(file), 1, str(error))]
 
 
-def found_sentences(text: str, language: str) -> Iterator[tuple[int, str]]:
+def found_sentences(text: str, language: str, of_law: bool = False) -> Iterator[tuple[int, str]]:
     """Lines and sentences of a text that say what the lab does, and contain no mark.
 
     A sentence is found by a subject (the lab, the page, a robot, a path, a button) and a verb
-    (refuses, stops, says, hides, shows, warns, allows). Questions, the options of questions, and
-    hints, which a task's reference plays, say nothing.
+    (refuses, stops, says, hides, shows, warns, allows), or by a robot and, a few words away, what
+    it does (waits, is torn off, leaves, stays, comes back). Questions, and their wrong
+    options, say nothing.
+
+    Args:
+        text: in one language.
+        language: whose words are looked for; in others nothing is found.
+        of_law: whether the text is of one control law, whose name need not be repeated.
     """
     if language not in SUBJECTS:
         return
-    subject, verb = (
-        re.compile(rf"(?<!\w)(?:{words})(?!\w)", re.IGNORECASE)
-        for words in (SUBJECTS[language], VERBS[language])
-    )
+    subject, verb = _words(SUBJECTS[language]), _words(VERBS[language])
+    robot, motion = f"(?:{ROBOTS[language]})", f"(?:{MOTIONS[language]})"
+    gap = rf"(?:\W+[\w'’-]+){{0,{APART}}}?\W+"
+    moves = _words(motion if of_law else f"{robot}{gap}{motion}|{motion}{gap}{robot}")
     for line, sentence in _sentences(text):
-        says = subject.search(sentence) and verb.search(sentence)
-        if says and "{{" not in sentence and not sentence.rstrip('*_"”“)').endswith("?"):
+        says = (subject.search(sentence) and verb.search(sentence)) or moves.search(sentence)
+        if says and "{{" not in sentence and not sentence.rstrip('*_"”“),').endswith("?"):
             yield line, sentence
+
+
+def _words(pattern: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<!\w)(?:{pattern})(?!\w)", re.IGNORECASE)
 
 
 def _sentences(text: str) -> Iterator[tuple[int, str]]:
@@ -123,22 +151,20 @@ def _sentences(text: str) -> Iterator[tuple[int, str]]:
 
 def _paragraphs(text: str) -> Iterator[tuple[int, str]]:
     """First lines and texts of the paragraphs; a line of TOML is one."""
-    block, inside, hints, kept = "", False, False, list[str]()
+    block, inside, kept = "", False, list[str]()
     for number, line in enumerate([*text.split("\n"), ""], 1):
         mark = FENCE.match(line)
-        hints = line.startswith("hints") or hints
         if mark:
             inside = not inside
             block = (mark[2] or "code") if inside else ""
-        elif line.strip() and not hints and block in SAYING and not line.startswith(FACTS):
-            kept.append(OPTION.sub("", line))
+        elif line.strip() and block in SAYING and not line.startswith(NOT_SAID):
+            kept.append(line if RIGHT in line else OPTION.sub("", line))
             if block not in FENCES:
                 continue
             yield number, kept.pop()
         if kept:
             yield number - len(kept), "\n".join(kept)
             kept = []
-        hints = hints and not line.rstrip().endswith("]")
 
 
 def named_controls(text: str, language: str) -> Iterator[tuple[int, str]]:
@@ -150,17 +176,19 @@ def named_controls(text: str, language: str) -> Iterator[tuple[int, str]]:
 
 
 def list_faults(
-    listed: Sequence[Sentence], where: str, language: str, text: str
+    listed: Sequence[Sentence], where: str, language: str, text: str, of_law: bool = False
 ) -> Iterator[tuple[int, str]]:
     """Lines and faults of a text's sentences that are neither played nor listed.
 
     Args:
         listed: the course's list.
         where: name of the text in the list.
+        language: that of the text.
         text: in one language.
+        of_law: whether it is of one control law.
     """
     entries = [each for each in listed if each.where == where and each.part(language)]
-    found = list(found_sentences(text, language))
+    found = list(found_sentences(text, language, of_law))
     plain = " ".join(text.split())
     for line, sentence in found:
         if not any(each.part(language) in sentence for each in entries):

@@ -12,7 +12,7 @@ so. Nothing happens for `BEFORE`, then the obstruction acts, and then nothing ha
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -38,8 +38,10 @@ from onpath.models.closed_loop.start import driven_rates
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import values_of
+from onpath.models.errors import Message
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
+from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import Robot, RobotEntry
 
@@ -112,8 +114,9 @@ class Outcome:
         energy_given_J: largest work of the end-point on the hand, brake or wall.
         overspeed: largest relative excess of the rate along the path after the release.
         rms_torque_Nm: over the run and all motors.
-        stopped_at_s: time at which the run was stopped as diverged, or None; all other numbers are
-            then infinity, which ranks last.
+        stopped_at_s: time at which the run was stopped as diverged, or None; all measures are then
+            infinity, which ranks last.
+        largest_torques: of each motor, until the run was stopped, if it was, [N m] or [N].
     """
 
     law: str
@@ -128,9 +131,10 @@ class Outcome:
     overspeed: float
     rms_torque_Nm: float
     stopped_at_s: float | None
+    largest_torques: tuple[float, ...]
 
 
-MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-1]
+MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-2]
 """The numbers of an outcome for which larger is worse."""
 
 
@@ -209,6 +213,26 @@ def worst(outcomes: Sequence[Outcome]) -> dict[str, float | None]:
     return found | {"stopped_at_s": min(stops, default=None)}
 
 
+def beyond_efforts(robot: Robot, outcomes: Iterable[Outcome]) -> Message | None:
+    """Which motor exceeds its limit in the robot's file most, over all runs; None if none does."""
+    return exceeded(robot, np.max([each.largest_torques for each in outcomes], axis=0))
+
+
+def by_law(results: Mapping[tuple[str, str], Sequence[Outcome]]) -> dict[str, list[Outcome]]:
+    """All outcomes of each law."""
+    found = dict[str, list[Outcome]]()
+    for (law, _), outcomes in results.items():
+        found.setdefault(law, []).extend(outcomes)
+    return found
+
+
+def row_of(outcome: Outcome) -> dict[str, Any]:
+    """A run as a row of a table: its conditions and measures."""
+    row = dataclasses.asdict(outcome)
+    del row["largest_torques"]
+    return row
+
+
 def _largest_torque(contest: Contest) -> float:
     """The least `torque_limit` without effect on unobstructed path following."""
     ((log, _),) = _runs(contest, "path_following", OBSTRUCTIONS["none"], np.zeros(1), 0.0)
@@ -220,6 +244,7 @@ def _outcome(
 ) -> Outcome:
     log, fault = run
     dt, speed = time_step(contest.parameters), contest.parameters.speed
+    torques = np.abs(log["u"][:fault]).max(axis=0, initial=0.0)
     if fault is not None:
         measures = dict.fromkeys(MEASURES, np.inf)
         return Outcome(
@@ -228,6 +253,7 @@ def _outcome(
             place=place,
             **measures,
             stopped_at_s=fault * dt,
+            largest_torques=tuple(torques.tolist()),
         )
     seconds = len(log["theta"]) * dt
     distance = path_distance(contest.robot.frame, contest.curve, log["y"][::5])
@@ -250,6 +276,7 @@ def _outcome(
         overspeed=max(float(rates.max()) - 1, 0.0) if rates.size else 0.0,
         rms_torque_Nm=float(np.sqrt((log["u"] ** 2).mean())),
         stopped_at_s=None,
+        largest_torques=tuple(torques.tolist()),
     )
 
 
@@ -323,13 +350,18 @@ def _loop(robot: Robot, kind: Kind) -> ManyLoop:
 
 
 def as_data(contest: Contest, results: Mapping[tuple[str, str], Sequence[Outcome]]) -> Any:
-    """The content of `--json`; numbers have nine significant digits."""
+    """The content of `--json`; numbers have nine significant digits.
+
+    `beyond_efforts` has what each law asks of the motors beyond the limits of the robot's file.
+    """
+    beyond = {law: beyond_efforts(contest.robot, each) for law, each in by_law(results).items()}
     return {
         "robot": contest.entry.name,
         "parameters": values_of(contest.parameters),
+        "beyond_efforts": {law: str(found) for law, found in beyond.items() if found},
         "laws": {
             law: {
-                name: [_rounded(dataclasses.asdict(o)) for o in outcomes]
+                name: [_rounded(row_of(o)) for o in outcomes]
                 for (other, name), outcomes in results.items()
                 if other == law
             }

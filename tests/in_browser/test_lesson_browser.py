@@ -132,6 +132,10 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
     hold_for(tab, 2.6)
     wait_for(lambda: "hold-two-seconds" in tab.lab.lessons.notes.tasks)
     tab.page.get_by_text("✓ Passed").first.wait_for()
+    reason = tab.page.locator(".step.open").get_by_text("the distance is the nudge divided by K1")
+    expect(reason).to_be_hidden()  # before one has been asked
+    tab.page.locator(".step.open").get_by_text("Why did this work?").click()
+    expect(reason).to_be_visible()
 
 
 def hold_for(tab: Tab, seconds: float) -> None:

@@ -324,6 +324,27 @@ def test_a_grade_is_for_what_is_done_and_right(page: Page, course: Course, name:
         assert progress == 1 and score is not None and score < 1
 
 
+@pytest.mark.usefixtures("no_figures")
+def test_a_task_that_is_meant_to_be_found_by_trying_counts_nothing(
+    page: Page, course: Course
+) -> None:
+    """As if its step had a text in its place, passed or not."""
+    rng, seen = np.random.default_rng(8), 0
+    for name in course.lessons:
+        marked = steps_of(course, name)
+        without = copy.deepcopy(marked)
+        for step, other in zip(marked, without, strict=True):
+            for place, block in enumerate(step["blocks"]):
+                if "checks" in block and not step["optional"] and rng.random() < 0.6:
+                    block["exploratory"], seen = True, seen + 1
+                    other["blocks"][place] = {"kind": "text"}
+        for notes in (all_done(without), all_done(marked), empty(marked)):
+            assert graded(page, marked, notes) == graded(page, without, notes)
+        notes = {**empty(marked), "tasks": all_done(marked)["tasks"]}
+        assert graded(page, marked, notes) == graded(page, without, notes)
+    assert seen > 5
+
+
 def test_without_anything_to_judge_there_is_no_score(page: Page) -> None:
     choice: dict[str, Any] = {"kind": "choice", "right": 0}
     step = {"optional": False, "script": None, "blocks": [choice, {"kind": "open"}]}
@@ -332,3 +353,49 @@ def test_without_anything_to_judge_there_is_no_score(page: Page) -> None:
     assert graded(page, [step, optional], notes) == (pytest.approx(2 / 3), None)
     notes["written"] = {"0.1": "So."}
     assert graded(page, [step, optional], notes) == (1, None)
+
+
+# Tasks.
+
+
+TASK = """() => {
+    const at = site.page.steps.findIndex(step => step.blocks.some(block => block.ways?.length))
+    site.open(at)
+    return site.page.steps[at].blocks.find(block => block.ways?.length).id
+}"""
+
+
+def test_hints_are_noted_and_what_is_said_after_a_task_depends_on_how_it_was_passed(
+    browser: Browser, page: Page
+) -> None:
+    """The last hint that was read counts; the reason is told to those who open it."""
+    context = browser.new_context()
+    other = context.new_page()
+    other.goto(page.url)
+    wait_for(lambda: other.evaluate("'packed' in window"), WAIT)
+    task = other.evaluate(TASK)
+    step, hints = other.locator(".step.open"), "task => site.student.notes.hints[task] ?? 0"
+    assert other.evaluate(hints, task) == 0
+    for hint, noted in ((2, 2), (1, 2), (3, 3)):
+        step.get_by_text(f"Hint {hint}", exact=True).click()
+        wait_for(lambda noted=noted: other.evaluate(hints, task) == noted, WAIT)
+    why = step.get_by_text("Why did this work?")
+    assert why.count() > 1 and not any(each.is_visible() for each in why.all())
+    other.evaluate(
+        """task => {
+            const { student } = site
+            student.notes.tasks[task] = 0
+            student.notes.ways[task] = 1
+            student.save()
+        }""",
+        task,
+    )
+    other.reload()
+    wait_for(lambda: other.evaluate("'packed' in window"), WAIT)
+    assert other.evaluate(TASK) == task and other.evaluate(hints, task) == 3
+    (told,) = (each for each in why.all() if each.is_visible())
+    reason = step.get_by_text("You have hardly stiffened the spring.")
+    assert not reason.is_visible()
+    told.click()
+    wait_for(reason.is_visible, WAIT)
+    context.close()

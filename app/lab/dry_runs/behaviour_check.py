@@ -39,6 +39,7 @@ CONTROLS = {
     "editor": "controls.editor",
     "gains": "gains.title",
     "show": "show.title",
+    "flexible": "flexible.title",
     "larger": "flexible.larger",
     "identify": "gains.identify",
     "copy": "controls.copy",
@@ -215,7 +216,7 @@ def page_fault(said: Behaviour, scene: StepSetup, words: Words) -> str:
     if (said.name in shown) == said.absent:
         return f"the {said.verb}s of the step are {_listed(shown)}"
     if said.verb == "plot" and not said.absent:
-        label = words(f"plot.{said.name}")
+        label = words(f"axis.{said.name}")
         if not any(word in written.lower() for word in _stems(label)):
             return f"the plot is called {label!r}"
     if said.verb == "control" and not any(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from onpath.app.lab.dry_runs.behaviour_check import (
 )
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.setups.step_setup import setup_of_scene
+from onpath.assets.messages import DEFAULT, catalogue
 from onpath.lessons.behaviour.marks import read_behaviour
 from onpath.lessons.behaviour.sentences import (
     FILE,
@@ -30,8 +32,8 @@ from onpath.models.control.laws.registry import LAWS
 from onpath.models.systems.catalogue import FIVE_BAR
 
 README = BUILT_IN.parents[1] / "README.md"
-KEYS = ("help.text", "guide.intro", "guide.assumed", "guide.test_intro", "laws.bounds")
-"""Texts of the catalogue that say what the lab does."""
+GROUPS = ("help", "key", "guide", "laws")
+"""Groups of the catalogue's texts that say what the lab does."""
 OF_LAW = ("text", "good", "limits", "objection")
 
 
@@ -49,7 +51,7 @@ def sentence_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[
         if not (folder / where).is_dir():  # a lesson that is not read now
             yield Problem(str(folder / FILE), 1, f"there is no text {where!r}")
     for (where, language), (file, text) in texts.items():
-        for line, fault in list_faults(listed, where, language, text):
+        for line, fault in list_faults(listed, where, language, text, _of_law(where)):
             yield Problem(file, line, fault)
         if where not in (*course.lessons, FOLDER):
             yield from (Problem(file, *fault) for fault in name_faults(text, language))
@@ -66,6 +68,10 @@ def unplayed(course: Course, folder: Path) -> int:
     return sum(len(list(found_sentences(text, language))) for (_, language), (_, text) in texts)
 
 
+def _of_law(where: str) -> bool:
+    return where.startswith("law.")
+
+
 def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tuple[str, str]]]:
     """Name and language of each text, with its file and its words."""
     names = {**{name: name for name in course.lessons}, **{name: FOLDER for name in course.tests}}
@@ -76,19 +82,15 @@ def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tupl
         return
     if README.exists():
         yield (README.name, "en"), (str(README), read_text(README))
+    keys = [key for group in GROUPS for key in catalogue(DEFAULT).keys(group)]
     for language in course.languages():
         words = Words(language)
-        for key in KEYS:
-            yield (key, language), (key, _plain(words, key))
+        for key in keys:
+            yield (key, language), (key, catalogue(language).text(key, defaultdict(lambda: "…")))
         for name, law in LAWS.items():
             for part in OF_LAW:
                 key = f"law.{name}.{part}"
                 yield (key, language), (key, words.get(key, getattr(law, part)))
-
-
-def _plain(words: Words, key: str) -> str:
-    """A text of the catalogue, without the values that it needs."""
-    return words(key, reach="…")
 
 
 def _fault(each: Sentence, store: LoopCache) -> str:

@@ -17,7 +17,8 @@ from onpath.lessons.words import Words
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import SIDES
-from onpath.models.studies.comparison import OBSTRUCTIONS, worst
+from onpath.models.studies.comparison import OBSTRUCTIONS, beyond_efforts, by_law, worst
+from onpath.models.systems.robots import Robot
 
 MOST = 6  # laws in one comparison
 CHOSEN = ("trajectory_tracking", "path_following", "waiting_clock")  # at first
@@ -36,7 +37,7 @@ class ComparePanel:
 
     def __init__(self, gui: viser.GuiApi, words: Words, first: PageSnapshot, ask: Ask) -> None:
         self._words, self._ask = words, ask
-        system = robot_of(first).system
+        self._robot = robot_of(first)
         with gui.add_folder(words("compare.title"), expand_by_default=False):
             gui.add_markdown(words("compare.text"))
             self._laws = {
@@ -44,7 +45,7 @@ class ComparePanel:
                     law_label(name, words), name in CHOSEN, hint=law_text(name, words)
                 )
                 for name, law in LAWS.items()
-                if law.travels and law.suits(system)
+                if law.travels and law.suits(self._robot.system)
             }
             self._typed = {side: self._add_typed(gui, side, first.run.laws[side]) for side in SIDES}
             self._side_laws = first.run.laws
@@ -86,11 +87,11 @@ class ComparePanel:
         self._ask(laws, self._obstructions[self._obstruction.value], self._show)
 
     def _show(self, results: Results, picture: bytes) -> None:
-        self._shown.content = comparison_html(results, picture, self._words)
+        self._shown.content = comparison_html(results, picture, self._words, self._robot)
 
 
-def comparison_html(results: Results, picture: bytes, words: Words) -> str:
-    """A table with a row for each law, and the picture."""
+def comparison_html(results: Results, picture: bytes, words: Words, robot: Robot) -> str:
+    """A table with a row for each law, what exceeds the motors of the robot's file, the picture."""
     rows: list[dict[str, Any]] = []
     titles = law_titles((law for law, _ in results), words)
     for (law, _), outcomes in results.items():
@@ -110,4 +111,6 @@ def comparison_html(results: Results, picture: bytes, words: Words) -> str:
             }
         )
     image = base64.b64encode(picture).decode()
-    return render("panel/comparison.html", rows=rows, image=image, words=words)
+    found = {law: beyond_efforts(robot, each) for law, each in by_law(results).items()}
+    beyond = [f"{titles[law]}: {words.sentence(each)}" for law, each in found.items() if each]
+    return render("panel/comparison.html", rows=rows, beyond=beyond, image=image, words=words)

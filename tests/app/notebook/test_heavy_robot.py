@@ -14,10 +14,12 @@ from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
+from onpath.app.exports.comparison import compared
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.standalone.figure_data import figure_data
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.app.page.panels.compare_panel import comparison_html
 from onpath.lessons.labels import robot_text
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.loops import InterpretedLoop
@@ -111,6 +113,25 @@ def test_a_run_that_asks_for_more_says_so_and_one_within_its_limits_does_not(
     settings = ["--set", "duration=1", "--set", "hold_from=0.4", "--set", "hold_to=0.6"]
     assert run_command(["experiment", "obstruction", *arguments, *settings]) == 0
     assert "path following: the motor of joint2 gave" in capsys.readouterr().err
+
+
+def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
+    heavy: RobotEntry, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    command = ["compare", "--robot", str(written(tmp_path)), "--path", "circle 0.1", "--json"]
+    command += ["--law", LAWS[0], "--obstruction", "none", "--set", "speed=1"]
+    assert run_command([*command, "--set", "torque_limit=100"]) == 0
+    printed = capsys.readouterr()
+    assert "more than the" not in printed.err
+    assert json.loads(printed.out)["beyond_efforts"] == {}
+    assert run_command(command) == 0
+    printed = capsys.readouterr()
+    told = json.loads(printed.out)["beyond_efforts"][LAWS[0]]
+    assert told.startswith("the motor of joint") and f"path following: {told}" in printed.err
+    parameters = with_values(heavy.parameters(), {"speed": 1.0})
+    results, picture = compared(heavy.name, parameters, circle(0.1), {}, LAWS[0], "none", "en")
+    page = comparison_html(results, picture, Words("de"), heavy.make(parameters))
+    assert "der Motor von joint" in page
 
 
 def test_the_lab_says_so_once_in_a_run(heavy: RobotEntry) -> None:

@@ -22,6 +22,7 @@ from tests.support.lab import do, new_lab, run
 
 TYPED = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 OTHER = "across = -K1*xi - 30*dxi; along = -K5*(dtheta - speed)"
+ROBOT = FIVE_BAR.make(FIVE_BAR.parameters())
 BOXES = {side: ENGLISH(f"laws.own_{side}") for side in (LEFT, RIGHT)}
 
 
@@ -110,7 +111,7 @@ def test_two_typed_laws_are_told_apart_in_the_table() -> None:
         results, picture = compared(*what)
     for language in ("en", "de"):
         words = Words(language)
-        page = comparison_html(results, picture, words)
+        page = comparison_html(results, picture, words, ROBOT)
         label = law_label(TYPED, words)
         assert f"{label} 1" in page and f"{label} 2" in page
         assert TYPED in page and OTHER in page
@@ -122,7 +123,7 @@ def test_a_law_that_stops_has_no_numbers_and_stands_at_the_edge_of_the_picture()
         what = FIVE_BAR.name, FIVE_BAR.parameters(), circle(0.05), results, law, "none", "en"
         results, picture = compared(*what)
     for language, stopped in (("en", "stopped"), ("de", "angehalten")):
-        page = comparison_html(results, picture, Words(language))
+        page = comparison_html(results, picture, Words(language), ROBOT)
         assert page.count(f"<td>{stopped}</td>") == 3 and "inf" not in page
     figure = comparison_figure(results)
     (axes,) = figure.axes

@@ -263,3 +263,26 @@ def test_the_end_has_a_place_for_each_chart(lab: Lab, name: str) -> None:
     assert [str(point) in page for point in lesson.front.takeaway] == [True] * len(
         lesson.front.takeaway
     )
+
+
+def plain(page: str) -> str:
+    """The words of a page."""
+    return " ".join(unescape(re.sub("<[^>]*>", "", page)).split())
+
+
+def test_what_is_said_after_a_task_depends_on_how_it_was_passed(lab: Lab) -> None:
+    """Nothing before; a way that the task has no more is told as the usual one."""
+    do(lab, c.SetLanguage("en"))
+    seen = 0
+    for name, index in STEPS:
+        for task in COURSE.lesson(name, "en").steps[index].tasks():
+            texts = {way: plain(str(text)) for way, text in task.explanations.items()}
+            for way in (*texts, len(task.way) + 1) if task.way else ():
+                at(lab, name, index, ways={task.id: way})
+                before = plain(html(told(lab)))
+                at(lab, name, index, ways={task.id: way}, tasks={task.id: 0.0})
+                page, expected = plain(html(told(lab))), way if way in texts else 0
+                assert not any(text in before for text in texts.values())
+                assert [each for each, text in texts.items() if text in page] == [expected]
+                seen += 1
+    assert seen > 5

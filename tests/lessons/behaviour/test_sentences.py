@@ -25,6 +25,13 @@ from tests.support.checkout import ROOT
         ("en", "The page shows the curve."),
         ("en", "Paths that cross are allowed."),
         ("en", "A button hides the map."),
+        ("en", "Held back, the tracker is torn off its path."),
+        ("en", "Meanwhile the follower waits."),
+        ("en", "Both arms come back."),
+        ("en", "In the way of a wall jumps the arm."),
+        ("de", "Festgehalten wird der Nachläufer von der Bahn gerissen."),
+        ("de", "Der Bahnfolger wartet."),
+        ("de", "Danach kommt der Arm zur Ruhe."),
         ("de", "Deshalb lehnt das Labor eine solche Bahn ab."),
         ("de", "Nach einer Sekunde hält das Labor ihn an."),
         ("de", "Der Verlauf zeigt ξ₁."),
@@ -38,6 +45,7 @@ def test_a_sentence_on_the_lab_is_found_wherever_it_stands(language: str, senten
         sentence,
         f"First.\n\n{sentence}\nThen.",
         f"```fold Why\n{sentence}\n```",
+        f'```task\nhints = [\n  "{sentence}",\n]\n```',
         question,
     ):
         found = list(found_sentences(text, language))
@@ -54,13 +62,25 @@ def test_a_sentence_on_the_lab_is_found_wherever_it_stands(language: str, senten
         "What does the lab say?",
         "**When does the lab stop the arm, and what is said?**",
         "The sun shows itself.",
+        "**Does the follower wait, or what shows the page?**,",
+        "While the robots are pulled, watch the button.",
         '```quiz\n  { text = "The lab stops it", answer = "No." },\n```',
-        '```task\nhints = [\n  "The lab stops it.",\n]\n```',
         "```scene\n# the lab stops it\n```",
         'goals = "say what the lab does."',
     ],
 )
-def test_questions_options_and_hints_say_nothing(text: str) -> None:
+def test_questions_and_wrong_options_say_nothing(text: str) -> None:
+    assert not list(found_sentences(text, "en"))
+
+
+def test_a_right_option_says_what_is_so() -> None:
+    option = '{ text = "The lab stops it", right = true, answer = "Yes." },'
+    assert len(list(found_sentences(f"```quiz\n{option}\n```", "en"))) == 1
+
+
+def test_the_text_of_a_law_need_not_name_it() -> None:
+    text = "Held back, it waits on the curve."
+    assert list(found_sentences(text, "en", of_law=True)) == [(1, text)]
     assert not list(found_sentences(text, "en"))
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 from msgspec.structs import replace
@@ -148,7 +149,7 @@ def keep_quiet_about_crossings(patch: Patch) -> None:
 
 
 def rename_a_plot(patch: Patch) -> None:
-    patch.setitem(catalogue("en")._messages, "plot-across", "lateral offset")
+    patch.setitem(catalogue("en")._messages, "axis-across", "lateral offset")
 
 
 def rename_a_button(patch: Patch) -> None:
@@ -176,6 +177,21 @@ def release_the_brake(patch: Patch) -> None:
     patch.setattr(ExternalForces, "hold", lambda *_, **__: None)
 
 
+def never_let_go(patch: Patch) -> None:
+    hold = ExternalForces.hold
+
+    def held_for_good(self: ExternalForces, names: Sequence[str], on: bool, *rest: Any) -> None:
+        if on:
+            hold(self, names, on, *rest)
+
+    patch.setattr(ExternalForces, "hold", held_for_good)
+
+
+def pull_nothing(patch: Patch) -> None:
+    patch.setattr(ExternalForces, "grab", lambda *_: None)
+    patch.setattr(ExternalForces, "pull", lambda *_: None)
+
+
 def identify_at_all_costs(patch: Patch) -> None:
     patch.setattr(identification, "WORST_ERROR", 1e9)
 
@@ -195,6 +211,8 @@ BREAKS: list[tuple[Callable[[Patch], None], str]] = [
     (stop_nobody, "01b"),
     (stop_for_another_reason, "06"),
     (release_the_brake, "01"),
+    (never_let_go, "01"),
+    (pull_nothing, "02"),
     (identify_at_all_costs, "06"),
     (foresee_nothing, "list"),
 ]

@@ -1,0 +1,65 @@
+"""A lesson's step has on its page the plots and controls of which its text speaks."""
+
+from __future__ import annotations
+
+from unittest.mock import MagicMock
+
+from onpath.app.lab.dry_runs.behaviour_check import labels_of
+from onpath.app.lab.dry_runs.course_check import lab_at
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.page.panel_factory import PanelFactory
+from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.behaviour.marks import Behaviour
+from onpath.lessons.words import Words
+from tests.support.built_in import built_in_course
+from tests.support.lab import store
+
+COURSE = built_in_course()[0]
+
+
+def labels(scene: StepSetup, first: PageSnapshot, words: Words) -> set[str]:
+    """All labels and titles of the widgets that a step's page has."""
+    gui, other = MagicMock(), MagicMock()
+    factory = PanelFactory(
+        gui=gui,
+        words=words,
+        post=other,
+        exporter=other,
+        files=other,
+        submit=other,
+        scene=other,
+        overlays=other,
+        context=other,
+        reset_view=other,
+    )
+    factory.of_step(scene, first)
+    added = [call for call in gui.mock_calls if call[0].startswith("add_")]
+    given = [each for _, some, named in added for each in (*some, *named.values())]
+    return {each for each in given if isinstance(each, str)}
+
+
+def names(said: Behaviour, words: Words) -> set[str]:
+    """The names on the page of the plot or control of a mark."""
+    if said.verb == "plot":
+        return {words(f"axis.{said.name}").partition(" [")[0]}
+    return labels_of(said.name, words)
+
+
+def test_a_plot_and_a_control_that_a_text_names_are_on_its_page() -> None:
+    seen = 0
+    for versions in COURSE.lessons.values():
+        lesson = versions["en"]
+        for index, step in enumerate(lesson.steps):
+            marks = [each for each in step.behaviours if each.verb in ("plot", "control")]
+            if not marks:
+                continue
+            first = take_page_snapshot(lab_at(lesson, step, store()), 1.0)
+            for words in map(Words, COURSE.languages()):
+                shown = labels(lesson.scene_at(index), first, words)
+                for said in marks:
+                    known = names(said, words)
+                    on_page = any(label in text for text in shown for label in known)
+                    assert on_page != said.absent, (lesson.name, said.text, known, shown)
+                    seen += 1
+    assert seen > 10
