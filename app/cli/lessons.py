@@ -47,7 +47,12 @@ class CheckLessons:
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
-        from onpath.app.lab.dry_runs.cheat_check import asked_tasks, cheat_faults, passes_of
+        from onpath.app.lab.dry_runs.cheat_check import (
+            asked_tasks,
+            attempts,
+            cheat_faults,
+            passes_of,
+        )
         from onpath.app.lab.dry_runs.course_check import play_course
         from onpath.app.lab.dry_runs.sentence_check import unplayed
         from onpath.app.lab.loops.loop_cache import LoopCache
@@ -58,7 +63,7 @@ class CheckLessons:
             store = LoopCache(at_once=True)
             problems = list(play_course(course, folder, store))
             if self.cheat:
-                problems += cheat_faults(course, folder, store)
+                problems += cheat_faults(attempts(course, folder), store)
                 for asked in asked_tasks(course, folder):
                     print(found := passes_of(asked, store), flush=True)
                     problems += found.problems()

@@ -27,7 +27,7 @@ from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
-from onpath.models.control.forecast import UNMODELLED, forecasts, unmodelled
+from onpath.models.control.forecast import UNMODELLED, doubts, forecasts
 from onpath.models.control.settable import changed
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -331,12 +331,13 @@ class Lab:
         if caution or self.locked:
             return caution
         path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
-        if robot.system.n == robot.system.m or robot.system.modes:
-            return unmodelled(robot, laws, session.parameters)
         inputs = robot, laws, session.parameters, path
         if self._forecast is None or self._forecast[0] != inputs:
-            q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
-            messages = forecasts(robot, laws, session.parameters, q)
+            if robot.system.modes:
+                messages = doubts(robot, laws, session.parameters, path)
+            else:
+                q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
+                messages = forecasts(robot, laws, session.parameters, q, path)
             self._forecast = inputs, next(iter(messages), None)
         return self._forecast[1]
 

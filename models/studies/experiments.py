@@ -170,7 +170,8 @@ def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:
     `run` refuses a singular start.
     """
     robot = experiment.robot()
-    messages = forecasts(robot, laws, experiment.parameters, robot.rest(experiment.begin()))
+    begin, parameters = robot.rest(experiment.begin()), experiment.parameters
+    messages = forecasts(robot, laws, parameters, begin, experiment.curve())
     return "; ".join(str(each) for each in messages if each != SINGULAR)
 
 

@@ -43,6 +43,12 @@ LAST_BITS = dict.fromkeys(MATHEMATICS, 1) | {"hypot": 2, "fmod": 0, "remainder":
 """How far functions of the browser's mathematics may be off."""
 TICKS, CLOSE = 1000, 1e-12
 FEW_BITS, TIMES = 2.0**-50, 4.0
+OBSERVED = {
+    "encoder_counts": 2000,
+    "sensor_noise": 1e-4,
+    "observer_time": 0.008,
+    "control_rate": 250,
+}
 TYPED = "across = -K1*xi - K2*tanh(dxi); along = min(-K5*(dtheta - speed), 3)"
 CASES = [
     *((robot, law, {}) for robot in ROBOTS for law in NAMES),
@@ -50,11 +56,12 @@ CASES = [
     ("five_bar", TYPED, {}),
     ("flexible", "path_following", {"output": "composite", "modes": 2}),
     ("five_bar", "path_following", {"delay": 1.5, "stiction": 0.02, "sensor_noise": 0.002}),
+    ("two_link_arm", "path_following", OBSERVED),
 ]
 QUICK = [
     ("five_bar", "path_following", {}),
     ("spatial_arm", "trajectory_tracking", {}),
-    *CASES[-3:],
+    *CASES[-4:],
 ]
 KINDS: list[dict[str, Any]] = [
     {"encoder_counts": 4000, "coulomb": 0.01},
@@ -102,7 +109,9 @@ def assert_same_run(page: Page, name: str, law: str, values: dict[str, Any], cur
     calm = {"output": "redefined"} if name == "flexible" else {}  # composite diverges in some kinds
     parameters: Parameters = replace(ROBOTS[name].parameters(), **{**calm, **values})
     robot = ROBOTS[name].make(parameters)
-    kernel = kernel_of(robot, kind_of(law, parameters, curve))
+    kind = kind_of(law, parameters, curve)
+    assert kind.observer == (kind.encoder or kind.noise)  # the observer is in new labs
+    kernel = kernel_of(robot, kind)
     start = robot.frame.lift(curve.at(np.array(0.3)))
     state = first_state(robot, kernel, curve, robot.rest(start))
     brake = Push(hold=brake_at(robot, curve, start, 0.3))

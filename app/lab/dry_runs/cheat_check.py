@@ -103,21 +103,26 @@ def asked_tasks(course: Course, folder: Path) -> Iterator[Asked]:
                 yield Asked(lesson, index, task, references[task.id], file)
 
 
-def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
-    """Find tasks that can be passed without doing what they ask.
-
-    Args:
-        course, folder, store: see `course_check.play_course`.
-    """
-    attempts = [
+def attempts(course: Course, folder: Path) -> list[tuple[Asked, Cheat]]:
+    """All cheats of all tasks; see `asked_tasks`."""
+    return [
         (asked, cheat)
         for asked in asked_tasks(course, folder)
         for cheat in cheats(asked.lesson, asked.index, asked.task, asked.reference)
     ]
-    attempts.sort(key=lambda each: each[1].words)  # those with the same loops are adjacent
-    trials = ((asked, cheat.script) for asked, cheat in attempts)
+
+
+def cheat_faults(tried: Iterable[tuple[Asked, Cheat]], store: LoopCache) -> Iterator[Problem]:
+    """Find tasks that can be passed without doing what they ask.
+
+    Args:
+        tried: the cheats to try; see `attempts`.
+        store: compiles and keeps the loops.
+    """
+    ordered = sorted(tried, key=lambda each: each[1].words)  # the same loops are adjacent
+    trials = ((asked, cheat.script) for asked, cheat in ordered)
     found = dict[tuple[Path, str, str], tuple[Asked, Cheat]]()  # the first with each control
-    for (asked, cheat), passed in zip(attempts, passes(trials, store), strict=True):
+    for (asked, cheat), passed in zip(ordered, passes(trials, store), strict=True):
         if passed:
             found.setdefault((asked.file, asked.task.id, cheat.control), (asked, cheat))
     for (_, _, control), (asked, cheat) in sorted(found.items(), key=lambda each: each[0]):

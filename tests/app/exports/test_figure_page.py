@@ -28,6 +28,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.cases import drawn, some
 
 CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
 LARGEST = 1_500_000  # [B]
@@ -113,10 +114,10 @@ LARGEST_PAGE = "flexible"
 
 @pytest.mark.parametrize(
     "robot",
-    [
-        pytest.param(name, marks=() if name == LARGEST_PAGE else pytest.mark.thorough)
-        for name in ROBOTS
-    ],
+    some(
+        [LARGEST_PAGE, *drawn([name for name in ROBOTS if name != LARGEST_PAGE], 2)],
+        quick=[LARGEST_PAGE],
+    ),
 )
 def test_a_page_with_all_laws_has_at_most_a_megabyte_and_a_half(robot: str, tmp_path: Path) -> None:
     """Whatever laws the author includes."""

@@ -40,6 +40,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameter_specs import FORMER_NAMES
 from tests.support.built_in import built_in_course
+from tests.support.cases import drawn
 from tests.support.checkout import ROOT
 from tests.support.lab import do, new_lab, run, states, store, y
 
@@ -102,7 +103,7 @@ def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_share_code_means_what_it_meant(name: str) -> None:
     case = CASES[name]
     lab = opened(case["code"])
@@ -116,7 +117,7 @@ def test_a_share_code_means_what_it_meant(name: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_share_code_moves_as_it_moved(name: str) -> None:
     case = CASES[name]
     lab = opened(case["code"])
@@ -135,7 +136,7 @@ def written_out(case: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
     data = CASES[name]["data"]
     lab = new_lab()

@@ -254,7 +254,7 @@ def test_what_is_stored_stays_below_its_bound(course: Course, sequence: list[c.C
 
 
 @pytest.mark.thorough
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(ANY, min_size=20, max_size=120))
 def test_what_is_stored_stays_below_its_bound_for_long(
     course: Course, sequence: list[c.Command]
