@@ -9,7 +9,6 @@ import re
 import sys
 import warnings
 from collections.abc import Iterator
-from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -29,7 +28,12 @@ def main() -> None:
     arguments = sys.argv[1:]
     if arguments and (arguments[0] in COMMANDS.keys() - {"serve"} or arguments[0] in _INSTEAD):
         sys.exit(run_command(arguments))
-    sys.exit(supervised(partial(run_command, arguments)))
+
+    def serve(again: bool) -> int:
+        opened = {"--open"} if again else set[str]()  # its tab comes back by itself
+        return run_command([given for given in arguments if given not in opened])
+
+    sys.exit(supervised(serve))
 
 
 def _print_any_text() -> None:

@@ -19,15 +19,16 @@ SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail aga
 LOOK = 0.5  # [s] between a child's looks for its parent
 
 
-def supervised(serve: Callable[[], int]) -> int:
+def supervised(serve: Callable[[bool], int]) -> int:
     """Serve in a child, and again if it crashes or hangs; return its exit code.
 
     Args:
-        serve: serves until it is asked to stop; returns the exit code.
+        serve: serves until it is asked to stop, and returns the exit code; told whether an earlier
+            process has served before it.
     """
     if not hasattr(os, "fork") or "NOTIFY_SOCKET" in os.environ:
-        return serve()
-    child = 0
+        return serve(False)
+    child, again = 0, False
 
     def hand_on(number: int, _: object) -> None:
         if not child:
@@ -41,12 +42,12 @@ def supervised(serve: Callable[[], int]) -> int:
             for number, handler in handlers.items():
                 signal.signal(number, handler)
             threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
-            return serve()
+            return serve(again)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         goes_on = code < 0 or code == os.EX_SOFTWARE  # see `app.server.watchdog`
         if not goes_on or time.monotonic() - begun < SOON:
             return code if code >= 0 else 128 - code
-        child = 0
+        child, again = 0, True
         print(f"onpath: the lab has ended with code {code}; it starts again", file=sys.stderr)
 
 

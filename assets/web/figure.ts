@@ -27,6 +27,7 @@ export class Figure {
     private readonly strip = new Strip(this.data, this.engine, this.ended)
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
+    private readonly late = made("p", "late") // which moves nothing when it comes and goes
     private readonly poles = made("p", "poles")
     readonly controls = new Controls(this.simulation, this, this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
@@ -90,7 +91,7 @@ export class Figure {
         return [
             made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.past, ...brakes)),
             this.note,
-            made("div", "bar", ...(strip.length ? [title] : []), transport.element),
+            made("div", "bar", ...(strip.length ? [title, this.late, transport.element] : [transport.element, this.late])),
             ...strip,
             controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),
@@ -124,9 +125,10 @@ export class Figure {
         const captions = engine.texts.map(text => (past === null ? text.caption : ""))
         this.captions.forEach((element, i) => tell(element, captions[i]!))
         const late = engine.lost > LATE ? said(data, "standalone.late") : ""
-        const note = [notes(simulation), late].filter(Boolean).join(" ")
+        const note = notes(simulation)
         tell(this.note, note)
-        this.say(captions, note)
+        tell(this.late, late)
+        this.say(captions, `${note} ${late}`.trim())
     }
 
     /** Announce what robots do when it changes, and from time to time their millimetres. */

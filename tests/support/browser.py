@@ -74,17 +74,24 @@ class Note(Command):
 
 
 class Elapse(Command):
-    """A command that advances simulated time, frame by frame, as fast as it can be computed."""
+    """A command that advances simulated time, frame by frame, as fast as it can be computed.
+
+    Attributes:
+        left: simulated time that is left because loops are being made, [s].
+    """
 
     def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
+        self.left = seconds
 
     def apply(self, lab: Lab) -> None:
         dt = time_step(lab.session.parameters)
-        left, each = round(self.seconds / dt), round(FRAME / dt)
+        left, each = round(self.left / dt), round(FRAME / dt)
         while left > 0:
             lab.session.simulate(min(each, left))
+            if lab.session.lacks_loops:
+                break
             left -= each
+        self.left = max(left, 0) * dt
 
 
 class Tab:
@@ -207,7 +214,13 @@ class Tab:
 
     def elapse(self, seconds: float) -> None:
         """Advance the simulated time of a paused lab by an exact number of ticks."""
-        self.ask(Elapse(seconds))
+        elapse = Elapse(seconds)
+
+        def has_elapsed() -> bool:
+            self.ask(elapse)
+            return elapse.left == 0
+
+        wait_for(has_elapsed)
 
     # Positions.
 
