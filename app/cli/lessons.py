@@ -57,12 +57,12 @@ class CheckLessons:
 
         course, problems, folder = read_folder(self.folder or BUILT_IN)
         if not problems:
-            store = LoopCache(at_once=True)
-            problems = list(play_course(course, folder, store))
+            loop_cache = LoopCache(at_once=True)
+            problems = list(play_course(course, folder, loop_cache))
             if self.cheat:
-                problems += cheat_faults(attempts(course, folder), store)
+                problems += cheat_faults(attempts(course, folder), loop_cache)
                 for asked in asked_tasks(course, folder):
-                    print(found := passes_of(asked, store), flush=True)
+                    print(found := passes_of(asked, loop_cache), flush=True)
                     problems += found.problems()
         if not problems and (count := unplayed(course, folder)):
             says = _count(count, "sentence")

@@ -186,14 +186,14 @@ export class Figure {
         const { simulation, inLesson, ended: signal } = this
         let pulling = "" // the key that pulls
         addEventListener("keydown", event => {
-            const key = keyOf(event), way = PULLS[key]
+            const key = keyOf(event), direction = PULLS[key]
             if (isTyped(event) || (event.repeat && !inLesson)) return
             if (inLesson && key === "x") simulation.pull(null)
-            if (!way) return
+            if (!direction) return
             pulling = key
             const [x, y] = (inLesson && simulation.sides.find(side => side.pulledBy)?.pulledBy) || [0, 0]
             const step = inLesson ? FURTHER : PULL
-            simulation.pull([x + step * way[0], y + step * way[1]])
+            simulation.pull([x + step * direction[0], y + step * direction[1]])
         }, { capture: true, signal }) // also while a slider has the focus
         addEventListener("keyup", event => !inLesson && keyOf(event) === pulling && simulation.pull(null), { capture: true, signal })
         addEventListener("blur", () => simulation.pull(null), { signal })

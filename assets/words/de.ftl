@@ -1544,8 +1544,8 @@ error-share_strange = Dieser Code enthält Dinge, die kein Labor hat.
 error-share_does_not_fit = Dieser Code passt nicht zu diesem OnPath: { $error }.
 error-no_such_lab = zu diesem Code gibt es kein Labor
 error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe erst jenes
-error-session_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
-error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor; einer sieht aus wie { $example }
+error-lab_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
+error-lab_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor; einer sieht aus wie { $example }
 
 ## Ablehnungen: was in einer Datenbank gespeichert wird (app/storage)
 

@@ -915,7 +915,7 @@ identified-other_robot = Identification works with the five-bar linkage only: ch
 report-title = Record of my lessons
 report-made = Made on { $date }
 report-date = %Y-%m-%d at %H:%M
-report-code = session code { $code }
+report-code = lab code { $code }
 report-point = .
 report-none = No lesson has been opened yet.
 report-lesson = Lesson
@@ -1169,7 +1169,7 @@ error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete 
 error-svg_large = line { $line }: the drawing has more than { $most } elements, or more than { $deepest } nested in each other
 error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
 
-## Refusals: share codes and session codes
+## Refusals: share codes and lab codes
 
 error-share_too_long = This text is much too long: a share code has a few hundred characters.
 error-share_missing = There is no share code in this text: it begins with ONPATH{ $version }-.
@@ -1182,8 +1182,8 @@ error-share_strange = This share code contains things that no lab has.
 error-share_does_not_fit = This share code does not fit this version of OnPath: { $error }.
 error-no_such_lab = there is no lab with this code
 error-lab_is_open = this lab is open in another window: close that one first
-error-session_code_length = a session code has { $length } letters and digits, like { $example }
-error-session_code_letters = this is not a session code: 0, 1, i, l and o do not occur in one; one looks like { $example }
+error-lab_code_length = a lab code has { $length } letters and digits, like { $example }
+error-lab_code_letters = this is not a lab code: 0, 1, i, l and o do not occur in one; one looks like { $example }
 
 ## Refusals: what is kept in a database (app/storage)
 

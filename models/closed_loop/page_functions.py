@@ -90,7 +90,7 @@ def grid_of(robot: Robot, curve_points: Array) -> Array:
 def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
     """`Robot.seen`, (2, 3), and `place` of y = 0."""
     seen = ca.DM(robot.seen)
-    return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
+    return seen, seen @ ca.DM(robot.position(np.zeros(robot.system.p)))
 
 
 def front_of(robot: Robot) -> Array:
@@ -111,7 +111,7 @@ def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
 
 
 def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
-    """`Robot.unplace`."""
+    """`Robot.output_at`."""
     return ca.DM(robot.axes) @ (point - ca.DM(robot.home))
 
 

@@ -119,7 +119,7 @@ class Robot:
 
     def endpoint(self, q: Array) -> Array:
         """The actual end-point, shape (..., n) -> (..., p), [m]."""
-        return self.unplace(_tip(self.core)(q))
+        return self.output_at(_tip(self.core)(q))
 
     def rest(self, y: Array) -> Array:
         """Configurations at rest with the end-point at y, shape (..., p) -> (..., n).
@@ -186,12 +186,12 @@ class Robot:
         ends = np.cumsum([each.numel() for each in self.extras.values()])[:-1]
         return dict(zip(self.extras, np.split(values, ends, axis=-1), strict=True))
 
-    def place(self, y: Array) -> Array:
+    def position(self, y: Array) -> Array:
         """Points of the output space in the robot's frame, (..., p) -> (..., 3), [m]."""
         return y @ self.axes + np.array(self.home)
 
-    def unplace(self, point: Array) -> Array:
-        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
+    def output_at(self, point: Array) -> Array:
+        """The inverse of `position`, (..., 3) -> (..., p), [m]."""
         return (point - np.array(self.home)) @ self.axes.T
 
     @property
@@ -219,7 +219,7 @@ class Robot:
         line = np.linspace(-self.reach, self.reach, CELLS)
         z = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
         inside = z[self.margin(z) > LEAST_REGULARITY]
-        cells = self.place(self.frame.lift(inside)) @ self.seen.T
+        cells = self.position(self.frame.lift(inside)) @ self.seen.T
         return sketch(bars.T, joints.T, cells, 2 * self.reach / (CELLS - 1))
 
 

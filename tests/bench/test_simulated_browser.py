@@ -60,16 +60,16 @@ def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
     server = LabServer("127.0.0.1", 0, LoopCache())
     try:
         first, then = asyncio.run(look(server.server.get_port()))
-        labs = server.simulation.labs
+        labs = server.thread.labs
     finally:
         server.stop()
     assert first.clients == then.clients == 2
     assert then.seconds == pytest.approx(4.5, abs=0.5)
     assert 10 < then.slowest_hz <= then.median_hz < 62
     assert then.bytes_per_s > 0 and 0 < then.cpu < 1.5
-    assert all(lab.session.time > 1.0 for lab in labs)
-    assert max(run.max_distance for lab in labs for run in lab.session.runs.values()) > 0.004
-    assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
+    assert all(lab.simulation.time > 1.0 for lab in labs)
+    assert max(run.max_distance for lab in labs for run in lab.simulation.runs.values()) > 0.004
+    assert any(lab.simulation.parameters.K1 != 400.0 for lab in labs)
 
 
 @pytest.mark.thorough
@@ -81,7 +81,7 @@ def test_what_a_script_says_reaches_its_lab_also_after_it_was_hung_up_on() -> No
         script = Script(server.server.get_port(), lambda draw: next(said))
         browsing = asyncio.create_task(script.browse(math.inf))
         async with asyncio.timeout(WAIT):
-            while all(lab.session.parameters.K1 != 77.0 for lab in server.simulation.labs):
+            while all(lab.simulation.parameters.K1 != 77.0 for lab in server.thread.labs):
                 await asyncio.sleep(0.05)
         browsing.cancel()
         await asyncio.gather(browsing, return_exceptions=True)

@@ -103,7 +103,7 @@ ROWS = {
     ),
     "one-sided wall": Row(said=("wall.switch",)),
     "looking back over the last minute": Row(said=("chart.look",)),
-    "set-ups, share codes, sessions that are kept": Row(said=("keep.share", "keep.paste")),
+    "set-ups, share codes, labs that are kept": Row(said=("keep.share", "keep.paste")),
     "classroom, concept test, routes, record as a page": Row(said=("keep.report", "class.export")),
     "export of CSV, pictures and films, identification": Row(
         said=("export.table", "export.picture", "export.film", "gains.identify")

@@ -75,7 +75,7 @@ def _draw_scene(
     picture = ca.Function("picture", [q], [*robot.skeleton(q, ca.SX(1))])
 
     def place(points: Array) -> Array:
-        return 1e3 * robot.seen @ robot.place(points).T
+        return 1e3 * robot.seen @ robot.position(points).T
 
     path = robot.frame.lift(curve.at(np.linspace(-np.pi, np.pi, 361)))
     axes.plot(*place(path), color=palette.GREY.hex, linewidth=1.2)

@@ -1,4 +1,4 @@
-"""Closed loops for sessions: compiled in the background, shared by all labs."""
+"""Closed loops for labs: compiled in the background, shared by all labs."""
 
 from __future__ import annotations
 

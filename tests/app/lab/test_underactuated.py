@@ -79,7 +79,7 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
     do(lab, c.SetRunning(True))
     run(lab, 0.3)
     for side in SIDES:
-        stopped = lab.session.runs[side].diverged
+        stopped = lab.simulation.runs[side].diverged
         assert stopped is not None
         assert f"Likely cause: the {SINGULAR}" in str(stopped.reason)
     assert SINGULAR in lab.message and lab.message_level == "error"
@@ -91,14 +91,14 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
 def test_it_runs_under_every_law_that_suits_it(robot: str, law: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
-    if not lab.session.suits(law):
+    if not lab.simulation.suits(law):
         with pytest.raises(CodedError, match="not possible with this robot"):
             onpath.simulate(robot, law=law)
         return
     do(lab, c.ChooseLaw(FOLLOWER, law))
     run(lab, 0.5)
     assert_sound(lab)
-    assert lab.session.runs[FOLLOWER].diverged is None
+    assert lab.simulation.runs[FOLLOWER].diverged is None
     assert onpath.simulate(robot, law=law, duration=0.5).stopped_at is None
 
 

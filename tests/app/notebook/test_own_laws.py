@@ -299,10 +299,10 @@ def test_a_lab_begins_with_the_law_and_a_fault_in_it_stops_its_own_robot() -> No
         memory = (("age", 1),)
 
     lab = new_lab(LoopCache(at_once=True), built_in_course(), law=compiled_law(Roots))
-    assert lab.session.laws == {"left": "trajectory_tracking", "right": "Roots"}
-    lab.session.simulate(600)
-    assert lab.session.faults == ["right"]
-    stop = lab.session.runs["right"].diverged
+    assert lab.simulation.laws == {"left": "trajectory_tracking", "right": "Roots"}
+    lab.simulation.simulate(600)
+    assert lab.simulation.faults == ["right"]
+    stop = lab.simulation.runs["right"].diverged
     assert stop is not None and "(test_own_laws.py, line" in str(stop.reason)
 
 

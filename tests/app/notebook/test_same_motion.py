@@ -27,7 +27,7 @@ from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.cases import some
 from tests.support.figure_runs import PythonFigure
-from tests.support.lab import do, new_lab, store
+from tests.support.lab import do, loop_cache, new_lab
 from tests.support.some_setups import CALM
 
 SECONDS = 0.2
@@ -102,13 +102,13 @@ def in_the_lab(robot: str, path: str, law: str, own: dict[str, Any]) -> np.ndarr
     """The last end-point."""
     lab = new_lab()
     laws = {LEFT: law, RIGHT: law}
-    restore(lab.session, Setup(robot, {robot: RobotSetup(own, SetupPath(path))}, laws=laws))
+    restore(lab.simulation, Setup(robot, {robot: RobotSetup(own, SetupPath(path))}, laws=laws))
     return last_in_the_lab(lab, own)
 
 
 def last_in_the_lab(lab: Any, own: dict[str, Any]) -> np.ndarray:
-    lab.session.simulate(ticks(own))
-    both = [run.shown()["y"] for run in lab.session.runs.values()]
+    lab.simulation.simulate(ticks(own))
+    both = [run.shown()["y"] for run in lab.simulation.runs.values()]
     return both[1]
 
 
@@ -149,20 +149,20 @@ def test_the_newcomers_motion_has_a_name(robot: str) -> None:
 
     assert dict(onpath.NEWCOMER) == {"speed": 2.0, "ramp": 4.0}
     run = onpath.simulate(robot, duration=SECONDS, **onpath.NEWCOMER)
-    lab = newcomers_lab(store(), NO_LESSONS)
+    lab = newcomers_lab(loop_cache(), NO_LESSONS)
     do(lab, c.ChooseRobot(robot))
     assert np.array_equal(last_in_the_lab(lab, {}), run.y[-1])
     choice = figure_of(robot, "circle", "path_following")
     assert np.array_equal(in_a_figure(choice, {}), run.y[-1])
-    assert choice.parameters == lab.session.parameters == run.experiment.parameters
+    assert choice.parameters == lab.simulation.parameters == run.experiment.parameters
 
 
 @pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
 def test_a_robot_has_one_set_of_defaults(robot: str) -> None:
     usual = ROBOTS[robot].parameters()
     lab = new_lab()
-    restore(lab.session, Setup(robot))
-    assert lab.session.parameters == usual
+    restore(lab.simulation, Setup(robot))
+    assert lab.simulation.parameters == usual
     assert onpath.simulate(robot, duration=0.01).experiment.parameters == usual
     own = {"speed": usual.speed}
     shown = figure_of(robot, "circle", "path_following", **own)

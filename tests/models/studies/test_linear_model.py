@@ -272,8 +272,8 @@ def test_the_file_of_a_lab_is_read_with_its_sides_and_typed_laws(
     run_lab(lab, 1.0)
     do(lab, c.Hold(on=False))
     run_lab(lab, 2.0)
-    path.write_bytes(csv_bytes(lab.session.robot, lab.session.history.all()))
-    laws = [law for law, _ in read_records(path, lab.session.robot)]
+    path.write_bytes(csv_bytes(lab.simulation.robot, lab.simulation.history.all()))
+    laws = [law for law, _ in read_records(path, lab.simulation.robot)]
     assert laws == ["trajectory_tracking", typed, "path_following", typed]
     for more, seconds in ([], 12), (["--law", typed], 6):
         assert run_command(["identify", str(path), "--json", *more]) == 0
