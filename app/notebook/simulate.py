@@ -79,8 +79,8 @@ def simulate(
         law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
             "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
             in CasADi, a class of such objects, or a function that is called in every control
-            interval, see `python_law` in models/control/laws/python_law.py; or one of these in a
-            file, as "my_law.py:Name".
+            interval, and once before the run, to check what it returns, see `python_law` in
+            models/control/laws/python_law.py; or one of these in a file, as "my_law.py:Name".
         duration: simulated time, [s].
         start: initial position of the end-point, shape (2,) in the path's plane or (p,)
             in the output space, [m]; None: the point of the path at theta = 0.

@@ -28,7 +28,8 @@ def test_a_function_knows_the_torques_of_its_command(robot: str) -> None:
         return command
 
     run = onpath.simulate(robot, law=law, duration=0.3)
-    np.testing.assert_allclose(run.torque, wanted, rtol=1e-9, atol=1e-9)
+    _, *asked = wanted  # the first call, before the run, checks what is returned
+    np.testing.assert_allclose(run.torque, asked, rtol=1e-9, atol=1e-9)
 
 
 def test_its_programmes_are_solved() -> None:
