@@ -107,9 +107,11 @@ def read_course(
         )
         if not found:
             text = "no lessons: a lesson is a folder in it with en.md"
-            if _is_lesson(folder):
+            if not folder.exists():
+                text = "there is no such folder"
+            elif _is_lesson(folder):
                 text = f"this is a lesson itself: name the folder that it is in, {folder.parent}"
-            problems.append(Problem(str(folder), 1, text))
+            problems.append(Problem(str(folder), 0, text))
         for home in found:
             versions, wrong = read_versions(home)
             problems += wrong

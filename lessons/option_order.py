@@ -21,7 +21,7 @@ def option_order(count: int, question: str, student: str) -> tuple[int, ...]:
     Args:
         count: number of options.
         question: identifies the question, in the same way in all languages.
-        student: identifies the student, such as the session code of the lab; empty for the
+        student: identifies the student, such as the code of the lab; empty for the
             author's order.
     """
     if not student:

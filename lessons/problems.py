@@ -10,14 +10,15 @@ from difflib import get_close_matches
 
 @dataclass(frozen=True, slots=True, order=True)
 class Problem:
-    """A problem in a file, and its place."""
+    """A problem in a file, and its place; line 0: in a file or folder as a whole."""
 
     path: str
     line: int
     text: str
 
     def __str__(self) -> str:
-        return f"{self.path}:{self.line}: {self.text}"
+        place = f"{self.path}:{self.line}" if self.line else self.path
+        return f"{place}: {self.text}"
 
 
 class LessonError(ValueError):

@@ -8,9 +8,10 @@ In Python, without a browser:
 (3000,)
 
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
-arguments. `onpath.path_from("logo.svg")` reads a path from a file. A law of one's own is given as
-`law=`; one in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`, and
-`onpath.arena` compares it with all others.
+arguments. Robot, path and law come first, in this order, in every function, and on the command line
+as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A law of one's own
+in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`.
+`onpath.sweep` and `onpath.arena` take several of each, and `onpath.figure` makes a live page.
 Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
 in figures and in the lab. A new lab and a figure begin more slowly, as with `**onpath.NEWCOMER`.
@@ -42,11 +43,14 @@ if TYPE_CHECKING:
     from onpath.app.notebook.simulate import segment as segment
     from onpath.app.notebook.simulate import simulate as simulate
     from onpath.app.notebook.simulate import through as through
+    from onpath.app.notebook.sweep import SweepResult as SweepResult
+    from onpath.app.notebook.sweep import sweep as sweep
 
 __all__ = (
     "NEWCOMER",
     "ArenaResult",
     "Run",
+    "SweepResult",
     "arena",
     "check_path",
     "circle",
@@ -63,6 +67,7 @@ __all__ = (
     "robots",
     "segment",
     "simulate",
+    "sweep",
     "tangential",
     "through",
 )
@@ -78,6 +83,8 @@ _MODULES = {
     "tangential": "own_law",
     "path_from": "path_files",
     "check_path": "path_files",
+    "sweep": "sweep",
+    "SweepResult": "sweep",
 }
 """Public names that are not in app/notebook/simulate.py -> the module that has them."""
 
@@ -88,6 +95,8 @@ if not (Path(__file__).parent / "app").is_dir():
 
 def __getattr__(name: str) -> Any:
     """Public names, imported when they are first used: `import onpath` alone is quick."""
+    if name == "__version__":
+        return import_module("importlib.metadata").version("onpath")
     if name not in __all__:
         raise AttributeError(f"module 'onpath' has no attribute {name!r}")
     module = import_module(f"onpath.app.notebook.{_MODULES.get(name, 'simulate')}")
@@ -96,4 +105,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted([*__all__, "__version__"])

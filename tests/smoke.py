@@ -27,7 +27,7 @@ def main() -> None:
 
     with tempfile.TemporaryDirectory() as folder:
         page = Path(folder) / "figure.html"
-        subprocess.run([onpath, "export", "figure", str(page)], check=True)
+        subprocess.run([onpath, "figure", str(page)], check=True)
         assert page.read_text("utf-8").count("<script") == 2
 
     with socket.socket() as probe:

@@ -43,7 +43,7 @@ ORDER = [
 MATHEMATICS = ("models", "lessons")
 FOREIGN = {"viser", "threading", "time", "asyncio", "datetime", "random"}
 DRAWING = ("app.page", "app.scene")
-LIVE = ("lab", "session", "history", "lesson_run", "snapshots.take_snapshot")
+LIVE = ("lab", "simulation", "history", "lesson_run", "snapshots.take_snapshot")
 """Modules of app.lab that know a lab as it lives: what draws is given snapshots of it."""
 
 
@@ -158,7 +158,7 @@ def test_no_folder_imports_itself_by_way_of_others() -> None:
 
 
 def test_the_simulated_lab_knows_nothing_of_its_user() -> None:
-    edges, needed, new = graph(), set[str](), {"app.lab.session"}
+    edges, needed, new = graph(), set[str](), {"app.lab.simulation"}
     while new:
         needed |= new
         new = {module for each in new for module in edges[each]} - needed
@@ -177,7 +177,7 @@ def test_what_draws_knows_no_lab_but_snapshots() -> None:
         attributes = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
         simulation = "app.simulation.simulation_thread"
         return {m for m in modules if m.startswith((simulation, *live))} | (
-            attributes & {"lab", "session"}
+            attributes & {"lab", "simulation"}
         )
 
     assert offenders(known) == []
@@ -275,7 +275,7 @@ def test_files_of_pages_come_in_one_way() -> None:
 def test_rules_would_notice() -> None:
     bad = ast.parse("import threading\nfrom viser import x\ndef f():\n    import app.cli.main\n")
     assert packages(bad) == {"threading", "viser", "app"}
-    assert folder_of("onpath.app.lab.session") == "app.lab"
+    assert folder_of("onpath.app.lab.simulation") == "app.lab"
     assert folder_of("onpath.models.arrays.Array") == "models"
     first = sources()[0].relative_to(ROOT)
     assert offenders(lambda file: file == sources()[0] and "bad") == [f"{first}: bad"]

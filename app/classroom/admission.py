@@ -42,7 +42,7 @@ class Admission:
         Args:
             typed: the text entered.
             keys: valid keys, in the stored form of `app.common.access_codes`.
-            who: session code of the tab.
+            who: lab code of the tab.
 
         Raises:
             ValueError: the key is wrong, or this tab has failed too often.

@@ -132,10 +132,10 @@ class ClassKeeper:
         elif not self._records.is_current(self.id, classes):
             raise HeldElsewhere
 
-    def _progress(self, session: str) -> Progress:
+    def _progress(self, lab: str) -> Progress:
         """The progress stored with a student's lab."""
         try:
-            state = self._records.load(session)
+            state = self._records.load(lab)
             return NOTHING_DONE if state is None else read_progress(state.get("lessons"))
         except (OSError, ValueError) as error:
             log_warning("a student's progress cannot be read: %s", error)

@@ -54,8 +54,8 @@ def to_stored(state: ClassState, now: float) -> Stored:
     """
     orders = state.orders
     members = [
-        StoredMember(session, each.number, each.name, _settled(each, now))
-        for session, each in state.members.items()
+        StoredMember(lab, each.number, each.name, _settled(each, now))
+        for lab, each in state.members.items()
     ]
     stored = StoredClass(
         joined=state.joined,
@@ -79,7 +79,7 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
     """The class as it was stored; empty if there is none, or if it is invalid.
 
     Args:
-        progress: returns the progress of a session code.
+        progress: returns the progress of a lab code.
         now: time on the class's clock, [s].
     """
     if data is None:
@@ -92,8 +92,8 @@ def from_stored(data: Stored | None, progress: Callable[[str], Progress], now: f
     members: dict[str, Member] = {}
     for each in kept.members[:MOST_MEMBERS]:
         if (read := _member(each)) is not None:
-            session, member = read
-            members[session] = replace(member, progress=progress(session), active=now)
+            lab, member = read
+            members[lab] = replace(member, progress=progress(lab), active=now)
     joined = max([kept.joined, *(member.number for member in members.values())])
     orders = Orders(kept.frozen, kept.pushes, read_push(kept.push), kept.pace)
     return ClassState(

@@ -16,7 +16,7 @@ from onpath.app.lab.lab import Lab
 SYNC_INTERVAL = 0.25  # [s]
 GAINS = ("K1", "K2", "K3", "K4", "K5")
 Find = Callable[[str], tuple[Lab, bool] | None]
-"""The lab of a session code and whether a browser is connected; None if it is not here."""
+"""The lab of a code and whether a browser is connected; None if it is not here."""
 
 
 class ClassSync:
@@ -97,5 +97,5 @@ def _give(orders: Orders, lab: Lab, is_new: bool) -> None:
 
 def gains_of(lab: Lab) -> tuple[float, ...]:
     """The gains of a lab, in the order of `GAINS`. Safe, since its parameters are immutable."""
-    parameters = lab.session.parameters
+    parameters = lab.simulation.parameters
     return tuple(float(getattr(parameters, name)) for name in GAINS)

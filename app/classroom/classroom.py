@@ -37,7 +37,7 @@ class Member:
     """A student's record in the class.
 
     Attributes:
-        number: serial number by order of joining; unlike the session code it may be shown.
+        number: serial number by order of joining; unlike the lab code it may be shown.
         name: the nickname; may hold any printable characters, so it must be escaped.
         progress: progress through the lessons at the last update.
         connected: whether a browser is connected to the lab.
@@ -97,7 +97,7 @@ class ClassState:
     Attributes:
         joined: number of students who have ever joined.
         passes: hashes of the teachers' passes.
-        members: students by session code, in order of joining.
+        members: students by lab code, in order of joining.
     """
 
     joined: int = 0
@@ -140,7 +140,7 @@ class Classroom:
         """Issue a pass for a teacher's browser in exchange for the key.
 
         Args:
-            who: session code of the browser.
+            who: lab code of the browser.
 
         Raises:
             ValueError: the key is wrong, or too many keys have been.
@@ -163,58 +163,58 @@ class Classroom:
 
     # Members
 
-    def join(self, session: str, typed: str, name: str) -> Member:
+    def join(self, lab: str, typed: str, name: str) -> Member:
         """Add a student, or change the nickname of one who has already joined.
 
         Args:
-            session: code of the student's lab.
+            lab: code of the student's lab.
             typed: the class code.
 
         Raises:
             ValueError: the code is wrong, or too many have been; the nickname is empty; or the
                 class is full.
         """
-        self._door.check_code(typed, [self.code], session)
+        self._door.check_code(typed, [self.code], lab)
         with self._lock:
             old = self.state
             new = Member(old.joined + 1, "", active=self.clock())
-            member = seated(old.members, session, name, new)
-            members, joined = {**old.members, session: member}, max(old.joined, member.number)
+            member = seated(old.members, lab, name, new)
+            members, joined = {**old.members, lab: member}, max(old.joined, member.number)
             self.state = replace(old, members=members, joined=joined)
             return member
 
-    def rename(self, session: str, name: str) -> None:
+    def rename(self, lab: str, name: str) -> None:
         """Change a student's nickname. Does nothing if the student has left.
 
         Raises:
             ValueError: the nickname is empty.
         """
         with self._lock:
-            old = self.state.members.get(session)
+            old = self.state.members.get(lab)
             if old is not None:
-                self.note(session, name=seated(self.state.members, session, name, old).name)
+                self.note(lab, name=seated(self.state.members, lab, name, old).name)
 
-    def leave(self, session: str) -> None:
+    def leave(self, lab: str) -> None:
         """Remove a student and all of the student's data from the class."""
         with self._lock:
-            others = {code: each for code, each in self.state.members.items() if code != session}
+            others = {code: each for code, each in self.state.members.items() if code != lab}
             self.state = replace(self.state, members=others)
 
-    def member(self, session: str) -> Member | None:
-        """The member of a session code, if any."""
-        return self.state.members.get(session)
+    def member(self, lab: str) -> Member | None:
+        """The member of a lab code, if any."""
+        return self.state.members.get(lab)
 
     def members(self) -> dict[str, Member]:
-        """All members by session code, in order of joining."""
+        """All members by lab code, in order of joining."""
         return dict(self.state.members)
 
-    def note(self, session: str, **changes: object) -> None:
+    def note(self, lab: str, **changes: object) -> None:
         """Update a member. Does nothing if the student has left."""
         with self._lock:
-            old = self.state.members.get(session)
+            old = self.state.members.get(lab)
             if old is not None:
                 new = replace(old, **changes)  # pyright: ignore[reportArgumentType]
-                self.state = replace(self.state, members={**self.state.members, session: new})
+                self.state = replace(self.state, members={**self.state.members, lab: new})
 
     # Orders
 
@@ -272,22 +272,22 @@ class Classroom:
             return len(old.members)
 
 
-def seated(members: Mapping[str, Member], session: str, name: str, new: Member) -> Member:
+def seated(members: Mapping[str, Member], lab: str, name: str, new: Member) -> Member:
     """A new or renamed member, with a unique name.
 
     Args:
         members: current members of the class.
-        session: code of the student's lab.
+        lab: code of the student's lab.
         name: nickname as typed.
         new: initial record of a student who has not joined yet.
 
     Raises:
         ValueError: the nickname is empty, or the class is full.
     """
-    name, old = cleaned(name), members.get(session)
+    name, old = cleaned(name), members.get(lab)
     if old is None and len(members) >= MOST_MEMBERS:
         raise CodedError("error.class_full")
-    others = {comparison_key(member.name) for code, member in members.items() if code != session}
+    others = {comparison_key(member.name) for code, member in members.items() if code != lab}
     return replace(old or new, name=not_among(others, name))
 
 

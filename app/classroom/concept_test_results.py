@@ -72,12 +72,11 @@ def sheets_without_names(
     A student has the same pseudonym in both tests. It does not reveal who the student is.
 
     Args:
-        students: session code and progress of each student.
+        students: lab code and progress of each student.
         code: the class code.
     """
     hidden = {
-        sha256(f"{code} {session}".encode()).hexdigest()[:8]: progress
-        for session, progress in students
+        sha256(f"{code} {lab}".encode()).hexdigest()[:8]: progress for lab, progress in students
     }
     gain = class_gain(test, [progress for _, progress in students])
     columns = ("pseudonym", "test", "question", "item", "result", "chosen", "right")

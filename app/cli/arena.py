@@ -7,10 +7,8 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
 
-import tyro
-
+from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 INTERRUPTED = 130
@@ -24,12 +22,11 @@ class ArenaCommand:
     have random paths and conditions. The page is written after each round and on Ctrl-C.
     """
 
-    law: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
-    """Your laws, as my_law.py:Name, or typed: "across = …; along = …"."""
-    robot: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Name of a robot, or its URDF or MJCF file; repeat for more. By default the five-bar and the
-    two-link arm."""
-    file_options: FileOptions = NO_OPTIONS
+    robot: Repeated = ()
+    """Name of a robot, or its URDF or MJCF file. Repeat, or put commas between, for more. By
+    default the five-bar and the two-link arm."""
+    law: Repeated = ()
+    """Your law, as my_law.py:Name, or typed, as "across = …; along = …"; repeat for more."""
     only: bool = False
     """Compare only the laws given, which may also be names of OnPath's laws."""
     rounds: int = 3
@@ -38,22 +35,29 @@ class ArenaCommand:
     """Seed of the random numbers: the same seed gives the same trials."""
     processes: int = 0
     """Number of processes; 0: one for each processor."""
+    folder: Path | None = None
+    """Keep finished runs in this folder: an arena that was interrupted goes on where it was."""
     html: Path = Path("arena.html")
     """The page. Its live figures are in a folder beside it, NAME-figures."""
     csv: Path = Path("arena.csv")
     """All runs, one per line."""
-    figures: bool = True
-    """Write a live figure of each law on each robot, unless a law is a Python function."""
+    no_figures: bool = False
+    """Write no live figures. By default there is one of each law on each robot, unless a law is a
+    Python function."""
     language: str = "en"
     """Language of the page."""
+    file_options: FileOptions = NO_OPTIONS
 
     def run(self) -> int:
         """Simulate and write; return 130 if it was interrupted."""
+        from onpath.app.common.atomic_file import check_file
         from onpath.app.common.own_laws import law_given
         from onpath.app.exports.arena_run import Arena, ArenaOptions
         from onpath.lessons.words import Words
         from onpath.models.studies.arena import ROBOT_NAMES
 
+        check_file(self.html, (".html",), "--html")
+        check_file(self.csv, (".csv",), "--csv")
         began = time.monotonic()
         options = ArenaOptions(
             laws=[law_given(text) for text in self.law],
@@ -62,9 +66,10 @@ class ArenaCommand:
             rounds=self.rounds,
             seed=self.seed,
             processes=self.processes,
+            folder=self.folder,
             html=self.html,
             csv=self.csv,
-            figures=self.figures,
+            figures=not self.no_figures,
             language=self.language,
             command=shlex.join(["onpath", "arena", *sys.argv[2:]]),
         )

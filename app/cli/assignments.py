@@ -1,4 +1,4 @@
-"""Reads options that may be repeated, such as `--set name=value`."""
+"""Reads options that give values by name, such as `--set name=value`."""
 
 from __future__ import annotations
 
@@ -12,12 +12,14 @@ def assignments(
         form: of a pair, for the message.
 
     Raises:
-        ValueError: a pair is not of this form.
+        ValueError: a pair is not of this form, or a name is given twice.
     """
     values = dict[str, str]()
     for pair in pairs:
-        name, equals, value = pair.partition("=")
+        name, equals, value = (part.strip() for part in pair.partition("="))
         if not equals or not name or not value:
             raise ValueError(f"{option} {pair}: expected {form}")
-        values[name.strip()] = value.strip()
+        if name in values:
+            raise ValueError(f"{option} {name}: it is given twice, and may be given once only")
+        values[name] = value
     return values

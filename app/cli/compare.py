@@ -9,12 +9,11 @@ import sys
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import tyro
-
+from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
-from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
+from onpath.app.common.atomic_file import check_file, check_plot, whole_file
 from onpath.app.exports.summary_text import STOPPED, finite
 
 if TYPE_CHECKING:
@@ -29,18 +28,18 @@ class CompareCommand:
 
     robot: str = "five_bar"
     """Name of the robot, or its URDF or MJCF file."""
-    file_options: FileOptions = NO_OPTIONS
-    law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """A law to compare, also one of your own in two lines, "across = …; along = …", or in a Python
-    file, my_law.py:Name; repeat for more. By default all that suit the robot."""
-    obstruction: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    path: str | None = None
+    """A closed path, or @FILE with options, as for onpath experiment; by default a circle."""
+    law: Repeated = ()
+    """A law to compare: a name; all; both; or one of your own, as "across = …; along = …", or in a
+    Python file, my_law.py:Name. Repeat, or put commas between, for more. By default all that suit
+    the robot."""
+    obstruction: Repeated = ()
     """An obstruction; repeat for more. By default all. Those with weak motors run twice: with the
     remedy of at_limit and, as NAME_cut, without it."""
-    radius: float = 0.05
-    """Radius of the circle to follow, in metres."""
-    path: str | None = None
-    """Another closed path, or @FILE with options, as for onpath experiment."""
-    set: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    radius: float | None = None
+    """Radius of the circle to follow, in metres; 0.05 by default."""
+    set: Repeated = ()
     """Set any parameter, as name=value; repeat for more."""
     csv: Path | None = None
     """Write all outcomes, a row for each run, to this CSV file."""
@@ -48,6 +47,7 @@ class CompareCommand:
     """Draw contour error against delay to this .png, .svg or .pdf file."""
     json: bool = False
     """Print all outcomes as JSON."""
+    file_options: FileOptions = NO_OPTIONS
 
     def run(self) -> None:
         """Simulate, then write and print the requested output."""
@@ -58,8 +58,7 @@ class CompareCommand:
         from onpath.models.studies.unused import unused_text
 
         check_plot(self.plot)
-        if self.csv:
-            check_writable(self.csv)
+        check_file(self.csv, (".csv",), "--csv")
         contest = self._contest()
         laws = _laws(self.law, contest)
         plain = on_path(contest.entry, contest.parameters, contest.curve)
@@ -88,7 +87,7 @@ class CompareCommand:
 
     def _contest(self) -> Contest:
         from onpath.app.cli.assignments import assignments
-        from onpath.app.cli.path_option import read_path
+        from onpath.app.notebook.arguments import curve_of
         from onpath.models.control.settable import with_values
         from onpath.models.paths.curves import circle
         from onpath.models.studies.comparison import Contest
@@ -96,8 +95,11 @@ class CompareCommand:
         from onpath.models.systems.parameters import rise_of
 
         entry = self.file_options.entry_of(self.robot)
-        if not 0.005 <= self.radius <= 0.12:
-            raise ValueError(f"--radius {self.radius:g}: expected 0.005 to 0.12 m")
+        radius = 0.05 if self.radius is None else self.radius
+        if not 0.005 <= radius <= 0.12:
+            raise ValueError(f"--radius {radius:g}: expected 0.005 to 0.12 m")
+        if self.radius is not None and self.path is not None:
+            raise ValueError(f"--radius {radius:g}: the path is given, and has no radius to set")
         parameters = with_values(entry.parameters(), assignments(self.set))
         if parameters.speed == 0 or parameters.task != "speed":
             raise ValueError("a comparison needs a speed along the path other than 0")
@@ -106,7 +108,7 @@ class CompareCommand:
         if rise_of(parameters):
             raise ValueError("rise: a comparison is on a plane path")
         robot = entry.make(parameters)
-        curve = circle(self.radius) if self.path is None else read_path(self.path, robot)
+        curve = circle(radius) if self.path is None else curve_of("--path", self.path, robot)
         if not curve.closed:
             raise ValueError(f"--path {self.path}: a comparison needs a closed path")
         check_path(robot, curve, f"--path {self.path}" if self.path else "")
@@ -138,17 +140,16 @@ def _laws(asked: tuple[str, ...], contest: Contest) -> list[str]:
     Raises:
         ValueError: one of them does not exist, or cannot be compared.
     """
-    from onpath.app.common.own_laws import compiled_law
-    from onpath.models.control.laws.own import is_text
-    from onpath.models.control.laws.python_law import IN_FILE
+    from onpath.app.cli.laws import laws_named
+    from onpath.models.control.laws.registry import law_named
 
-    own = [name for name in asked if is_text(name) or IN_FILE.fullmatch(name)]
-    typed = {name: compiled_law(name) for name in own}
-    for name in typed.values():
+    names = dict.fromkeys(laws_named(asked or ("all",), contest.laws(), calls=False))
+    for name in names:
         if not contest.admits(name):
-            raise ValueError(f"{name}: it does not suit {contest.robot.name}")
-    known = list(dict.fromkeys([*contest.laws(), *typed.values()]))
-    return _known(tuple(typed.get(name, name) for name in asked), known, "law")
+            suits = law_named(name).suits(contest.robot.system)
+            does_not = f"suit {contest.robot.name}" if not suits else "take part in a comparison"
+            raise ValueError(f"{name}: it does not {does_not}")
+    return list(names)
 
 
 def _known(names: tuple[str, ...], known: list[str], what: str) -> list[str]:

@@ -13,8 +13,8 @@ import tyro
 class ExportLesson:
     """Write a lesson as a SCORM package, for Moodle, ILIAS and other learning platforms."""
 
-    name: Annotated[str, tyro.conf.Positional]
-    """Name of the lesson, such as 01-path-or-timetable."""
+    lesson: Annotated[str, tyro.conf.Positional]
+    """Name or number of the lesson, as 1b or 01b-let-the-clock-wait."""
     scorm: Path
     """The .zip file to write."""
     version: Literal["1.2", "2004"] = "1.2"
@@ -24,12 +24,13 @@ class ExportLesson:
     """Whether an unfinished lesson has a score, too: the share that is right so far."""
     language: str = "en"
     """Language of the lesson."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
 
     def run(self) -> None:
         """Write the package, and print its size."""
-        from onpath.app.common.atomic_file import check_writable
+        from onpath.app.cli.lesson_play import chosen_lesson
+        from onpath.app.common.atomic_file import check_file
         from onpath.app.exports.site.pages import Package
         from onpath.app.exports.site.scorm_package import write_package
         from onpath.assets.messages import languages
@@ -38,14 +39,13 @@ class ExportLesson:
 
         if self.language not in languages():
             raise unknown_name(self.language, languages(), "language")
-        home = self.folder or BUILT_IN
+        home = self.lessons or BUILT_IN
         course, problems = read_course([home])
         if problems:
             raise ValueError(str(problems[0]))
-        if self.name not in course.lessons:
-            raise unknown_name(self.name, list(course.lessons), "lesson")
-        check_writable(self.scorm)
+        name = chosen_lesson(course, self.lesson).name
+        check_file(self.scorm, (".zip",), "--scorm")
         kind = Package(self.version, self.partial_score)
-        write_package(self.scorm, course, home, self.name, self.language, kind)
+        write_package(self.scorm, course, home, name, self.language, kind)
         size = self.scorm.stat().st_size
         print(f"{self.scorm}: SCORM {self.version}, {size / 1e3:.0f} kB")

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import tyro
 
+from onpath.app.cli.options import Repeated
+
 
 @dataclass(frozen=True)
 class ExportSite:
@@ -15,9 +17,9 @@ class ExportSite:
 
     target: Annotated[Path, tyro.conf.Positional]
     """The folder to write; an earlier site in it is replaced."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
-    language: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    language: Repeated = ()
     """A language; repeat for more. By default all, English first."""
 
     def run(self) -> None:
@@ -30,7 +32,7 @@ class ExportSite:
         for language in self.language:
             if language not in known:
                 raise ValueError(f"--language {language}: there are {', '.join(known)}")
-        home = self.folder or BUILT_IN
+        home = self.lessons or BUILT_IN
         course, problems = read_course([home])
         if problems:
             raise ValueError(str(problems[0]))

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import tyro
 
+from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 
@@ -22,24 +23,25 @@ class IdentifyCommand:
     are used, and their rates by a filter; otherwise the true ones."""
     robot: str = "five_bar"
     """Name of the robot, or its URDF or MJCF file."""
-    file_options: FileOptions = NO_OPTIONS
-    column: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Name of a column of a real arm's log, as q1="Joint 1"; repeat for t, q1, q2, tau1, tau2
-    and, if the log has them, forces at the end-point (force1, force2). Times may be uneven."""
-    unit: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
-    """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
-    default s, rad, N m and N."""
     law: str = ""
     """Use only the rows of this control law; all by default."""
+    column: Repeated = ()
+    """Name of a column of a real arm's log, as q1="Joint 1"; repeat for t, q1, q2, tau1, tau2
+    and, if the log has them, forces at the end-point (force1, force2). Times may be uneven."""
+    unit: Repeated = ()
+    """Unit of a column, as q1=deg, or its factor to SI units, as tau1=0.085; repeat for more. By
+    default s, rad, N m and N."""
     plot: Path | None = None
     """Draw the torques and their residuals to this .png, .svg or .pdf file."""
     json: bool = False
     """Print the result as JSON."""
+    file_options: FileOptions = NO_OPTIONS
 
     def run(self) -> None:
         """Read, estimate, draw and print."""
         from onpath.app.cli.assignments import assignments
         from onpath.app.common.atomic_file import check_plot, whole_file
+        from onpath.app.common.user_files import user_file
         from onpath.app.exports.figures import save
         from onpath.app.exports.identification import (
             identification_data,
@@ -47,16 +49,12 @@ class IdentifyCommand:
             residual_figure,
         )
         from onpath.models.studies.log_identification import identify_file
-        from onpath.models.systems.catalogue import ROBOTS
-        from onpath.models.systems.parameter_specs import unknown_name
 
         check_plot(self.plot)
-        robot = self.file_options.name_of(self.robot)
-        if robot not in ROBOTS:
-            raise unknown_name(robot, list(ROBOTS), "robot")
+        entry, file = self.file_options.entry_of(self.robot), user_file(self.file)
         columns = assignments(self.column, "--column")
         units = assignments(self.unit, "--unit")
-        found = identify_file(self.file, ROBOTS[robot], self.law, columns, units)
+        found = identify_file(file, entry, self.law, columns, units)
         if self.plot:
             with whole_file(self.plot) as path:
                 save(residual_figure(found), path)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.cli.lesson_play import chosen_lesson
-from onpath.app.common.atomic_file import check_writable, whole_file
+from onpath.app.common.atomic_file import check_file, whole_file
 
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 class WriteGuide:
     """Write the teacher's guide: what the lessons ask, timing, answers, solutions and reasons."""
 
-    lessons: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
+    names: Annotated[tuple[str, ...], tyro.conf.Positional] = ()
     """Names or numbers of lessons; by default all."""
     html: Path | None = None
     """Write a page that prints as A4."""
     pdf: Path | None = None
     """Write a PDF; needs Chromium and Playwright."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"
     """Language of the guide."""
@@ -37,8 +37,8 @@ class WriteGuide:
 
         files = {"--html": self.html, "--pdf": self.pdf}
         _check(files, "--html FILE or --pdf FILE")
-        course, folder, words = _course(self.folder, self.language)
-        names = [chosen_lesson(course, asked).name for asked in self.lessons]
+        course, folder, words = _course(self.lessons, self.language)
+        names = [chosen_lesson(course, asked).name for asked in self.names]
         page = guide(course, folder, names or list(course.lessons), words)
         _write(page, self.html, self.pdf)
 
@@ -55,7 +55,7 @@ class WriteWorksheet:
     """Write a PDF; needs Chromium and Playwright."""
     key: Path | None = None
     """Write the key as a page."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     language: str = "en"
     """Language of the worksheet."""
@@ -66,7 +66,7 @@ class WriteWorksheet:
 
         files = {"--html": self.html, "--pdf": self.pdf, "--key": self.key}
         _check(files, "--html FILE, --pdf FILE or --key FILE")
-        course, folder, words = _course(self.folder, self.language)
+        course, folder, words = _course(self.lessons, self.language)
         name = chosen_lesson(course, self.lesson).name
         page, key = worksheet(course, folder, name, words)
         _write(page, self.html, self.pdf)
@@ -74,11 +74,10 @@ class WriteWorksheet:
 
 
 def _check(files: dict[str, Path | None], wanted: str) -> None:
-    given = [path for path in files.values() if path is not None]
-    if not given:
+    if not any(files.values()):
         raise ValueError(f"nothing to write: expected {wanted}")
-    for path in given:
-        check_writable(path)
+    for option, path in files.items():
+        check_file(path, (".pdf",) if option == "--pdf" else (".html",), option)
 
 
 def _course(folder: Path | None, language: str) -> tuple[Course, Path, Words]:
@@ -100,11 +99,14 @@ def _course(folder: Path | None, language: str) -> tuple[Course, Path, Words]:
 
 
 def _write(page: str, html: Path | None, pdf: Path | None) -> None:
+    """Write a page, and print the names of the files."""
     from onpath.app.exports.print_page import print_page
 
     if html is not None:
         with whole_file(html) as path:
             path.write_text(page, encoding="utf-8")
+        print(html)
     if pdf is not None:
         with whole_file(pdf) as path:
             print_page(page, path)
+        print(pdf)

@@ -32,7 +32,7 @@ class PlayLesson:
     """Name or number of the lesson, as 1b or 01b-let-the-clock-wait."""
     step: Annotated[int, tyro.conf.Positional]
     """Number of the step, from 1."""
-    folder: Path | None = None
+    lessons: Path | None = None
     """Folder of lessons; by default the built-in ones."""
     json: bool = False
     """Print everything as JSON."""
@@ -47,7 +47,7 @@ class PlayLesson:
         """
         from onpath.lessons.course import BUILT_IN, read_course
 
-        folder = self.folder or BUILT_IN
+        folder = self.lessons or BUILT_IN
         course, problems = read_course([folder])
         if problems:
             raise ValueError(str(problems[0]))
@@ -82,17 +82,17 @@ def _runs(lesson: Lesson, step: Step, folder: Path) -> Iterator[PlayedScript]:
     from onpath.app.lab.loops.loop_cache import LoopCache
     from onpath.lessons.course import REFERENCE, read_references
 
-    store = LoopCache(at_once=True)
+    loop_cache = LoopCache(at_once=True)
     try:
         if step.script is not None:
-            yield play_script(lesson, step, "script", step.script, store)
+            yield play_script(lesson, step, "script", step.script, loop_cache)
         references = read_references(lesson, folder / lesson.name / REFERENCE)[0]
         for task in step.tasks():
             for what in ("solution", "failure"):
                 script = getattr(references[task.id], what)
-                yield play_script(lesson, step, f"{task.id}.{what}", script, store, task)
+                yield play_script(lesson, step, f"{task.id}.{what}", script, loop_cache, task)
     finally:
-        store.close()
+        loop_cache.close()
 
 
 def _setup(lesson: Lesson, index: int) -> dict[str, Any]:

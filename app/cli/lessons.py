@@ -9,9 +9,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from onpath.app.cli.lesson_pages import WriteGuide, WriteWorksheet
-from onpath.app.cli.lesson_play import PlayLesson
-
 if TYPE_CHECKING:
     from onpath.lessons.course import Course
     from onpath.lessons.problems import Problem
@@ -47,7 +44,12 @@ class CheckLessons:
 
     def run(self) -> int:
         """Print what is wrong; return exit code 1 if anything is."""
-        from onpath.app.lab.dry_runs.cheat_check import asked_tasks, cheat_faults, passes_of
+        from onpath.app.lab.dry_runs.cheat_check import (
+            asked_tasks,
+            attempts,
+            cheat_faults,
+            passes_of,
+        )
         from onpath.app.lab.dry_runs.course_check import play_course
         from onpath.app.lab.dry_runs.sentence_check import unplayed
         from onpath.app.lab.loops.loop_cache import LoopCache
@@ -55,12 +57,12 @@ class CheckLessons:
 
         course, problems, folder = read_folder(self.folder or BUILT_IN)
         if not problems:
-            store = LoopCache(at_once=True)
-            problems = list(play_course(course, folder, store))
+            loop_cache = LoopCache(at_once=True)
+            problems = list(play_course(course, folder, loop_cache))
             if self.cheat:
-                problems += cheat_faults(course, folder, store)
+                problems += cheat_faults(attempts(course, folder), loop_cache)
                 for asked in asked_tasks(course, folder):
-                    print(found := passes_of(asked, store), flush=True)
+                    print(found := passes_of(asked, loop_cache), flush=True)
                     problems += found.problems()
         if not problems and (count := unplayed(course, folder)):
             says = _count(count, "sentence")
@@ -83,27 +85,6 @@ class ListNames:
 
         print(names_markdown(), end="")
         return 0
-
-
-LessonsAction = (
-    Annotated[ListLessons, tyro.conf.subcommand("list", prefix_name=False)]
-    | Annotated[CheckLessons, tyro.conf.subcommand("check", prefix_name=False)]
-    | Annotated[ListNames, tyro.conf.subcommand("names", prefix_name=False)]
-    | Annotated[PlayLesson, tyro.conf.subcommand("play", prefix_name=False)]
-    | Annotated[WriteGuide, tyro.conf.subcommand("guide", prefix_name=False)]
-    | Annotated[WriteWorksheet, tyro.conf.subcommand("worksheet", prefix_name=False)]
-)
-
-
-@dataclass(frozen=True)
-class LessonsCommand:
-    """List, check, play or print the lessons, the built-in ones or your own."""
-
-    do: Annotated[LessonsAction, tyro.conf.arg(name="")]
-
-    def run(self) -> int:
-        """Run the chosen action; return its exit code."""
-        return self.do.run() or 0
 
 
 def minutes_table(course: Course, steps: bool) -> str:

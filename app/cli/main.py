@@ -1,4 +1,4 @@
-"""Serve the lab in the browser, or run one of the subcommands."""
+"""The command `onpath`: serves the lab in the browser, or runs one of the subcommands."""
 
 from __future__ import annotations
 
@@ -7,71 +7,33 @@ import io
 import os
 import re
 import sys
-from dataclasses import dataclass
-from functools import partial
+import warnings
+from collections.abc import Iterator
 from importlib.metadata import version
-from typing import Protocol
+from typing import Any
 
-import tyro
-
-from onpath.app.cli.arena import ArenaCommand
-from onpath.app.cli.compare import CompareCommand
-from onpath.app.cli.experiment import ExperimentCommand, ZeroDynamicsCommand
-from onpath.app.cli.export import ExportCommand
-from onpath.app.cli.figure import FigureCommand
-from onpath.app.cli.identify import IdentifyCommand
-from onpath.app.cli.lessons import LessonsCommand
-from onpath.app.cli.serve import Serve
+from onpath.app.cli.commands import COMMANDS, Group, Subcommand
+from onpath.app.cli.help import group_help, top_help
+from onpath.app.cli.options import parsed
+from onpath.app.cli.paper import NAMES
 from onpath.app.cli.supervisor import supervised
+from onpath.models.errors import CodedError
 
 INTERRUPTED = 130
-
-
-@dataclass(frozen=True)
-class Forget:
-    """Delete all stored labs. This cannot be undone."""
-
-    database: str | None = None
-    """URL of the database, also as ONPATH_DATABASE; the file in your data folder if not given."""
-
-    def run(self) -> None:
-        """Delete the labs, and print their number."""
-        from onpath.app.storage.database_url import database_url
-        from onpath.app.storage.forget import forget
-
-        gone = forget(database_url(self.database))
-        print(f"deleted: {gone.labs} labs, {len(gone.files)} files moved aside as broken")
-
-
-class Subcommand(Protocol):
-    """A subcommand with its options."""
-
-    def run(self) -> int | None:
-        """Run it; return the exit code, None for 0."""
-        ...
-
-
-COMMANDS: dict[str, type[Subcommand]] = {
-    "serve": Serve,
-    "experiment": ExperimentCommand,
-    "compare": CompareCommand,
-    "arena": ArenaCommand,
-    "figure": FigureCommand,
-    "identify": IdentifyCommand,
-    "zero-dynamics": ZeroDynamicsCommand,
-    "lessons": LessonsCommand,
-    "export": ExportCommand,
-    "forget": Forget,
-}
 
 
 def main() -> None:
     """Entry point of `onpath`."""
     _print_any_text()
     arguments = sys.argv[1:]
-    if arguments and arguments[0] in COMMANDS.keys() - {"serve"}:
+    if arguments and (arguments[0] in COMMANDS.keys() - {"serve"} or arguments[0] in _INSTEAD):
         sys.exit(run_command(arguments))
-    sys.exit(supervised(partial(run_command, arguments)))
+
+    def serve(again: bool) -> int:
+        opened = {"--open"} if again else set[str]()  # its tab comes back by itself
+        return run_command([given for given in arguments if given not in opened])
+
+    sys.exit(supervised(serve))
 
 
 def _print_any_text() -> None:
@@ -82,47 +44,104 @@ def _print_any_text() -> None:
             stream.reconfigure(encoding=None if chosen else "utf-8", errors="replace")
 
 
+_INSTEAD = {
+    "-h": ["--help"],
+    "help": ["--help"],
+    "-V": ["--version"],
+    "version": ["--version"],
+}
+
+
 def run_command(arguments: list[str]) -> int:
     """Run one command line; return the exit code.
 
     The code is 0; 1 for lessons with problems, and for a lab without its database; 2, with one
     line on standard error, for other errors; or 130, the usual one, for an interrupted command.
     """
-    if arguments == ["--version"]:
-        print(f"onpath {version('onpath')}")
-        return 0
-    if not arguments or arguments[0] not in (*COMMANDS, "-h", "--help"):
-        if arguments and not arguments[0].startswith("-"):
-            print(f"onpath: {unknown_command(arguments[0])}", file=sys.stderr)
-            return 2
-        arguments = ["serve", *arguments]
     try:
-        return _parse(arguments).run() or 0
+        with _remarks_on_stderr():
+            return _run(arguments)
     except BrokenPipeError:
         return 0
+    except SystemExit as stop:
+        if stop.code:
+            raise
+        return 0  # after a help
     except KeyboardInterrupt:
         return INTERRUPTED
     except (ValueError, OSError) as error:
-        print(f"onpath: {_one_line(str(error))}", file=sys.stderr)
+        print(f"onpath: {_one_line(str(error))}{_where_names_are(error)}", file=sys.stderr)
         return 2
 
 
-def unknown_command(name: str) -> str:
-    """The error message for a command that does not exist."""
-    return f"unknown command {name!r}: there are {', '.join(COMMANDS)}"
+def _where_names_are(error: Exception) -> str:
+    """Which command lists the names, if an error is for an unknown one."""
+    arguments = error.message.arguments if isinstance(error, CodedError) else {}
+    listed = arguments.get("kind") in ("robot", "path", "law", "parameter")
+    return " (onpath names lists all)" if listed else ""
 
 
-def _parse(arguments: list[str]) -> Subcommand:
-    """Parse a command line; only its subcommand's options are built, which starts sooner."""
-    name, *options = arguments
+@contextlib.contextmanager
+def _remarks_on_stderr() -> Iterator[None]:
+    """Print what Python's functions warn of, a line each."""
+    with warnings.catch_warnings():
+        usual = warnings.showwarning
+
+        def told(message: Any, category: type[Warning], *place: Any, **more: Any) -> None:
+            if issubclass(category, UserWarning):
+                print(f"onpath: {_one_line(str(message))}", file=sys.stderr)
+            else:
+                usual(message, category, *place, **more)
+
+        warnings.simplefilter("always", UserWarning)
+        warnings.showwarning = told
+        yield
+
+
+def _run(arguments: list[str]) -> int:
+    match arguments:
+        case ["--help" | "-h"] | ["help"]:
+            print(top_help())
+            return 0
+        case ["--version" | "-V" | "version", *_]:
+            print(f"onpath {version('onpath')}")
+            return 0
+        case ["help", *command]:
+            return _run([*command, "--help"])
+        case ["figure", name, *_] if name in NAMES:
+            raise ValueError(f"the paper's figures are drawn by onpath paper {name} now")
+        case ["export", "figure", *_]:
+            raise ValueError("onpath export figure is called onpath figure now")
+        case ["arena", law, *_] if not law.startswith("-"):
+            raise ValueError(f"a law is given as --law now: onpath arena --law {law}")
+        case _:
+            return parsed_command(arguments).run() or 0
+
+
+def parsed_command(arguments: list[str]) -> Subcommand:
+    """The subcommand of a command line; only its options are built, which starts sooner."""
+    if not arguments or arguments[0].startswith("-"):
+        arguments = ["serve", *arguments]
+    known: Any = COMMANDS
+    for used, name in enumerate(arguments, 1):
+        if name not in known:
+            if name in ("-h", "--help"):
+                print(group_help(arguments[: used - 1]))
+                raise SystemExit(0)
+            of = " ".join(arguments[:used])
+            raise ValueError(f"unknown command {of!r}: there are {', '.join(known)}")
+        found = known[name]
+        if not isinstance(found, Group):
+            return _parsed_options(found, " ".join(["onpath", *arguments[:used]]), arguments[used:])
+        known = found.commands
+    raise ValueError(f"{' '.join(arguments)}: expected one of {', '.join(known)} after it")
+
+
+def _parsed_options(command: type[Subcommand], prog: str, options: list[str]) -> Subcommand:
     complaint = io.StringIO()
     try:
         with contextlib.redirect_stderr(complaint):
-            if name in COMMANDS:
-                return tyro.cli(COMMANDS[name], prog=f"onpath {name}", args=options)
-            return tyro.extras.subcommand_cli_from_dict(
-                COMMANDS, prog="onpath", description=__doc__, args=arguments
-            )
+            return parsed(command, prog, options)
     except SystemExit as stop:
         if stop.code in (0, None):
             raise
@@ -135,7 +154,7 @@ def _unboxed(text: str) -> str:
     lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
     pointers = ("For full helptext", "Argument helptext")
     kept = [line for line in lines if line and not line.startswith(pointers)]
-    return " ".join(kept) or _one_line(text)
+    return " ".join(kept).removesuffix(" (required)") or _one_line(text)
 
 
 def _one_line(text: str) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import sys
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,11 +10,11 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from onpath.app.cli.assignments import assignments
+from onpath.app.cli.options import Repeated
+from onpath.app.common.user_files import is_robot_file
 
 if TYPE_CHECKING:
     from onpath.models.systems.robots import RobotEntry
-
-SUFFIXES = (".urdf", ".xml", ".mjcf")
 
 
 @dataclass(frozen=True)
@@ -26,15 +24,15 @@ class RobotOptions:
     tip: str = ""
     """For a robot's file: the link, or site, whose origin is the end-point; by default the only one
     at the end."""
-    pose: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    pose: Repeated = ()
     """For a robot's file: where a joint stands at home, as joint=value in rad or m; repeat for
     more. By default a pose is chosen."""
-    lock: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    lock: Repeated = ()
     """For a robot's file: a joint that does not move, as joint=value; repeat for more."""
     armature: float = 0.0
     """For a robot's file: inertia of the motors as seen at the joints, in kg m², which URDF leaves
     out."""
-    package: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    package: Repeated = ()
     """For a robot's file: the folder of a package with meshes, as NAME=FOLDER; repeat for more."""
 
     def entry_of(self, robot: str) -> RobotEntry:
@@ -50,8 +48,6 @@ class RobotOptions:
     def name_of(self, robot: str) -> str:
         """The name of a robot in the catalogue: the one given, or that of a file, which is added.
 
-        What has been left out of the file is printed to stderr.
-
         Raises:
             ValueError: the file is refused, or there are options for a file, but no file.
         """
@@ -64,37 +60,28 @@ class RobotOptions:
         Raises:
             ValueError: see `name_of`.
         """
-        if self != NO_OPTIONS and not any(map(is_file, robots)):
+        if self != NO_OPTIONS and not any(map(is_robot_file, robots)):
             options = "--tip, --pose, --lock, --armature and --package"
             raise ValueError(f"{options} need --robot FILE")
-        return [self._added(robot) if is_file(robot) else robot for robot in robots]
+        return [self._added(robot) if is_robot_file(robot) else robot for robot in robots]
 
     def _added(self, robot: str) -> str:
         """The name of the robot of a file, which is added."""
         from onpath.app.notebook.robot import robot as robot_from
 
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", UserWarning)
-            entry = robot_from(
-                robot,
-                tip=self.tip,
-                pose=_numbers("--pose", self.pose),
-                lock=_numbers("--lock", self.lock),
-                armature=self.armature,
-                packages=_folders(self.package),
-            )
-        for each in caught:
-            print(f"onpath: {each.message}", file=sys.stderr)
+        entry = robot_from(
+            robot,
+            tip=self.tip,
+            pose=_numbers("--pose", self.pose),
+            lock=_numbers("--lock", self.lock),
+            armature=self.armature,
+            packages=_folders(self.package),
+        )
         return entry.name
 
 
 NO_OPTIONS = RobotOptions()
 FileOptions = Annotated[RobotOptions, tyro.conf.arg(name="")]
-
-
-def is_file(robot: str) -> bool:
-    """Whether a robot is given as a file."""
-    return Path(robot).suffix.lower() in SUFFIXES
 
 
 def _numbers(option: str, pairs: tuple[str, ...]) -> dict[str, float]:
@@ -108,7 +95,10 @@ def _numbers(option: str, pairs: tuple[str, ...]) -> dict[str, float]:
 
 
 def _folders(pairs: tuple[str, ...]) -> dict[str, Path]:
-    folders = {n: Path(text) for n, text in assignments(pairs, "--package", "NAME=FOLDER").items()}
+    folders = {
+        n: Path(text).expanduser()
+        for n, text in assignments(pairs, "--package", "NAME=FOLDER").items()
+    }
     for name, folder in folders.items():
         if not folder.is_dir():
             raise ValueError(f"--package {name}={folder}: there is no such folder")

@@ -9,11 +9,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Literal
 from urllib.parse import urlsplit
 
-import tyro
-
+from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
 if TYPE_CHECKING:
@@ -36,8 +35,9 @@ class Serve:
     """Open the lab in the default browser."""
     robot: str = "five_bar"
     """Robot with which a lab begins: its name, or its URDF or MJCF file."""
-    file_options: FileOptions = NO_OPTIONS
-    law: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    path: str | None = None
+    """The path of new labs, or @FILE with options, as for onpath experiment."""
+    law: Repeated = ()
     """A law of your own in a Python file, as my_law.py:Name; repeat for more. They are in the menu
     of laws, and the robot on the right begins with the first. Not with --classroom."""
     lessons: Path | None = None
@@ -56,14 +56,12 @@ class Serve:
     privacy_url: str = ""
     """Address of your privacy notice, https://example.org/privacy, shown where a nickname is asked
     for."""
-    path: str | None = None
-    """The path of new labs, or @FILE with options, as for onpath experiment."""
     course_url: str = ""
     """Address of the course as pages (onpath export site), https://example.org/course, to which
     browsers without WebGL are led."""
-    origin: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    origin: Repeated = ()
     """Address of the page behind a proxy, https://lab.example.org; repeat for more."""
-    trusted_proxy: Annotated[tuple[str, ...], tyro.conf.UseAppendAction] = ()
+    trusted_proxy: Repeated = ()
     """Proxy on another machine to trust, such as 10.0.0.7 or 10.0.0.0/8; repeat for more."""
     socket: Path | None = None
     """Listen on this Unix socket instead, for your own proxy, such as Jupyter's."""
@@ -75,6 +73,7 @@ class Serve:
     never."""
     log_level: Literal["debug", "info", "warning", "error"] = "info"
     """Lowest level of log messages."""
+    file_options: FileOptions = NO_OPTIONS
 
     def run(self) -> int | None:
         """Serve until Ctrl-C; return exit code 1 if the database cannot be used."""
@@ -158,7 +157,7 @@ class Serve:
 
     def _path(self, entry: RobotEntry) -> PathDesign | None:
         """The path of new labs; None: the usual one."""
-        from onpath.app.cli.path_option import path_name, read_path
+        from onpath.app.notebook.arguments import curve_of, path_name
         from onpath.models.paths.path_design import from_curve, presets
         from onpath.models.studies.experiments import check_path, path_remark
 
@@ -167,7 +166,7 @@ class Serve:
         if self.path in presets():
             return presets()[self.path]
         robot = entry.make(entry.parameters())
-        curve = read_path(self.path, robot)
+        curve = curve_of("--path", self.path, robot)
         check_path(robot, curve, f"--path {path_name(self.path)}")
         if remark := path_remark(curve):
             print(f"onpath: {remark}", file=sys.stderr)

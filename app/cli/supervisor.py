@@ -21,15 +21,16 @@ SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail aga
 LOOK = 0.5  # [s] between a child's looks for its parent
 
 
-def supervised(serve: Callable[[], int]) -> int:
+def supervised(serve: Callable[[bool], int]) -> int:
     """Serve in a child, and again if it crashes or hangs; return its exit code.
 
     Args:
-        serve: serves until it is asked to stop; returns the exit code.
+        serve: serves until it is asked to stop, and returns the exit code; told whether an earlier
+            process has served before it.
     """
     if not hasattr(os, "fork") or "NOTIFY_SOCKET" in os.environ:
-        return serve()
-    child = told = 0
+        return serve(False)
+    child, told, again = 0, 0, False
 
     def hand_on(number: int, _: object) -> None:
         nonlocal told
@@ -48,13 +49,14 @@ def supervised(serve: Callable[[], int]) -> int:
             for number, handler in handlers.items():
                 signal.signal(number, handler)
             threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
-            return 128 + told if told else serve()
+            return 128 + told if told else serve(again)
         if told:  # before it could be handed on
             os.kill(child, told)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         goes_on = code < 0 or code == os.EX_SOFTWARE  # see `app.server.watchdog`
         if told or not goes_on or time.monotonic() - begun < SOON:
             return code if code >= 0 else 128 - code
+        again = True
         print(f"onpath: the lab has ended with code {code}; it starts again", file=sys.stderr)
     return 128 + told
 

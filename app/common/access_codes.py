@@ -68,11 +68,11 @@ def normalised(text: str) -> str:
     if len(code) != LENGTH:
         codes = {_letters(each) for each in _SHOWN.findall(plain)}
         if len(codes) != 1:
-            raise CodedError("error.session_code_length", length=LENGTH, example=shown(_EXAMPLE))
+            raise CodedError("error.lab_code_length", length=LENGTH, example=shown(_EXAMPLE))
         (code,) = codes
     strange = sorted(set(code) - set(ALPHABET))
     if strange:
-        raise CodedError("error.session_code_letters", example=shown(_EXAMPLE))
+        raise CodedError("error.lab_code_letters", example=shown(_EXAMPLE))
     return code
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+
+PICTURES = ".png", ".svg", ".pdf"
 
 
 def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
@@ -18,10 +20,21 @@ def check_plot(path: Path | None, asked_by: str = "--plot") -> None:
     Raises:
         ValueError: an unknown kind of file, or the file cannot be written.
     """
+    check_file(path, PICTURES, asked_by)
+
+
+def check_file(path: Path | None, endings: Sequence[str], asked_by: str) -> None:
+    """Check that a file can be written, if there is one, and that its name has a right ending.
+
+    Raises:
+        ValueError: another ending, or the file cannot be written.
+    """
     if path is None:
         return
-    if path.suffix not in (".png", ".svg", ".pdf"):
-        raise ValueError(f"{asked_by} {path}: expected a name ending in .png, .svg or .pdf")
+    if path.suffix.lower() not in endings:
+        *most, last = endings
+        wanted = f"{', '.join(most)} or {last}" if most else last
+        raise ValueError(f"{asked_by} {path}: expected a name ending in {wanted}")
     check_writable(path)
 
 

@@ -7,10 +7,10 @@ import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from types import FrameType
 from typing import Any
 
+from onpath.app.common.user_files import user_file
 from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.python_law import IN_FILE, Now, law_in, python_law
 from onpath.models.control.laws.registry import add_law, law_name, law_named
@@ -29,16 +29,19 @@ def law_given(law: Any) -> str:
 
     Raises:
         ValueError: there is no such law, or it has an error; the message has file and line.
+        OSError: the file cannot be read.
     """
     if not isinstance(law, str):
         return add_law(_watched(python_law(law))).name
     if found := IN_FILE.fullmatch(law):
-        name = add_law(_watched(law_in(law))).name
-        given = f"{Path(found['file']).resolve()}:{found['name']}"
+        given = f"{user_file(found['file']).resolve()}:{found['name']}"
+        name = add_law(_watched(law_in(given))).name
         for earlier in [each for each, text in _FILES.items() if text == given]:
             del _FILES[earlier]  # of the file as it was
         _FILES[name] = given
         return name
+    if law.endswith(".py"):
+        raise CodedError("error.law_of_file", law=law)
     return law_name(law)
 
 

@@ -3,26 +3,33 @@
 from __future__ import annotations
 
 import csv
-import os
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
-from rich.progress import track
+from joblib import parallel_config
 
 from onpath.app.common.atomic_file import check_writable, whole_file
-from onpath.app.common.own_laws import only_here
+from onpath.app.common.kept import Kept, key_of
+from onpath.app.common.workers import Job
 from onpath.app.exports.arena_page import Contents, arena_page, csv_rows, markdown
-from onpath.app.exports.arena_work import FigureJob, Job, Processes, simulate, write_figure
+from onpath.app.exports.arena_work import Entry, FigureJob, figure_of, lost, simulated
 from onpath.assets.messages import languages
 from onpath.lessons.words import Words
 from onpath.models.control.laws.law import OwnGain
 from onpath.models.control.laws.registry import law_named
-from onpath.models.studies.arena import Result, Row, Trial, complete, entrants, trials_of
+from onpath.models.studies.arena import (
+    Result,
+    Row,
+    Trial,
+    complete,
+    entrants,
+    result_from,
+    trials_of,
+)
+from onpath.models.studies.experiments import check_called
 from onpath.models.systems.catalogue import robot_named
 
 NO_MOTION = "it does not move along a path, as laws in an arena do"
@@ -38,7 +45,8 @@ class ArenaOptions:
         only: whether OnPath's laws that were not asked for are left out.
         rounds: their number, 1 or more.
         seed: of the random numbers, 0 or more.
-        processes: number of processes; 0: one for each processor.
+        processes: number of processes; 0: what joblib is set to, or one for each processor.
+        folder: in which finished runs are kept, so that an interrupted arena goes on; None: none.
         html: the page; its live figures are in a folder beside it. None: no page.
         csv: all runs, one per line; None: no such file.
         figures: whether there are live figures.
@@ -52,6 +60,7 @@ class ArenaOptions:
     rounds: int
     seed: int
     processes: int
+    folder: Path | None
     html: Path | None
     csv: Path | None
     figures: bool
@@ -79,7 +88,11 @@ class Arena:
         self._options, self._words = options, Words(options.language)
         self._rows = {robot: self._entrants(robot) for robot in options.robots}
         self._trials = trials_of(tuple(self._rows), options.rounds, options.seed)
-        self._results = list[Result]()
+        for robot in self._rows:
+            first = next(trial for trial in self._trials[0] if trial.robot == robot)
+            for law in options.laws:
+                check_called(first.experiment(remedy=False), law)
+        self._results, self._kept = list[Result](), Kept(options.folder)
         self._figures = dict[tuple[str, str], str]()
 
     def _entrants(self, robot: str) -> list[Row]:
@@ -104,21 +117,51 @@ class Arena:
         Returns:
             Whether it was finished, not interrupted.
         """
-        processes = Processes(self._options.processes or os.cpu_count() or 1)
+        count = self._options.processes
+        chosen: AbstractContextManager[Any] = (
+            parallel_config("loky", n_jobs=count) if count else nullcontext()
+        )
         try:
-            for number, trials in enumerate(self._trials):
-                title = f"round {number + 1} of {len(self._trials)}"
-                for results in self._each(processes, simulate, self._jobs(trials), title):
-                    self._results += results
-                self._write()
-                after_round(number)
-            self._write_figures(processes)
+            with chosen:
+                for number, trials in enumerate(self._trials):
+                    self._run(trials, f"round {number + 1} of {len(self._trials)}")
+                    self._write()
+                    after_round(number)
+                self._write_figures()
         except KeyboardInterrupt:
             self._write()
             return False
-        finally:
-            processes.stop()
         return True
+
+    def _run(self, trials: Sequence[Trial], title: str) -> None:
+        """Add the results of a round."""
+        wanted, keys = list[Entry](), list[str]()
+        for robot, rows in self._rows.items():
+            for row in rows:
+                for trial in (trial for trial in trials if trial.robot == robot):
+                    key = self._key(row, trial) if self._kept.keeps else ""
+                    known = self._kept.find(key)
+                    if known is None:
+                        wanted.append((row, trial))
+                        keys.append(key)
+                    else:
+                        self._results.append(result_from(known, row, trial))
+        job = Job(
+            items=wanted,
+            kinds=[(trial.robot, row, trial.condition) for row, trial in wanted],
+            work=simulated,
+            lost=lost,
+            laws=self._options.laws,
+            robots=[robot_named(robot) for robot in self._rows],
+            title=title,
+        )
+        for i, result in job.results():
+            self._kept.keep(keys[i], result.data())
+            self._results.append(result)
+
+    def _key(self, row: Row, trial: Trial) -> str:
+        law, remedy = row
+        return key_of(trial.experiment(bool(remedy)), law, "arena", trial.obstruction)
 
     @property
     def contents(self) -> Contents:
@@ -136,33 +179,6 @@ class Arena:
         """The tables in Markdown; "" if no trial has been finished."""
         return markdown(self.contents, self._words)
 
-    def _jobs(self, trials: Sequence[Trial]) -> list[Job]:
-        """The jobs of a round, robot by robot."""
-        jobs = list[Job]()
-        for robot, rows in self._rows.items():
-            own = tuple(trial for trial in trials if trial.robot == robot)
-            for law in dict.fromkeys(law for law, _ in rows):
-                jobs.append(Job(tuple(row for row in rows if row[0] == law), own))
-        return jobs
-
-    def _each(
-        self, processes: Processes, work: Callable[[Any], Any], jobs: Sequence[Any], title: str
-    ) -> Iterator[Any]:
-        """The results of jobs as they come, with a progress bar.
-
-        Laws that only this process knows run in it.
-        """
-        here = [job for job in jobs if only_here(job.law)]
-        others = [job for job in jobs if not only_here(job.law)]
-        yield from track(
-            chain(processes.each(work, others), map(work, here)),
-            title,
-            len(jobs),
-            console=Console(stderr=True),
-            transient=True,
-            disable=not sys.stderr.isatty(),
-        )
-
     def _write(self) -> None:
         """Write page and CSV, if there is anything to write."""
         options, contents = self._options, self.contents
@@ -178,21 +194,38 @@ class Arena:
             ):
                 csv.writer(file).writerows(csv_rows(contents))
 
-    def _write_figures(self, processes: Processes) -> None:
+    def _write_figures(self) -> None:
         """Write a figure for each robot and law, and the page, which links to them."""
         html = self._options.html
         if html is None or not self._options.figures:
             return
-        folder, jobs = html.with_name(f"{html.stem}-figures"), list[FigureJob]()
+        folder, wanted = html.with_name(f"{html.stem}-figures"), list[FigureJob]()
         for robot, results in self.contents.results.items():
-            for number, law in enumerate(dict.fromkeys(law for law, _ in self._rows[robot])):
+            for law in dict.fromkeys(law for law, _ in self._rows[robot]):
                 if law_named(law).called is None:
-                    name = law if law.isidentifier() else f"law-{number}"
-                    file, trial = folder / f"{robot}-{name}.html", results[0].trial
-                    jobs.append(FigureJob(file, law, trial, self._words.language))
-        for job in self._each(processes, write_figure, jobs, "figures"):
-            self._figures[job.trial.robot, job.law] = f"{folder.name}/{job.file.name}"
+                    wanted.append(FigureJob(law, results[0].trial, self._words.language))
+        job = Job(
+            items=wanted,
+            kinds=[each.law for each in wanted],
+            work=figure_of,
+            lost=lambda _: "",
+            laws=self._options.laws,
+            robots=[robot_named(robot) for robot in self._rows],
+            title="figures",
+        )
+        for i, page in job.results():
+            law, robot = wanted[i].law, wanted[i].trial.robot
+            name = law if law.isidentifier() else f"law-{self._number(robot, law)}"
+            folder.mkdir(parents=True, exist_ok=True)
+            file = folder / f"{robot}-{name}.html"
+            if page:
+                file.write_text(page, encoding="utf-8")
+                self._figures[robot, law] = f"{folder.name}/{file.name}"
         self._write()
+
+    def _number(self, robot: str, law: str) -> int:
+        """The place of a law among those of a robot."""
+        return [*dict.fromkeys(each for each, _ in self._rows[robot])].index(law)
 
 
 def _check_gains(laws: Sequence[str]) -> None:

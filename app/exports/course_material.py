@@ -111,8 +111,8 @@ def _asked(
     lesson: Lesson, index: int, solutions: dict[str, tuple[str, ...]], words: Words
 ) -> list[AskedBlock]:
     asked: list[AskedBlock] = []
-    for place, block in enumerate(lesson.steps[index].blocks):
-        key = f"{lesson.name}.{index}.{place}"
+    for block_index, block in enumerate(lesson.steps[index].blocks):
+        key = f"{lesson.name}.{index}.{block_index}"
         if isinstance(block, Sketch):
             truth = computed_truth(lesson, index)
             asked.append(

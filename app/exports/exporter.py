@@ -60,8 +60,8 @@ class Exporter:
         """
 
         def start(lab: Lab) -> None:
-            session = lab.session
-            parameters, curve = session.parameters, session.editor.curve
+            simulation = lab.simulation
+            parameters, curve = simulation.parameters, simulation.editor.curve
             if not curve.closed or parameters.task != "speed" or parameters.speed == 0:
                 lab.show_message(lab.words("compare.path"), "warning")
                 self._under_way = False
@@ -69,7 +69,7 @@ class Exporter:
             with suppress(RuntimeError):  # the interpreter is shutting down
                 self._latest = _queue.submit(
                     self._compare,
-                    robot=session.entry.name,
+                    robot=simulation.entry.name,
                     parameters=parameters,
                     curve=curve,
                     laws=list(laws),
@@ -120,7 +120,7 @@ class Exporter:
         """Request the lesson report as a page.
 
         Args:
-            code: session code shown on the page; empty for none.
+            code: lab code shown on the page; empty for none.
         """
         name = "onpath-report.html"
 
@@ -150,17 +150,17 @@ class Exporter:
         names_path: bool = False,
     ) -> None:
         def start(lab: Lab) -> None:
-            session, words = lab.session, lab.words
-            history = session.history.copy()
+            simulation, words = lab.simulation, lab.words
+            history = simulation.history.copy()
             if not history:
                 lab.show_message(words("export.nothing"), "warning")
                 self._under_way = False
                 return
-            arguments = [session.entry.name, session.parameters, history]
+            arguments = [simulation.entry.name, simulation.parameters, history]
             if in_words:
                 arguments.append(words.language)
             if names_path:
-                arguments.append(session.editor.design.name)
+                arguments.append(simulation.editor.design.name)
             self._submit(name, words, make, *arguments)
 
         self._want(start)

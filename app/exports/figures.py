@@ -14,7 +14,6 @@ from matplotlib.figure import Figure
 from onpath.app.common.palette import Colour, of_law
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.closed_loop.trajectory import Trajectory
-from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
 
 EXTRA = {"deflection": ("deflection of\nthe tip  [mm]", 1e3)}
@@ -29,6 +28,10 @@ class ShownFigure(Figure):
     """A figure that a notebook shows whether or not pyplot is in use."""
 
     def _repr_png_(self) -> bytes:
+        return self.png()
+
+    def png(self) -> bytes:
+        """The picture as a PNG file."""
         file = io.BytesIO()
         self.savefig(file, format="png", dpi=80)
         return file.getvalue()
@@ -135,7 +138,7 @@ def _draw_space(axes: Axes, experiment: Experiment, runs: list[Trajectory]) -> N
             *z.T,
             color=of_law(run.law).hex,
             linewidth=1.6,
-            label=law_named(run.law).label,
+            label=run.label,
         )
         axes.plot(*z[0], "o", color=of_law(run.law).hex, markersize=6)
         axes.plot(*z[-1], "s", color=of_law(run.law).hex, markersize=7)

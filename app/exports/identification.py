@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from onpath.app.exports.figures import ShownFigure
 from onpath.lessons.words import ENGLISH, Words
@@ -55,41 +54,53 @@ def _interval(each: BaseParameter) -> list[float]:
 
 def identification_text(found: FileEstimate) -> str:
     """The result as text."""
+    title, *others = remarks(found)
+    rows = [f"{name:24s} {value:>12s}  ± {half}" for name, value, half in parameter_rows(found)]
+    return "\n  ".join([title, *rows, *others])
+
+
+def parameter_rows(found: FileEstimate) -> list[tuple[str, str, str]]:
+    """Name, value and half of the interval of each parameter, and of the torques' delay."""
+    rows = [
+        (each.label(), f"{each.value:.6g}", f"{each.high - each.value:.2g}")
+        for each in found.estimate.found
+    ]
+    late = found.estimate.delay
+    if late is not None:
+        half = f"{1e3 * (late.high - late.value):.2g}"
+        rows.append(("torques logged late by", f"{1e3 * late.value:.3g} ms", half))
+    return rows
+
+
+def remarks(found: FileEstimate) -> list[str]:
+    """What the rows are of, and then what is to be said of them."""
     result = found.estimate
     under = f" under {', '.join(found.laws)}" if found.laws else ""
     angles = "measured" if found.measured else "true"
     lines = [f"{found.robot}: {found.seconds:.1f} s{under}, from the {angles} angles"]
-    lines += [
-        f"  {each.label():24s} {each.value:12.6g}  ± {each.high - each.value:.2g}"
-        for each in result.found
-    ]
     if result.delay is None:
         lines.append(
-            "  the motion does not show whether torques are logged late; none are assumed to be"
+            "the motion does not show whether torques are logged late; none are assumed to be"
         )
-    else:
-        late = result.delay
-        half = 1e3 * (late.high - late.value)
-        lines.append(f"  {'torques logged late by':24s} {1e3 * late.value:9.3g} ms  ± {half:.2g}")
     if any(each.others for each in result.found):
-        lines.append("  the motion cannot distinguish the parameters of a sum")
+        lines.append("the motion cannot distinguish the parameters of a sum")
     if result.unexcited:
-        lines.append(f"  not excited: {', '.join(result.unexcited)}")
+        lines.append(f"not excited: {', '.join(result.unexcited)}")
     if found.motion:
-        lines.append(f"  {_advice(found)}")
-    lines.append(f"  {100 * result.unexplained:.2g} % of the torque is not explained")
+        lines.append(_advice(found))
+    lines.append(f"{100 * result.unexplained:.2g} % of the torque is not explained")
     lines.append(
-        "  The true value is within ± with a probability of 95 %, judging by what is not"
+        "The true value is within ± with a probability of 95 %, judging by what is not"
         " explained. That leaves out errors that all rows share: wrong geometry, wrong scales of"
         " torques and forces, forces that are not in the file, and terms that the model lacks."
         " Where dry friction switches with the direction of motion, ± is too small."
     )
     if result.unexplained > MUCH:
         lines.append(
-            f"  this is too much for the values above to be trusted: is the robot"
+            f"this is too much for the values above to be trusted: is the robot"
             f" {found.robot}, and does every column have the unit in which it is read?"
         )
-    return "\n".join(lines)
+    return lines
 
 
 def _advice(found: FileEstimate) -> str:
@@ -105,7 +116,7 @@ def _advice(found: FileEstimate) -> str:
     )
 
 
-def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> Figure:
+def residual_figure(found: FileEstimate, words: Words = ENGLISH) -> ShownFigure:
     """Plot the filtered torque of each coordinate and what the model does not explain of it.
 
     Records follow each other without a gap.

@@ -66,13 +66,13 @@ def rank_summary(entry: RobotEntry, parameters: Parameters) -> dict[str, Any]:
 
 def _extent(robot: Robot) -> tuple[Array, Array]:
     """Corners of the square in the path's plane that contains the workspace."""
-    base = robot.frame.planar(robot.unplace(np.zeros(3)))
+    base = robot.frame.planar(robot.output_at(np.zeros(3)))
     return base - robot.reach, base + robot.reach
 
 
 def _section(robot: Robot, parameters: Parameters) -> tuple[Array, Array]:
     """Coordinates (y1, y3) in the plane y2 = 0 ahead of the base, and σ_min there."""
-    base, reach = robot.unplace(np.zeros(3)), robot.reach
+    base, reach = robot.output_at(np.zeros(3)), robot.reach
     low = np.array([base[0], base[2] - reach])
     centres = cell_centres(low, low + [reach, 2 * reach], (CELLS // 2, CELLS))
     y = np.stack([centres[..., 0], 0 * centres[..., 0], centres[..., 1]], axis=-1)

@@ -10,8 +10,8 @@ import numpy as np
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Segment
 from onpath.app.lab.snapshots.obstacles import wall_then
-from onpath.app.lab.snapshots.robot_geometry import robot_views
-from onpath.app.lab.snapshots.snapshot import PathView, Snapshot
+from onpath.app.lab.snapshots.robot_geometry import robot_snapshots
+from onpath.app.lab.snapshots.snapshot import PathSnapshot, Snapshot
 from onpath.app.lab.snapshots.take_snapshot import CURVE_POINTS
 from onpath.app.scene.scene import Scene
 from onpath.app.scene.stage import set_initial_camera
@@ -63,11 +63,11 @@ def _frames(history: list[Segment]) -> list[Segment]:
 def _snapshot(robot: Robot, segment: Segment, before: list[Segment]) -> Snapshot:
     outputs = sample_layout(robot).slices["y"]
     traces = np.array([s.sample[:, outputs] for s in [*before, segment]], dtype=float)
-    views = robot_views(robot, segment.curve, segment.instant(), traces[:-1])
+    robots = robot_snapshots(robot, segment.curve, segment.instant(), traces[:-1])
     theta = np.linspace(-np.pi, np.pi, CURVE_POINTS)
-    path = PathView(
+    path = PathSnapshot(
         version=id(segment.curve),
-        points=robot.place(robot.frame.lift(segment.curve.at(theta))),
+        points=robot.position(robot.frame.lift(segment.curve.at(theta))),
         control_points=np.zeros((0, 3)),
         selected=None,
         refused=np.zeros((0, 3)),
@@ -76,7 +76,7 @@ def _snapshot(robot: Robot, segment: Segment, before: list[Segment]) -> Snapshot
         time=segment.time,
         running=True,
         achieved_speed=1.0,
-        robots=views,
+        robots=robots,
         path=path,
         held=False,
         grabbed=None,

@@ -1,4 +1,4 @@
-"""Recomputation of the last minute of a session, tick by tick."""
+"""Recomputation of the last minute of a simulation, tick by tick."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def report(run: LessonState, code: str, made: datetime) -> bytes:
     """The report as a standalone page; the same record gives the same bytes.
 
     Args:
-        code: session code as stored; empty for none.
+        code: lab code as stored; empty for none.
         made: the date shown on the report.
     """
     words = Words(run.progress.language)

@@ -37,7 +37,7 @@ def play_script(
     step: Step,
     title: str,
     script: Script,
-    store: LoopCache,
+    loop_cache: LoopCache,
     task: Task | None = None,
 ) -> PlayedScript:
     """Play a script in a lab that is set up for a step.
@@ -45,11 +45,11 @@ def play_script(
     Raises:
         ValueError: the lab refuses a command of the script; the message says why.
     """
-    lab = lab_at(lesson, step, store)
-    samples, last, passed = Samples(lab.session), list[Verdict](), False
+    lab = lab_at(lesson, step, loop_cache)
+    samples, last, passed = Samples(lab.simulation), list[Verdict](), False
     for last in play(lab, script, task):
         passed |= bool(last) and all(verdict.passed for verdict in last)
-        samples.follow(lab.session)
+        samples.follow(lab.simulation)
     return PlayedScript(
         title=title,
         script=script,

@@ -18,17 +18,22 @@ STOPPED = "stopped"
 """Stands in tables for the numbers of a run that was stopped."""
 
 
-def summary_lines(values: Mapping[str, Any]) -> list[str]:
-    """One line per quantity; quantities that a run lacks are omitted.
+def rows_of(values: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Name and value of each quantity as text; quantities that a run lacks are omitted.
 
     Args:
         values: summary of one law, from `models.studies.experiments.summary`.
     """
     return [
-        f"{title:26s} {STOPPED if math.isinf(values[key]) else show(values[key])}"
+        (title, STOPPED if math.isinf(values[key]) else show(values[key]))
         for key, title, show in ROWS
         if values[key] is not None
     ]
+
+
+def summary_lines(values: Mapping[str, Any]) -> list[str]:
+    """One line per quantity; see `rows_of`."""
+    return [f"{title:26s} {value}" for title, value in rows_of(values)]
 
 
 def finite(data: Any) -> Any:

@@ -8,7 +8,7 @@ import numpy as np
 
 from onpath.app.lab.plot_samples import samples_of
 from onpath.app.lab.segments import Instant, Segment
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.models.control.settable import values_of
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import Curve
@@ -45,7 +45,7 @@ class _Replay:
 
 
 class Breakdown:
-    """Follows a session, and helps when one of its robots has stopped."""
+    """Follows a simulation, and helps when one of its robots has stopped."""
 
     def __init__(self) -> None:
         self._replay: _Replay | None = None
@@ -58,96 +58,98 @@ class Breakdown:
         """Whether the last moments are being shown."""
         return self._replay is not None
 
-    def follow(self, session: Session, seconds: float) -> bool:
+    def follow(self, simulation: Simulation, seconds: float) -> bool:
         """Called once per frame, of this duration; returns whether a replay has just ended."""
         if self._replay is not None:
-            return self._go_on(session, self._replay, seconds)
-        now, before = session.parameters, self._under
-        same = before is not None and before[0] == session.run_number and before[1] is now
-        if not same or _stopped(session):
-            self._under, self._since = (session.run_number, now), session.time
-        elif session.time > self._since + WELL:
-            self._well = session.entry.name, now
+            return self._go_on(simulation, self._replay, seconds)
+        now, before = simulation.parameters, self._under
+        same = before is not None and before[0] == simulation.run_number and before[1] is now
+        if not same or _stopped(simulation):
+            self._under, self._since = (simulation.run_number, now), simulation.time
+        elif simulation.time > self._since + WELL:
+            self._well = simulation.entry.name, now
         return False
 
-    def remedy(self, session: Session) -> dict[str, float | int | str]:
+    def remedy(self, simulation: Simulation) -> dict[str, float | int | str]:
         """Parameters changed since the last good settings, with their earlier values, if any."""
-        if self._well is None or self._well[0] != session.entry.name or not _stopped(session):
+        if self._well is None or self._well[0] != simulation.entry.name or not _stopped(simulation):
             return {}
-        well, now = self._well[1], session.parameters
+        well, now = self._well[1], simulation.parameters
         before, present = values_of(well), values_of(now)
         return {name: value for name, value in before.items() if value != present[name]}
 
-    def use_earlier_settings(self, session: Session) -> None:
+    def use_earlier_settings(self, simulation: Simulation) -> None:
         """Reset with the last good settings.
 
         Raises:
             CodedError: there are none, or nothing has changed since.
         """
-        if not self.remedy(session):
+        if not self.remedy(simulation):
             raise CodedError("error.no_earlier_settings")
         assert self._well is not None
-        session.set_parameters(self._well[1])
-        session.reset()
-        session.running = True
+        simulation.set_parameters(self._well[1])
+        simulation.reset()
+        simulation.running = True
 
-    def begin(self, session: Session) -> bool:
+    def begin(self, simulation: Simulation) -> bool:
         """Begin to show the last moments before a robot stopped.
 
         Returns:
             Whether there is something to show: a robot has stopped, and its history is kept.
         """
-        stopped = _stopped(session)
-        if not stopped or not len(session.history):
+        stopped = _stopped(simulation)
+        if not stopped or not len(simulation.history):
             return False
-        self.interrupt(session)
+        self.interrupt(simulation)
         end = max(stopped)
-        begin = max(end - SPAN, session.time - session.history.span())
-        self._replay = _Replay(begin, end, session.exaggeration)
-        session.look_at(begin)
-        if session.entry.flexible_link is not None:
-            session.exaggeration = max(session.exaggeration, LARGER)
+        begin = max(end - SPAN, simulation.time - simulation.history.span())
+        self._replay = _Replay(begin, end, simulation.exaggeration)
+        simulation.look_at(begin)
+        if simulation.entry.flexible_link is not None:
+            simulation.exaggeration = max(simulation.exaggeration, LARGER)
         return True
 
-    def interrupt(self, session: Session) -> bool:
+    def interrupt(self, simulation: Simulation) -> bool:
         """End a replay, and let time go on as before; returns whether there was one."""
         if self._replay is None:
             return False
-        session.return_to_present()
-        self._end(session, self._replay)
+        simulation.return_to_present()
+        self._end(simulation, self._replay)
         return True
 
-    def _go_on(self, session: Session, replay: _Replay, seconds: float) -> bool:
-        left = session.viewing != replay.time or session.running  # the user looks at another time
+    def _go_on(self, simulation: Simulation, replay: _Replay, seconds: float) -> bool:
+        left = (
+            simulation.viewing != replay.time or simulation.running
+        )  # the user looks at another time
         replay.elapsed += seconds
-        session.viewing = session.viewing if left else replay.time
+        simulation.viewing = simulation.viewing if left else replay.time
         if left:
-            self._end(session, replay)
+            self._end(simulation, replay)
         elif replay.elapsed > LASTS + RESTS:
-            self.interrupt(session)
+            self.interrupt(simulation)
         return self._replay is None
 
-    def _end(self, session: Session, replay: _Replay) -> None:
-        self._replay, session.exaggeration = None, replay.exaggeration
+    def _end(self, simulation: Simulation, replay: _Replay) -> None:
+        self._replay, simulation.exaggeration = None, replay.exaggeration
 
-    def instant(self, session: Session) -> tuple[Instant, Curve] | None:
+    def instant(self, simulation: Simulation) -> tuple[Instant, Curve] | None:
         """The instant shown in a replay, exact to the tick, and its path; None without a replay."""
-        if self._replay is None or (segment := session.history.at(self._replay.time)) is None:
+        if self._replay is None or (segment := simulation.history.at(self._replay.time)) is None:
             return None
         ticks = round((self._replay.time - segment.time) / segment.dt)
-        return _after(session, segment, min(ticks, segment.ticks)), segment.curve
+        return _after(simulation, segment, min(ticks, segment.ticks)), segment.curve
 
 
-def _stopped(session: Session) -> list[float]:
-    return [run.diverged.time for run in session.runs.values() if run.diverged is not None]
+def _stopped(simulation: Simulation) -> list[float]:
+    return [run.diverged.time for run in simulation.runs.values() if run.diverged is not None]
 
 
-def _after(session: Session, segment: Segment, ticks: int) -> Instant:
+def _after(simulation: Simulation, segment: Segment, ticks: int) -> Instant:
     """The instant some ticks after the beginning of a segment, as far as it is finite."""
     first = segment.instant()
     states, samples = list(first.states), first.sample.copy()
     for i, (side, drive) in enumerate(segment.drives.items()):
-        run = session.runs[side]
+        run = simulation.runs[side]
         loop = run.loop()
         if ticks <= 0 or drive.frozen or run.kind != drive.kind or loop is None:
             continue
@@ -155,9 +157,11 @@ def _after(session: Session, segment: Segment, ticks: int) -> Instant:
             table = segment.curve.table()
             state, rows = loop.run(drive.state, drive.settings, table, ticks)
         if np.isfinite(state).all() and np.isfinite(rows[-1]).all():
-            distance = samples[i, session.sample_layout.slices["distance"].start]
+            distance = samples[i, simulation.sample_layout.slices["distance"].start]
             states[i] = state
-            samples[i] = samples_of(session.robot, session.parameters, rows[-1:], [distance])[0]
+            samples[i] = samples_of(simulation.robot, simulation.parameters, rows[-1:], [distance])[
+                0
+            ]
     return Instant(
         time=first.time + ticks * segment.dt,
         laws=first.laws,

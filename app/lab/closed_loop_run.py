@@ -1,4 +1,4 @@
-"""One side, a robot under a control law, as simulated in a session."""
+"""One side, a robot under a control law, as simulated in a lab."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class ClosedLoopRun:
     """State and inputs of one closed loop; only the simulation thread touches it.
 
     Args:
-        store: provides its loops.
+        loop_cache: provides its loops.
         tell: is given what a user should know: why a law cannot be used with the robot and the
             inputs, so that the side gets a new lab's law; and once in a run, which motor gives more
             than the robot's file states.
@@ -65,7 +65,7 @@ class ClosedLoopRun:
 
     def __init__(
         self,
-        store: LoopCache,
+        loop_cache: LoopCache,
         robot: Robot,
         side: str,
         law: str,
@@ -74,7 +74,7 @@ class ClosedLoopRun:
         start: Start = ON_PATH,
         tell: Callable[[ValueError | Message], None] = lambda _: None,
     ) -> None:
-        self._store, self.robot, self._made_with = store, robot, parameters
+        self._loop_cache, self.robot, self._made_with = loop_cache, robot, parameters
         self._tell = tell
         self.side, self.law = side, law
         self.diverged: Diverged | None = None
@@ -248,7 +248,7 @@ class ClosedLoopRun:
     def loop(self) -> Loop | None:
         """The loop that computes it; None while that is being made."""
         if self._loop is None:
-            self._loop = self._store.find(self.robot, self.kind)
+            self._loop = self._loop_cache.find(self.robot, self.kind)
             if self._loop is not None and self._unfilled is not None:
                 self._fill_row(self._unfilled)
         return self._loop
@@ -293,7 +293,7 @@ class ClosedLoopRun:
     ) -> None:
         """Set the inputs; packs a new settings vector if one has changed.
 
-        The run keeps its loop as long as it needs one of this kind, whatever the store keeps.
+        The run keeps its loop as long as it needs one of this kind, whatever the cache keeps.
 
         Args:
             leg: a part of a speed profile; it replaces the speed and ramp of the parameters.
@@ -343,7 +343,7 @@ class ClosedLoopRun:
     def _possible(self, kind: Kind, inputs: tuple[Parameters, Curve, Push]) -> Kind:
         """The kind of loop, or that under a new lab's law if the law has an error there."""
         try:
-            self._store.find(self.robot, kind)
+            self._loop_cache.find(self.robot, kind)
         except ValueError as error:
             self._tell(error)
             self.law = DEFAULT_LAWS[self.side]

@@ -1,4 +1,4 @@
-"""The last minute of a session: checkpoints to rewind to, samples to plot, inputs to replay.
+"""The last minute of a simulation: checkpoints to rewind to, samples to plot, inputs to replay.
 
 A segment stores the states at its beginning and all inputs of the loop, so that every millisecond
 can be recomputed exactly, for instance for an export.

@@ -20,14 +20,14 @@ from onpath.app.lab.identification.in_background import Identification
 from onpath.app.lab.lesson_run import LessonRun
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Setup
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.course import NO_LESSONS, Course
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.simulation import has_level_set
-from onpath.models.control.forecast import UNMODELLED, forecasts, unmodelled
+from onpath.models.control.forecast import UNMODELLED, doubts, forecasts
 from onpath.models.control.settable import changed
 from onpath.models.errors import Message
 from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
@@ -71,12 +71,12 @@ class Lab:
     """A simulated lab and its user's state.
 
     Args:
-        store: provides the closed loops.
+        loop_cache: provides the closed loops.
         entry: the initial robot.
         course: the available lessons.
 
     Attributes:
-        session: the simulated lab.
+        simulation: the simulated lab.
         lessons: the user's progress through the lessons.
         script: player of the running script, or None.
         message: message to the user.
@@ -95,13 +95,13 @@ class Lab:
     """
 
     def __init__(
-        self, store: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
+        self, loop_cache: LoopCache, entry: RobotEntry = FIVE_BAR, course: Course = NO_LESSONS
     ) -> None:
         self._inbox: deque[Command] = deque(maxlen=MOST_COMMANDS)
         self._parts: Iterator[Command] = iter(())  # of the command that is being applied, after
         self._part: Command | None = None  # the next one
         self._waiting = 0  # frames for which something has been waiting
-        self.session = Session(store, entry)
+        self.simulation = Simulation(loop_cache, entry)
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level, self.messages = "", "info", 0
@@ -113,7 +113,7 @@ class Lab:
         self.unsaved = ""
         self.breakdown = Breakdown()
         self.phase_asked = False
-        self.identification = Identification(store.at_once)
+        self.identification = Identification(loop_cache.at_once)
         self.watch: Callable[[Lab], None] | None = None
 
     @property
@@ -159,12 +159,12 @@ class Lab:
             the user's doing.
         """
         begun, applied = thread_time(), 0
-        while self.has_commands and not self.session.has_to_step:
+        while self.has_commands and not self.simulation.has_to_step:
             if thread_time() - begun >= most:
                 break
             self._apply_next()
             applied += 1
-        is_behind = self._part is not None or self.session.lacks_loops
+        is_behind = self._part is not None or self.simulation.lacks_loops
         is_behind = is_behind or (self.has_commands and not applied)
         self._waiting = self._waiting + 1 if is_behind else 0
         if self._part is not None:
@@ -189,7 +189,7 @@ class Lab:
                     level = "stop" if self.frozen else "warning"
                     self.show_message(self.words.sentence(refusal), level)
                     return
-                if self.breakdown.interrupt(self.session):
+                if self.breakdown.interrupt(self.simulation):
                     self.clear_message()
             self._parts = command.parts(self)
         try:
@@ -209,24 +209,24 @@ class Lab:
 
     def _adopt_identified(self) -> None:
         """Give the controllers the requested model as soon as it has been identified."""
-        session = self.session
+        simulation = self.simulation
         try:
             learned = self.identification.take()
-            if learned is not None and learned.robot.core == session.robot.core:
-                before = session.parameters
-                session.set_parameters(learned.believed(before))
-                session.note("identify")
+            if learned is not None and learned.robot.core == simulation.robot.core:
+                before = simulation.parameters
+                simulation.set_parameters(learned.believed(before))
+                simulation.note("identify")
                 self.show_message(learned.report(before, self.words))
         except ValueError as error:
             self.show_message(self.words.sentence(error), "warning")
 
     def _end_level_set(self) -> None:
         """Return to the distance, and say so, if the path no longer has a level set."""
-        session = self.session
-        now, path = session.parameters, session.editor.blend.target
+        simulation = self.simulation
+        now, path = simulation.parameters, simulation.editor.blend.target
         if now.across == LEVEL_SET and not has_level_set(path):
-            session.set_parameters(changed(now, "across", DISTANCE))
-            session.note("set", "across")
+            simulation.set_parameters(changed(now, "across", DISTANCE))
+            simulation.note("set", "across")
             self.remark(self.words("say.level_set_ends"))
 
     def _play(self) -> None:
@@ -234,7 +234,7 @@ class Lab:
         if self.script is None:
             return
         try:
-            if self.script.play(self.session, lambda command: command.apply(self)):
+            if self.script.play(self.simulation, lambda command: command.apply(self)):
                 self.script = None
         except ValueError as error:
             self.script = None
@@ -245,9 +245,9 @@ class Lab:
     def frame(self, seconds: float) -> Frame:
         """Simulate `seconds` if running and not frozen; see `advance_together`."""
         if not self.frozen and self._part is None:
-            yield from self.session.frame(seconds)
+            yield from self.simulation.frame(seconds)
             self.show_faults()
-            if self.breakdown.follow(self.session, seconds / self.session.rate):
+            if self.breakdown.follow(self.simulation, seconds / self.simulation.rate):
                 self.clear_message()
 
     def advance(self, seconds: float) -> None:
@@ -260,13 +260,13 @@ class Lab:
         Raises:
             ValueError: the set-up is impossible; the lab is unchanged.
         """
-        restore(self.session, setup)
+        restore(self.simulation, setup)
         self.show_message("")
 
     def return_to_present(self) -> None:
         """Stop viewing the past; the history is kept, and time runs if it ran before."""
-        if self.session.viewing is not None:
-            self.session.return_to_present()
+        if self.simulation.viewing is not None:
+            self.simulation.return_to_present()
             self.remark(self.words("say.present"))
 
     # Messages
@@ -309,7 +309,7 @@ class Lab:
 
     def show_faults(self) -> None:
         """Report robots that have just stopped, and laws that cannot be used or compiled."""
-        faults, remarks = self.session.faults, self.session.law_changes.remarks
+        faults, remarks = self.simulation.faults, self.simulation.law_changes.remarks
         caution = self._foreseen()
         if caution != self._caution:
             self._caution = caution
@@ -326,28 +326,29 @@ class Lab:
         The panel of a flexible link shows its zero dynamics itself. While a prediction is pending,
         only the caution of the robot's catalogue entry is given.
         """
-        session, robot = self.session, self.session.robot
-        caution = session.entry.caution(session.parameters)
+        simulation, robot = self.simulation, self.simulation.robot
+        caution = simulation.entry.caution(simulation.parameters)
         if caution or self.locked:
             return caution
-        path, laws = session.editor.blend.target, tuple(session.chosen_laws.values())
-        if robot.system.n == robot.system.m or robot.system.modes:
-            return unmodelled(robot, laws, session.parameters)
-        inputs = robot, laws, session.parameters, path
+        path, laws = simulation.editor.blend.target, tuple(simulation.chosen_laws.values())
+        inputs = robot, laws, simulation.parameters, path
         if self._forecast is None or self._forecast[0] != inputs:
-            q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
-            messages = forecasts(robot, laws, session.parameters, q)
+            if robot.system.modes:
+                messages = doubts(robot, laws, simulation.parameters, path)
+            else:
+                q = robot.rest(robot.frame.lift(path.at(np.array(0.0))))
+                messages = forecasts(robot, laws, simulation.parameters, q, path)
             self._forecast = inputs, next(iter(messages), None)
         return self._forecast[1]
 
     def fault_words(self, key: str, **more: str) -> str:
         """The message of a key about the robot that stopped last; empty if none has stopped."""
-        runs = self.session.runs.items()
+        runs = self.simulation.runs.items()
         faults = {side: run.diverged for side, run in runs if run.diverged is not None}
         if not faults:
             return ""
         side, fault = max(faults.items(), key=lambda each: each[1].time)
-        titles = side_titles(self.session.laws, self.words)
+        titles = side_titles(self.simulation.laws, self.words)
         return self.words(
             key,
             robot=titles[side],

@@ -1,4 +1,4 @@
-"""Converts a session to the record that the lessons' checks evaluate."""
+"""Converts a simulation to the record that the lessons' checks evaluate."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from onpath.app.lab.events import LabEvent
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.measures.thinning import peaks
 from onpath.lessons.progress import MOST_POINTS, Truth
@@ -38,46 +38,46 @@ class Beginning:
     given: Mapping[str, object] = field(default_factory=dict[str, object])
 
     @staticmethod
-    def now(session: Session) -> Beginning:
+    def now(simulation: Simulation) -> Beginning:
         """The current instant; earlier events are ignored."""
-        session.events.clear()
-        return Beginning(session.run_number, session.time, settings_of(session))
+        simulation.events.clear()
+        return Beginning(simulation.run_number, simulation.time, settings_of(simulation))
 
 
-def settings_of(session: Session) -> dict[str, object]:
+def settings_of(simulation: Simulation) -> dict[str, object]:
     """Everything that a task may ask to be left as it is, by the names of `Only`."""
     return {
-        **values_of(session.parameters),
-        **session.chosen_laws,
-        "path": session.editor.design.name,
-        "robot": session.entry.name,
-        "start": session.start,
-        "wall": session.wall,
+        **values_of(simulation.parameters),
+        **simulation.chosen_laws,
+        "path": simulation.editor.design.name,
+        "robot": simulation.entry.name,
+        "start": simulation.start,
+        "wall": simulation.wall,
     }
 
 
 def record_of(
-    session: Session, since: Beginning, before: Mapping[Better | Once, float] | None = None
+    simulation: Simulation, since: Beginning, before: Mapping[Better | Once, float] | None = None
 ) -> Record:
     """Record since the beginning of a step or, if later, since the last reset.
 
     Args:
         before: see `Record.before`.
     """
-    begin = since.time if since.run == session.run_number else 0.0
-    times, samples = session.history.samples(begin, session.time, MOST_SAMPLES)
+    begin = since.time if since.run == simulation.run_number else 0.0
+    times, samples = simulation.history.samples(begin, simulation.time, MOST_SAMPLES)
     return Record(
         times=times,
-        values=_values(session, samples.astype(float)) if len(times) else _nothing(session),
-        happenings=tuple(map(_happening, session.events)),
-        run=session.run_number,
-        parameters=session.parameters,
-        end=session.time,
-        path=session.editor.design.name,
-        robot=session.entry.name,
-        laws=session.laws,
-        changed=lambda: _changed(session, since.given),
-        length=lambda: 1e3 * session.editor.design.curve.length(),
+        values=_values(simulation, samples.astype(float)) if len(times) else _nothing(simulation),
+        happenings=tuple(map(_happening, simulation.events)),
+        run=simulation.run_number,
+        parameters=simulation.parameters,
+        end=simulation.time,
+        path=simulation.editor.design.name,
+        robot=simulation.entry.name,
+        laws=simulation.laws,
+        changed=lambda: _changed(simulation, since.given),
+        length=lambda: 1e3 * simulation.editor.design.curve.length(),
         before={} if before is None else before,
     )
 
@@ -96,13 +96,13 @@ class Trace:
         self._quantity, self._until = quantity, begin
         self._rows = np.zeros((0, 1 + len(ROBOTS)))
 
-    def follow(self, session: Session) -> None:
+    def follow(self, simulation: Simulation) -> None:
         """Add what has happened since the last call; a reset restarts the trace."""
         until = self._until
-        if until.run != session.run_number:
-            until, self._rows = Beginning(session.run_number, 0.0), self._rows[:0]
-        begin = min(until.time, session.time)  # the last frame may have been incomplete
-        record = record_of(session, Beginning(until.run, begin))
+        if until.run != simulation.run_number:
+            until, self._rows = Beginning(simulation.run_number, 0.0), self._rows[:0]
+        begin = min(until.time, simulation.time)  # the last frame may have been incomplete
+        record = record_of(simulation, Beginning(until.run, begin))
         nothing = np.zeros(len(record.times))
         curves = [record.values[robot].get(self._quantity, nothing) for robot in ROBOTS]
         new = np.nan_to_num(np.column_stack([record.times, *curves]), posinf=0.0, neginf=0.0)
@@ -125,9 +125,9 @@ class Trace:
         )
 
 
-def _changed(session: Session, given: Mapping[str, object]) -> tuple[str, ...]:
+def _changed(simulation: Simulation, given: Mapping[str, object]) -> tuple[str, ...]:
     """Names of the settings that differ from the given ones."""
-    now = settings_of(session)
+    now = settings_of(simulation)
     return tuple(name for name, value in given.items() if now.get(name) != value)
 
 
@@ -139,19 +139,21 @@ def _happening(event: LabEvent) -> Happening:
     )
 
 
-def _nothing(session: Session) -> dict[RobotName, dict[str, Array]]:
-    return {ROLES[name]: {} for name in session.runs}
+def _nothing(simulation: Simulation) -> dict[RobotName, dict[str, Array]]:
+    return {ROLES[name]: {} for name in simulation.runs}
 
 
-def _values(session: Session, samples: Array) -> dict[RobotName, dict[str, Array]]:
+def _values(simulation: Simulation, samples: Array) -> dict[RobotName, dict[str, Array]]:
     """Quantities of samples, shape (n, robots, fields); see lessons.record.QUANTITIES."""
-    layout, names = session.sample_layout, list(session.runs)
+    layout, names = simulation.sample_layout, list(simulation.runs)
     timetable = names.index(LEFT)
     running = layout.unpack(samples[:, timetable])["theta_ref"][:, 0]
-    point = session.robot.frame.lift(session.editor.curve.at(running))
+    point = simulation.robot.frame.lift(simulation.editor.curve.at(running))
     values: dict[RobotName, dict[str, Array]]
     values = {ROLES[name]: _of(layout, samples[:, i], point) for i, name in enumerate(names)}
-    if session.parameters.across == LEVEL_SET or session.across_since > 0:  # not in mm throughout
+    if (
+        simulation.parameters.across == LEVEL_SET or simulation.across_since > 0
+    ):  # not in mm throughout
         for quantities in values.values():
             del quantities["across"], quantities["across_rate"]
     return values

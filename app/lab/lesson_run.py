@@ -13,10 +13,10 @@ from onpath.app.lab.answers import kept_answer
 from onpath.app.lab.lesson_record import Beginning, Trace
 from onpath.app.lab.lesson_state import LessonState
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.step_setup import setup_of
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.task_judge import TaskJudge
 from onpath.lessons.checks import Verdict
 from onpath.lessons.concept_test.on_route import first_step
@@ -35,11 +35,11 @@ class LessonLab(Protocol):
     """The part of a lab that lessons use.
 
     Attributes:
-        session: the simulated lab.
+        simulation: the simulated lab.
         script: player of the running script, or None.
     """
 
-    session: Session
+    simulation: Simulation
     script: ScriptPlayer[Any] | None
 
     def set_up(self, setup: Setup) -> None:
@@ -118,7 +118,7 @@ class LessonRun(LessonState):
         lesson = self.course.lesson(name, self.progress.language)
         if index not in range(len(lesson.steps)):
             raise CodedError("error.no_step", step=index + 1, steps=len(lesson.steps))
-        before = capture(lab.session) if self.lesson is None else self.before
+        before = capture(lab.simulation) if self.lesson is None else self.before
         _set_up(lab, lesson, index)
         route = route if route in self.course.routes else self.progress.route
         self.progress = replace(self.progress, lesson=name, route=route, ended=False)
@@ -152,11 +152,11 @@ class LessonRun(LessonState):
         self.check_within("", 0)
         self.progress = replace(self.progress, lesson="", route="", ended=False)
         self.plots = ()
-        self._begin_again(lab, running=lab.session.running)
+        self._begin_again(lab, running=lab.simulation.running)
         if self.before is not None:
             lab.set_up(self.before)
-            lab.session.editor.forget_edits()  # of the lesson
-            lab.session.running = True
+            lab.simulation.editor.forget_edits()  # of the lesson
+            lab.simulation.running = True
         self.version += 1
 
     def finish(self) -> None:
@@ -186,7 +186,7 @@ class LessonRun(LessonState):
         if by > 0 and self.waits:
             self.note_answer(Answer())
         if stays:
-            self._lock(lab.session)
+            self._lock(lab.simulation)
             return
         if name == lesson.name:
             self._go(target, lab)
@@ -198,7 +198,7 @@ class LessonRun(LessonState):
         if self.lesson is not None:
             self._go(self.index, lab)
 
-    def predict(self, answer: Answer, session: Session) -> None:
+    def predict(self, answer: Answer, simulation: Simulation) -> None:
         """Submit a prediction.
 
         Raises:
@@ -209,7 +209,7 @@ class LessonRun(LessonState):
             raise CodedError("lesson.nothing_to_predict")
         _, prediction = found
         self.note_answer(kept_answer(prediction, answer))
-        self._lock(session)
+        self._lock(simulation)
         self.version += 1
 
     def play(self, player: ScriptPlayer[Any], lab: LessonLab) -> None:
@@ -221,19 +221,19 @@ class LessonRun(LessonState):
         Raises:
             ValueError: a prediction must be made first.
         """
-        lesson, found, session = self.lesson, self.prediction(), lab.session
+        lesson, found, simulation = self.lesson, self.prediction(), lab.simulation
         if lesson is None:
             return
         self.check_unlocked()
-        rate = session.rate if self._rate is None else self._rate
+        rate = simulation.rate if self._rate is None else self._rate
         _set_up(lab, lesson, self.index)
-        session.rate = rate  # may be slow motion; the result is the same
-        self._judge.begin = Beginning.now(session)
+        simulation.rate = rate  # may be slow motion; the result is the same
+        self._judge.begin = Beginning.now(simulation)
         self._trace = Trace(quantity_of(found[1]), self._judge.begin) if found else None
         self._player = lab.script = player
         script = lesson.steps[self.index].script
         self._rate = rate if script and any(action.rate for action in script.do) else None
-        session.running = True
+        simulation.running = True
         self.version += 1
 
     # Updates
@@ -241,28 +241,28 @@ class LessonRun(LessonState):
     def follow(self, lab: LessonLab) -> None:
         """Evaluate the tasks periodically and detect a demonstration's end; call in every frame."""
         self._frames += 1
-        session = lab.session
+        simulation = lab.simulation
         if self._player is not None and lab.script is not self._player:
             ended, self._player = self._player, None
-            session.rate = session.rate if self._rate is None else self._rate
+            simulation.rate = simulation.rate if self._rate is None else self._rate
             self._rate = None
             if ended.finished:
-                self._note_truth(session)
+                self._note_truth(simulation)
             self.version += 1
         if self._frames % CHECK_INTERVAL:
             return
         if self._player is not None and self._trace is not None:
-            self._trace.follow(session)
+            self._trace.follow(simulation)
         if self.step is not None and self.step.tasks():
-            for task, value, way in self._judge.follow(session, self.step.tasks(), self.words):
+            for task, value, way in self._judge.follow(simulation, self.step.tasks(), self.words):
                 self._pass(task.id, value, way)
 
-    def truth(self, session: Session) -> Truth | None:
+    def truth(self, simulation: Simulation) -> Truth | None:
         """The actual curve of the predicted quantity, from now or from the last demonstration."""
         found = self.prediction()
         if found is None or self._player is None or self._trace is None:
             return None if found is None else self.notes.truths.get(found[0])
-        self._trace.follow(session)
+        self._trace.follow(simulation)
         return self._trace.truth()
 
     def _pass(self, task: str, value: float, way: int) -> None:
@@ -287,27 +287,27 @@ class LessonRun(LessonState):
         if self.notes.handed_in:
             self.progress = replace(self.progress, ended=True)
         self.note(step=index, seen=max(self.notes.seen, index + 1))
-        lab.session.editor.forget_edits()  # an undo would bring the path of another step back
+        lab.simulation.editor.forget_edits()  # an undo would bring the path of another step back
         self.plots = lesson.scene_at(index).plots
         self._begin_again(lab, lesson.scene_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:
         """Reset demonstration, tasks and undo for the step."""
-        session = lab.session
-        lab.script, session.undo_timeline, session.running = None, None, running
+        simulation = lab.simulation
+        lab.script, simulation.undo_timeline, simulation.running = None, None, running
         self._player = self._trace = self._rate = None
-        self._judge = TaskJudge(Beginning.now(session))
-        self._lock(session)
+        self._judge = TaskJudge(Beginning.now(simulation))
+        self._lock(simulation)
 
-    def _lock(self, session: Session) -> None:
+    def _lock(self, simulation: Simulation) -> None:
         """Stop time while it must not run."""
         if self.locked is not None:
-            session.running = False
+            simulation.running = False
 
-    def _note_truth(self, session: Session) -> None:
+    def _note_truth(self, simulation: Simulation) -> None:
         found, truths = self.prediction(), self.notes.truths
         if found is not None and self._trace is not None:
-            self._trace.follow(session)
+            self._trace.follow(simulation)
             truths = {**truths, found[0]: self._trace.truth()}
         played = tuple(dict.fromkeys((*self.notes.played, str(self.index))))
         self.note(truths=truths, played=played)
@@ -316,7 +316,7 @@ class LessonRun(LessonState):
 def _set_up(lab: LessonLab, lesson: Lesson, index: int) -> None:
     """Set the lab up for a step."""
     lab.set_up(setup_of(lesson, index))
-    lab.session.editor.select(None)
+    lab.simulation.editor.select(None)
 
 
 def quantity_of(prediction: Prediction) -> str:

@@ -1,4 +1,4 @@
-"""Editing the path of a session: selection, validity, undo, and the blend from old to new."""
+"""Editing the path of a simulation: selection, validity, undo, and the blend from old to new."""
 
 from __future__ import annotations
 

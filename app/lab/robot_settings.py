@@ -11,7 +11,7 @@ from onpath.models.systems.parameters import Parameters
 
 
 class RobotSettings(NamedTuple):
-    """The settings that a robot keeps while another one is used; see `app.lab.session`."""
+    """The settings that a robot keeps while another one is used; see `app.lab.simulation`."""
 
     parameters: Parameters
     editor: PathEditor | None = None

@@ -6,18 +6,18 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from typing import Generic, TypeVar
 
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 
 Request = TypeVar("Request")
 
 
 class ScriptPlayer(Generic[Request]):
-    """A script that is being played; its times count from the session's time zero.
+    """A script that is being played; its times count from the simulation's time zero.
 
     Args:
         script: commands and their times, [s].
         until: end of the script, [s].
-        stop: whether to pause the session at the end of the script.
+        stop: whether to pause the simulation at the end of the script.
 
     Attributes:
         finished: whether the script was played to its end, not cancelled.
@@ -33,7 +33,7 @@ class ScriptPlayer(Generic[Request]):
         self._run: int | None = None
         self.finished = False
 
-    def play(self, session: Session, ask: Callable[[Request], None]) -> bool:
+    def play(self, simulation: Simulation, ask: Callable[[Request], None]) -> bool:
         """Post the commands that are due; call before every frame.
 
         Returns:
@@ -43,20 +43,20 @@ class ScriptPlayer(Generic[Request]):
             ValueError: the lab refuses a command; the script is then over.
         """
         if self._run is None:
-            self._run = session.run_number
-        if session.run_number != self._run:
+            self._run = simulation.run_number
+        if simulation.run_number != self._run:
             return True
-        while self._waiting and self._waiting[0][0] <= self._now(session) + 1e-9:
-            before = session.time
+        while self._waiting and self._waiting[0][0] <= self._now(simulation) + 1e-9:
+            before = simulation.time
             ask(self._waiting.popleft()[1])
-            if session.run_number != self._run:
-                self._run, self._before = session.run_number, self._before + before
-        if self._now(session) < self._until - 1e-9:
+            if simulation.run_number != self._run:
+                self._run, self._before = simulation.run_number, self._before + before
+        if self._now(simulation) < self._until - 1e-9:
             return False
         if self._stop:
-            session.running = False
+            simulation.running = False
         self.finished = True
         return True
 
-    def _now(self, session: Session) -> float:
-        return self._before + session.time
+    def _now(self, simulation: Simulation) -> float:
+        return self._before + simulation.time

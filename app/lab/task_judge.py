@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.checks import Verdict, judge, statistic, way_of
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.record import Record
@@ -28,10 +28,10 @@ class TaskJudge:
         self._earlier = EarlierRun()
 
     def follow(
-        self, session: Session, tasks: list[Task], words: Words
+        self, simulation: Simulation, tasks: list[Task], words: Words
     ) -> Iterator[tuple[Task, float, int]]:
         """Judge the tasks; yield those that are passed, the value to be improved, and the way."""
-        record = record_of(session, self.begin, self._earlier.values)
+        record = record_of(simulation, self.begin, self._earlier.values)
         self._earlier.follow(record, tasks)
         for task in tasks:
             verdicts = judge(task, record, words)

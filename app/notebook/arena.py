@@ -8,12 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from onpath.app.common.own_laws import law_given
 from onpath.app.exports.arena_page import Contents, run_rows, table_rows
 from onpath.app.exports.arena_run import Arena, ArenaOptions
-from onpath.app.notebook.simulate import entry_named
+from onpath.app.notebook.simulate import entry_named, law_of
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.studies.arena import ROBOT_NAMES
 from onpath.models.systems.robots import RobotEntry
+
+GivenRobot = str | Path | RobotEntry
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -52,13 +54,14 @@ class ArenaResult:
 
 
 def arena(
+    robot: GivenRobot | Sequence[GivenRobot] = ROBOT_NAMES,
     law: Any = (),
     *,
-    robot: str | RobotEntry | Sequence[str | RobotEntry] = ROBOT_NAMES,
     only: bool = False,
     rounds: int = 3,
     seed: int = 1,
     processes: int = 0,
+    folder: str | Path | None = None,
     html: str | Path | None = None,
     csv: str | Path | None = None,
     figures: bool = True,
@@ -66,18 +69,19 @@ def arena(
 ) -> ArenaResult:
     """Run all control laws, and yours, through the same trials, as `onpath arena` does.
 
-    It takes minutes. If it is interrupted, what all laws have finished is returned.
+    It takes minutes. If it is interrupted, what all laws have finished is returned. The runs are
+    shared among processes by joblib, as those of `onpath.sweep`: also among those of a cluster.
 
     Args:
-        law: a law of one's own, or several, as for `onpath.simulate`. One in a file, as
-            "my_law.py:Name", is simulated in parallel with others; an object of this process is
-            simulated here, after the others.
-        robot: one of `onpath.robots()`, what `onpath.robot` returns, or several of these.
+        robot: one as for `onpath.simulate`, or several.
+        law: a law of one's own, or several, as for `onpath.simulate`.
         only: compare only the laws given, which may also be names of `onpath.laws()`.
         rounds: number of rounds. Each has five obstructions for each robot; the first is on the
             circle with an exact model, others have random paths and conditions.
         seed: of the random numbers: the same seed gives the same trials.
-        processes: number of processes; 0: one for each processor.
+        processes: number of processes; 0: what joblib is set to, or one for each processor.
+        folder: a folder in which finished runs are kept: an arena that was interrupted goes on
+            where it was. None: nothing is kept.
         html: the page to write; it is written after each round.
         csv: the file of all runs to write, one per line.
         figures: whether a live figure of each law on each robot is written, in a folder beside the
@@ -92,11 +96,14 @@ def arena(
         UserWarning: the arena was interrupted.
     """
     laws = law if isinstance(law, list | tuple) else [law]
-    robots = [robot] if isinstance(robot, str | RobotEntry) else robot
-    names = [law_given(each) for each in laws]
+    robots = [robot] if isinstance(robot, str | Path | RobotEntry) else robot
+    for each in robots:
+        if callable(each) or hasattr(each, "command") or each in LAWS:
+            raise ValueError(f"arena: {each!r:.60} is a law: arena(law=…)")
+    names = [law_of(each) for each in laws]
     entries = [entry_named(each).name for each in robots]
     given = {"robot": entries, "only": only, "rounds": rounds, "seed": seed}
-    told = ", ".join([repr(names), *(f"{name}={value!r}" for name, value in given.items())])
+    told = ", ".join([f"law={names!r}", *(f"{name}={value!r}" for name, value in given.items())])
     options = ArenaOptions(
         laws=names,
         robots=entries,
@@ -104,8 +111,9 @@ def arena(
         rounds=rounds,
         seed=seed,
         processes=processes,
-        html=None if html is None else Path(html),
-        csv=None if csv is None else Path(csv),
+        folder=None if folder is None else Path(folder).expanduser(),
+        html=None if html is None else Path(html).expanduser(),
+        csv=None if csv is None else Path(csv).expanduser(),
         figures=figures,
         language=language,
         command=f"onpath.arena({told})",

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from onpath.app.common.atomic_file import check_plot, whole_file
+from onpath.app.common.user_files import user_file
 from onpath.app.notebook.simulate import entry_named
 from onpath.models.studies.log_identification import FileEstimate, identify_file
-from onpath.models.systems.robots import RobotEntry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -60,10 +61,16 @@ class IdentificationResult:
 
         figure = residual_figure(self.found)
         if file is not None:
-            check_plot(Path(file), "file")
-            with whole_file(Path(file)) as path:
+            target = Path(file).expanduser()
+            check_plot(target, "file")
+            with whole_file(target) as path:
                 save(figure, path)
         return figure
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from onpath.app.notebook.display import identification_bundle  # slow to import
+
+        return identification_bundle(repr(self), self.found)
 
     def __repr__(self) -> str:
         from onpath.app.exports.identification import identification_text
@@ -72,8 +79,8 @@ class IdentificationResult:
 
 
 def identify(
-    file: str | Path,
-    robot: str | RobotEntry = "five_bar",
+    robot: str | Path | RobotEntry = "five_bar",
+    file: str | Path = "",
     *,
     columns: Mapping[str, str] | None = None,
     units: Mapping[str, str | float] | None = None,
@@ -85,9 +92,8 @@ def identify(
     and encoding are recognised. Its times may be uneven, and its torques late by an unknown time.
 
     Args:
+        robot: as for `onpath.simulate`; its geometry has to be that of the arm.
         file: such as "arm.csv".
-        robot: one of `onpath.robots()`, or what `onpath.robot` returns; its geometry has to be
-            that of the arm.
         columns: names of the log's columns: "t", each coordinate, such as "q1", the torque of each
             motor, such as "tau1", and perhaps the force on the end-point, "force1" and so on.
             Those that are not given are named as in files of OnPath: t_s, q1_rad, tau1_Nm,
@@ -105,9 +111,12 @@ def identify(
     >>> import onpath, pathlib, tempfile
     >>> file = pathlib.Path(tempfile.mkdtemp(), "motion.csv")
     >>> onpath.simulate(path="clover", speed=4, encoder_counts=20000).to_csv(file)
-    >>> result = onpath.identify(file)
+    >>> result = onpath.identify("five_bar", file)
     >>> low, high = result.intervals["M11"]
     >>> bool(low < 0.0226 < high), bool(abs(result.delay) < 1e-3)
     (True, True)
     """
-    return IdentificationResult(identify_file(Path(file), entry_named(robot), law, columns, units))
+    if not file or isinstance(file, RobotEntry) or str(file) in ROBOTS:
+        raise TypeError('identify(robot, file): as in onpath.identify("five_bar", "arm.csv")')
+    entry, path = entry_named(robot), user_file(file)
+    return IdentificationResult(identify_file(path, entry, law, columns, units))

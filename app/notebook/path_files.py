@@ -10,14 +10,18 @@ from xml.etree import ElementTree
 
 import numpy as np
 
-from onpath.app.notebook.arguments import curve_of, plane_point
-from onpath.app.notebook.simulate import entry_named
+from onpath.app.common.user_files import user_file
+from onpath.app.notebook.arguments import curve_of, looked_up, plane_point
+from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.arrays import Array
+from onpath.models.control.settable import with_values
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_in
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.nearest_path import nearest_path
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry
 
 SVG = "http://www.w3.org/2000/svg"
 
@@ -82,7 +86,7 @@ def path_from(
         closed=closed,
         part=part,
     )
-    read = path_in(Path(file), placing)
+    read = path_in(user_file(file), placing)
     for remark in read.remarks:
         warnings.warn(str(remark), stacklevel=2)
     return read.curve
@@ -132,25 +136,35 @@ class PathCheck:
         return ElementTree.tostring(drawing, encoding="unicode")
 
 
-def check_path(path: Curve | str, robot: str = "five_bar") -> PathCheck:
+def check_path(
+    robot: str | Path | RobotEntry = "five_bar",
+    path: str | Path | Curve = "circle",
+    **settings: float | str,
+) -> PathCheck:
     """Whether a robot can follow a path, and the nearest path that it can follow.
 
     The nearest one is looked for among smoothed, scaled and moved versions of the path.
 
     Args:
-        path: as for `onpath.simulate`.
-        robot: one of `onpath.robots()`.
+        robot, path, settings: as for `onpath.simulate`.
 
     Raises:
-        ValueError: an unknown robot or path.
+        ValueError: an unknown robot, path or setting.
+        OSError: a file cannot be read.
 
     >>> import onpath
-    >>> check = onpath.check_path(onpath.circle(0.006))
+    >>> check = onpath.check_path("five_bar", onpath.circle(0.006))
     >>> check.ok, check.nearest.length() > 0.05
     (False, True)
     """
-    entry, curve = entry_named(robot), curve_of("path", path)
-    margin = entry.make(entry.parameters()).margin
+    exchanged = isinstance(robot, Curve) or isinstance(path, RobotEntry)
+    if exchanged or str(robot) in presets() or str(path) in ROBOTS:
+        raise TypeError("check_path(robot, path): the robot comes first, as in onpath.simulate")
+    entry = entry_named(robot)
+    check_names(settings, entry, check_path)
+    with looked_up("onpath.paths()"):
+        curve = curve_of("path", path)
+    margin = entry.make(with_values(entry.parameters(), settings)).margin
     faults = curve_faults(margin, curve)
     nearest: Curve | None = curve
     if faults:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from onpath.app.common.robot_files import robot_of_file
+from onpath.app.common.user_files import user_file
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robots import RobotEntry
 
@@ -22,7 +23,8 @@ def robot(
 ) -> RobotEntry:
     """A robot from a URDF file, or from an MJCF file, for which MuJoCo must be installed.
 
-    It can be given to `onpath.simulate`, `onpath.parameters`, `onpath.figure` and `onpath.arena`.
+    It can be given wherever a robot is, such as to `onpath.simulate`, which also takes the name of
+    a file that needs no options.
     The joints on the way from the base to the tip move, at most 8; all others are locked. Two
     outputs if the tip can only move in a plane, else three.
 
@@ -40,6 +42,7 @@ def robot(
 
     Raises:
         ValueError: the file is refused, with line and element, or an option does not fit.
+        OSError: the file cannot be read.
 
     Warns:
         UserWarning: what is left out, such as a mesh that is not there.
@@ -58,9 +61,9 @@ def robot(
         lock=dict(lock or {}),
         pose=dict(pose or {}),
         armature=armature,
-        packages={name: Path(folder) for name, folder in (packages or {}).items()},
+        packages={name: Path(folder).expanduser() for name, folder in (packages or {}).items()},
     )
-    entry, remarks = robot_of_file(Path(file), options)
+    entry, remarks = robot_of_file(user_file(file), options)
     for remark in remarks:
         warnings.warn(str(remark), UserWarning, stacklevel=2)
     return entry

@@ -1,8 +1,11 @@
-"""A simulated run: arrays over time, a picture, a CSV file, a summary."""
+"""A simulated run: arrays over time, a picture, a CSV file, a data frame, a summary."""
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +15,24 @@ from numpy.typing import NDArray
 from onpath.app.common.atomic_file import check_plot, check_writable, whole_file
 from onpath.app.exports.summary_text import summary_lines
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.trajectory import Trajectory, write_csv
+from onpath.models.closed_loop.trajectory import (
+    MEASURED,
+    Trajectory,
+    header,
+    numbers_of,
+    write_csv,
+)
 from onpath.models.control.laws.own import law_title
-from onpath.models.studies.experiments import Experiment, never_held, summary
+from onpath.models.studies.experiments import Experiment, experiment_from, never_held, summary
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+    from onpath.app.exports.standalone.figure import Figure as LiveFigure
+
+FORMAT = 1
+"""Of a pickled run; another number for each change after which it must be read differently."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -25,6 +40,11 @@ class Run:
     """One robot under one control law: arrays with one row per millisecond.
 
     n rows; a robot has k coordinates, m motors and an output of p components.
+
+    A run can be pickled, and read in another process or on another computer, without the files of
+    its robot and its law: everything here works there, also beside runs that are made there. A
+    pickle is code that runs when it is read, so read none from somebody you do not trust; what is
+    meant for others is the file of `to_csv`, with the units in its header.
 
     Attributes:
         experiment: robot, parameters, path and schedule.
@@ -136,25 +156,26 @@ class Run:
         """
         return summary(self.experiment, [self.trajectory])["laws"][self.law]
 
-    def plot(self, *others: Run, file: str | Path | None = None) -> Figure:
+    def plot(self, *others: Run | str | Path, file: str | Path | None = None) -> Figure:
         """Plot the end-point and path, and distance, xi, theta, its rate and torque over time.
 
         Args:
-            others: runs of the same robot and path, drawn in the same picture.
-            file: file to write, with a name ending in .png, .svg or .pdf.
+            others: runs of the same robot and path, drawn in the same picture; and the file, as in
+                `run.plot("held.png")` and `run.plot(other, "held.png")`.
+            file: the file to write, with a name ending in .png, .svg or .pdf.
 
         Raises:
-            ValueError: another robot or path, nothing to draw, or a file that cannot be written.
+            ValueError: another robot or path, two files, or a file that cannot be written.
         """
-        from onpath.app.exports.figures import experiment_figure, save  # slow to import
+        from onpath.app.exports.figures import experiment_figure  # slow to import
 
-        path = None if file is None else Path(file)
-        check_plot(path, "plot")
-        figure = experiment_figure(self.experiment, self._with(others))
-        if path:
-            with whole_file(path) as scratch:
-                save(figure, scratch)
-        return figure
+        files = [each for each in (*others, file) if isinstance(each, str | Path)]
+        if len(files) > 1:
+            raise ValueError("plot: it writes one file, not " + " and ".join(map(str, files)))
+        file = files[0] if files else None
+        check_plot(None if file is None else Path(file).expanduser(), "plot")
+        runs = tuple(each for each in others if not isinstance(each, str | Path))
+        return written(experiment_figure(self.experiment, self._with(runs)), file)
 
     def to_csv(self, file: str | Path, *others: Run) -> None:
         """Write one row per millisecond and run, as `onpath experiment --csv` does.
@@ -165,23 +186,114 @@ class Run:
         Raises:
             ValueError: another robot or path, or a file that cannot be written.
         """
-        path = Path(file)
+        path = Path(file).expanduser()
         check_writable(path)
         trajectories = self._with(others)
         with whole_file(path) as scratch, scratch.open("w", encoding="utf-8", newline="") as opened:
             write_csv(opened, self.experiment.robot(), trajectories)
 
+    def to_dataframe(self) -> DataFrame:
+        """A data frame with one row per millisecond, and the columns of `to_csv`.
+
+        Raises:
+            ImportError: pandas is not installed; `pip install "onpath[pandas]"` does that.
+        """
+        robot, run = self.experiment.robot(), self.trajectory
+        measured = MEASURED in run.fields
+        names = header(robot, run.level_set, measured=measured)[2:]
+        frame = data_frame(dict(zip(names, numbers_of(robot, run, measured).T, strict=True)))
+        frame["held"] = run.held
+        frame.insert(0, "t_s", run.t)
+        frame.insert(1, "law", self.law)
+        return frame
+
+    def __reduce__(self) -> tuple[Callable[..., Run], tuple[int, str, dict[str, Any]]]:
+        run = {f.name: getattr(self.trajectory, f.name) for f in dataclasses.fields(Trajectory)}
+        data = {"experiment": self.experiment.data(), "trajectory": run}
+        return read_run, (FORMAT, version("onpath"), data)
+
     def _with(self, others: tuple[Run, ...]) -> list[Trajectory]:
         """The trajectories of this run and others."""
         robot, series = self.experiment.robot(), self.experiment.curve().series
         for other in others:
+            if not isinstance(other, Run):
+                raise TypeError(f"expected a run, got {other!r:.60}")
             experiment = other.experiment
             same_path = np.array_equal(experiment.curve().series, series)
             if experiment.robot() is not robot or not same_path:
                 raise ValueError("only runs of one robot on one path can be shown together")
         return [self.trajectory, *(other.trajectory for other in others)]
 
+    def figure(self, *others: Run, title: str = "", language: str = "en") -> LiveFigure:
+        """The figure of what was recorded: a picture, and a page on which it can be tried.
+
+        Args:
+            others: another run of the same robot and path, shown beside this one.
+            title: title above the figure.
+            language: language of its words.
+
+        Raises:
+            ValueError: another robot or path, more than two runs, or an unknown language.
+        """
+        from onpath.app.notebook.display import run_figure  # slow to import
+
+        runs = self._with(others)
+        alike = all(run.experiment.parameters == self.experiment.parameters for run in others)
+        return run_figure(self.experiment, runs, alike, title, language)
+
+    def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+        from onpath.app.notebook.display import run_bundle  # slow to import
+
+        return run_bundle(repr(self), self.experiment, self.trajectory, self.reason)
+
     def __repr__(self) -> str:
         lines = [f"{law_title(self.law)}, {self.experiment.title}, {len(self.t)} ms"]
         lines += summary_lines(self.summary())
         return "\n  ".join([*lines, self.reason] if self.reason else lines)
+
+
+def read_run(form: int, made_by: str, data: dict[str, Any]) -> Run:
+    """The run that was pickled.
+
+    Args:
+        form: `FORMAT` of the version that pickled it.
+        made_by: that version.
+
+    Raises:
+        ValueError: this version cannot read it.
+    """
+    if form != FORMAT:
+        raise ValueError(
+            f"this run was pickled by OnPath {made_by}, in a form that OnPath {version('onpath')}"
+            " does not read: write it with to_csv there"
+        )
+    return Run(experiment_from(data["experiment"]), Trajectory(**data["trajectory"]))
+
+
+def written(figure: Figure, file: str | Path | None) -> Figure:
+    """A figure, which is written to a file if one is given.
+
+    Raises:
+        ValueError: the file cannot be written.
+    """
+    from onpath.app.exports.figures import save
+
+    if file is not None:
+        path = Path(file).expanduser()
+        check_plot(path, "plot")
+        with whole_file(path) as scratch:
+            save(figure, scratch)
+    return figure
+
+
+def data_frame(columns: Any) -> DataFrame:
+    """A data frame of columns by name, or of rows that are mappings.
+
+    Raises:
+        ImportError: pandas is not installed.
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise ImportError('a data frame needs pandas: pip install "onpath[pandas]"') from None
+    return DataFrame(columns)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from inspect import signature
+from inspect import Parameter, signature
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,18 +13,26 @@ from numpy.typing import ArrayLike
 
 from onpath.app.common.newcomer import NEWCOMER as NEWCOMER
 from onpath.app.common.own_laws import law_given
+from onpath.app.common.user_files import is_robot_file
 from onpath.app.notebook.arguments import (
     array_of,
+    ask_unit,
+    check_number,
+    check_one,
     curve_of,
     lengths,
+    looked_up,
     numbers,
     plane_point,
     schedule_of,
     start_point,
 )
+from onpath.app.notebook.display import LawText, Table
+from onpath.app.notebook.robot import robot as robot_from
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.control.settable import specs, values_of
+from onpath.models.control.settable import specs, values_of, with_values
+from onpath.models.errors import CodedError
 from onpath.models.path_files.placing import RADIUS, SMOOTH, Placing
 from onpath.models.path_files.reading import path_through
 from onpath.models.paths import curves
@@ -32,13 +41,15 @@ from onpath.models.paths.path_design import PathDesign, presets
 from onpath.models.studies import experiments
 from onpath.models.studies.experiments import Experiment, Schedule
 from onpath.models.studies.unused import unused_text
-from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.catalogue import ROBOTS, RobotEntry, robot_named
 from onpath.models.systems.parameter_specs import Spec, unknown_name
+
+VARIABLE = Parameter.VAR_KEYWORD
 
 
 def simulate(
-    robot: str | RobotEntry = "five_bar",
-    path: Curve | str = "circle",
+    robot: str | Path | RobotEntry = "five_bar",
+    path: str | Path | Curve = "circle",
     law: Any = "path_following",
     *,
     duration: float = 8.0,
@@ -52,15 +63,19 @@ def simulate(
     wall: tuple[float, float, ArrayLike, float] | None = None,
     reverse_at: float = 0.0,
     profile: str | Iterable[tuple[float, float]] | None = None,
-    **parameters: float | str,
+    **settings: float | str,
 ) -> Run:
     """Simulate one robot under one control law, as `onpath experiment` does.
 
+    `onpath.sweep` takes several robots, paths, laws and settings.
+
     Args:
-        robot: one of `onpath.robots()`, or what `onpath.robot` returns.
-        path: a curve, such as `onpath.ellipse(...)`, one of `onpath.paths()`, or a text, such as
-            "ellipse 0.07 0.04"; see models/studies/path_text.py. It lies in the robot's path plane,
-            [m].
+        robot: one of `onpath.robots()`; a URDF or MJCF file, such as "arm.urdf"; or what
+            `onpath.robot` returns, which takes options for a file.
+        path: one of `onpath.paths()`; a text, such as "ellipse 0.07 0.04", see
+            models/studies/path_text.py; a curve, such as `onpath.ellipse(...)`; or a file with
+            options, such as "@logo.svg fit=0.1 nearest", see `onpath.path_from`. It lies in the
+            robot's path plane, [m].
         law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
             "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
             in CasADi, a class of such objects, or a function that is called in every control
@@ -87,7 +102,7 @@ def simulate(
         reverse_at: time at which the desired speed changes sign, [s]; 0: never.
         profile: desired speed over time, linear between (time, speed) pairs, [s] and [rad/s],
             instead of `speed` and `ramp`; it is fed forward, as in (19).
-        parameters: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
+        settings: any of `onpath.parameters(robot)` by name, such as K1=900; others keep the
             robot's defaults, which are those of the lab, the command line and figures, too. A new
             lab begins more slowly, as with **onpath.NEWCOMER.
 
@@ -96,6 +111,7 @@ def simulate(
             message lists the valid ones), or one that contradicts another, such as `hold_at`
             without `hold`; or no run is possible, because the decoupling matrix is singular at the
             start.
+        OSError: a file cannot be read.
 
     Warns:
         UserWarning: a path that crosses itself; a parameter that is given, but has no effect in
@@ -132,26 +148,27 @@ def simulate(
     >>> run.law, bool(run.max_distance < 1e-4)
     ('pulled', True)
 
-    >>> onpath.simulate(path="elipse")
+    >>> onpath.simulate(path="elips")
     Traceback (most recent call last):
-    onpath.models.errors.CodedError: unknown path 'elipse': did you mean ellipse, closed, open?
+    ValueError: unknown path 'elips': did you mean ellipse, closed? (onpath.paths() lists all)
     """
-    entry, name = entry_named(robot), law_given(law)
-    check_names(parameters, entry, simulate)
-    given = parameters | _without_none({"profile": profile, "clock_offset": clock_offset or None})
-    given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
-    given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
-    curve = curve_of("path", path)
-    chosen = Experiment(
-        name="simulate",
-        title=entry.label,
-        make=entry.make,
-        parameters=entry.parameters(),
-        schedule=Schedule(),
-        start=lambda robot, _: start_point(robot, chosen.curve(), start),
-        path=curve,
-        lifts=False,
-    ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
+    chosen, name, given = planned(
+        robot,
+        path,
+        law,
+        duration=duration,
+        start=start,
+        velocity=velocity,
+        clock_offset=clock_offset,
+        hold=hold,
+        hold_at=hold_at,
+        hold_direction=hold_direction,
+        push=push,
+        wall=wall,
+        reverse_at=reverse_at,
+        profile=profile,
+        **settings,
+    )
     experiments.check_path(chosen.robot(), chosen.curve(), path if isinstance(path, str) else "")
     run = Run(chosen, experiments.run(chosen, name))
     remarks = (
@@ -167,6 +184,55 @@ def simulate(
     return run
 
 
+def planned(
+    robot: str | Path | RobotEntry,
+    path: str | Path | Curve,
+    law: Any,
+    *,
+    duration: float = 8.0,
+    start: ArrayLike | None = None,
+    velocity: tuple[float, float] = (0.0, 0.0),
+    clock_offset: float = 0.0,
+    hold: tuple[float, float] | None = None,
+    hold_at: float | None = None,
+    hold_direction: str | None = None,
+    push: tuple[float, float, ArrayLike] | None = None,
+    wall: tuple[float, float, ArrayLike, float] | None = None,
+    reverse_at: float = 0.0,
+    profile: str | Iterable[tuple[float, float]] | None = None,
+    **settings: float | str,
+) -> tuple[Experiment, str, dict[str, Any]]:
+    """What the arguments of `simulate` mean: the experiment, the law's name, the settings given.
+
+    Whether the robot can follow the path is not checked.
+
+    Raises:
+        ValueError: see `simulate`.
+    """
+    entry, name = entry_named(robot), law_of(law)
+    check_names(settings, entry, simulate)
+    check_number("duration", duration, "s")
+    check_number("reverse_at", reverse_at, "s")
+    check_number("clock_offset", clock_offset, "rad")
+    check_number("hold_at", hold_at or 0.0, "rad")
+    with looked_up("onpath.paths()"):
+        curve = curve_of("path", path, entry.make(with_values(entry.parameters(), settings)))
+    given = settings | _without_none({"profile": profile, "clock_offset": clock_offset or None})
+    given |= {} if reverse_at == 0 else {"reverse_at": reverse_at}
+    given |= _without_none({"hold_at": hold_at, "hold_direction": hold_direction})
+    chosen = Experiment(
+        name="simulate",
+        title=entry.label,
+        entry=entry,
+        parameters=entry.parameters(),
+        schedule=Schedule(),
+        start=lambda robot, _: start_point(robot, chosen.curve(), start),
+        path=curve,
+        lifts=False,
+    ).with_values({"duration": duration} | {**schedule_of(velocity, hold, push, wall), **given})
+    return chosen, name, given
+
+
 def robots() -> dict[str, str]:
     """Names of the robots with a one-sentence description of each.
 
@@ -174,7 +240,8 @@ def robots() -> dict[str, str]:
     >>> onpath.robots()["five_bar"]
     'Two motors, rigid links, a pen in a vertical plane.'
     """
-    return {name: entry.text for name, entry in ROBOTS.items()}
+    texts = {name: entry.text for name, entry in ROBOTS.items()}
+    return Table(texts, ("robot", "what it is"), texts.items())
 
 
 def laws() -> dict[str, str]:
@@ -184,7 +251,8 @@ def laws() -> dict[str, str]:
     >>> onpath.laws()["virtual_constraint"]
     'Holds the end-point on the curve by a virtual constraint, and leaves it alone along it.'
     """
-    return {name: law.text for name, law in LAWS.items()}
+    texts = {name: LawText(name) for name in LAWS}
+    return Table(texts, ("law", "what it does"), texts.items())
 
 
 def paths() -> dict[str, str]:
@@ -196,7 +264,8 @@ def paths() -> dict[str, str]:
     >>> onpath.paths()["figure of eight"]
     'closed, 429 mm; the path crosses itself: at the crossing, the closest point is not unique'
     """
-    return {name: _measured(design) for name, design in presets().items()}
+    texts = {name: _measured(design) for name, design in presets().items()}
+    return Table(texts, ("path", "what it is"), texts.items())
 
 
 def _measured(design: PathDesign) -> str:
@@ -206,7 +275,7 @@ def _measured(design: PathDesign) -> str:
     return f"{length}; {remark}" if remark else length
 
 
-def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
+def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     """Names of a robot's parameters with default, range and unit, or options, and description.
 
     Raises:
@@ -218,7 +287,9 @@ def parameters(robot: str | RobotEntry = "five_bar") -> dict[str, str]:
     """
     entry = entry_named(robot)
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
-    return {name: _described(spec, defaults[name]) for name, spec in known.items()}
+    texts = {name: _described(spec, defaults[name]) for name, spec in known.items()}
+    rows = [(name, *_columns(spec, defaults[name]), spec.help) for name, spec in known.items()]
+    return Table(texts, ("setting", "default", "range", "unit", "what it does"), rows)
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:
@@ -286,27 +357,30 @@ def through(
     <closed path, 231 mm long, 75 x 75 mm>
     """
     given = array_of("points", points, "points, shape (n, 2), [m]")
+    ask_unit("points", given)
     read = path_through(given, Placing(corners=corners, radius=radius, closed=closed))
     for remark in read.remarks:
         warnings.warn(str(remark), stacklevel=2)
     return read.curve
 
 
-def entry_named(robot: str | RobotEntry) -> RobotEntry:
-    """The robot of this name, or the robot itself.
+def entry_named(robot: str | Path | RobotEntry) -> RobotEntry:
+    """The robot of this name or file, or the robot itself.
 
     Raises:
-        ValueError: there is none; the message lists the nearest names.
+        ValueError: there is none, with the nearest names; or the file is refused.
+        OSError: the file cannot be read.
+
+    Warns:
+        UserWarning: what is left out of the file.
     """
     if isinstance(robot, RobotEntry):
         return robot
-    _check_name(robot, ROBOTS, "robot")
-    return ROBOTS[robot]
-
-
-def _check_name(name: Any, known: Iterable[str], what: str) -> None:
-    if not isinstance(name, str) or name not in known:
-        raise unknown_name(str(name), list(known), what)
+    check_one("robot", robot)
+    if is_robot_file(robot):
+        return robot_from(robot)
+    with looked_up("onpath.robots()"):
+        return robot_named(str(robot))
 
 
 def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -314,26 +388,44 @@ def _without_none(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if value is not None}
 
 
+def law_of(law: Any) -> str:
+    """The name of a law, which is added to the laws if it is one's own: see `law_given`."""
+    check_one("law", law)
+    with looked_up("onpath.laws()"):
+        return law_given(law)
+
+
 def check_names(
     parameters: Mapping[str, Any], entry: RobotEntry, function: Callable[..., Any]
 ) -> None:
-    """Refuse parameters that a robot does not have.
+    """Refuse parameters that a robot does not have, and texts and lists in place of numbers.
 
     Args:
         function: the function whose arguments they are.
 
     Raises:
-        ValueError: an unknown name; the message lists the nearest ones.
+        ValueError: an unknown name, with the nearest ones; or a value that is no single number
+            where one is expected.
     """
     names = specs(entry.parameters)
-    arguments = [name for name in signature(function).parameters if name != "parameters"]
-    for name in parameters:
+    arguments = [each for each in signature(function).parameters.values() if each.kind != VARIABLE]
+    for name, value in parameters.items():
         if name not in names:
-            raise unknown_name(name, [*names, *arguments])
+            with looked_up(f"onpath.parameters({entry.name!r})"):
+                raise unknown_name(name, [*names, *(each.name for each in arguments)])
+        check_one(name, value)
+        if isinstance(value, str) and not names[name].options:
+            raise CodedError("error.value_not_a_number", name=name, value=repr(value))
 
 
 def _described(spec: Spec, default: Any) -> str:
+    value, allowed, unit = _columns(spec, default)
+    choice = "one of " if spec.options else ""
+    return f"{value}, {choice}{allowed}{unit and ' ' + unit}: {spec.help}"
+
+
+def _columns(spec: Spec, default: Any) -> tuple[str, str, str]:
+    """Default, range or options, and unit."""
     if spec.options:
-        return f"{default}, one of {', '.join(map(str, spec.options))}: {spec.help}"
-    unit = f" {spec.unit}" if spec.unit else ""
-    return f"{default:g}, {spec.low:g} to {spec.high:g}{unit}: {spec.help}"
+        return str(default), ", ".join(map(str, spec.options)), ""
+    return f"{default:g}", f"{spec.low:g} to {spec.high:g}", spec.unit

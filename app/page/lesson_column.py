@@ -18,7 +18,7 @@ class LessonColumn:
     """Makes the messages when the lessons have changed; see app/viser_adapter/README.md.
 
     Args:
-        student: session code of the lab; decides the order of options, see `option_order`.
+        student: code of the lab; decides the order of options, see `option_order`.
         submit: runs a function in another thread.
 
     Attributes:

@@ -18,7 +18,7 @@ from onpath.app.exports.report_facts import (
     quizzes,
 )
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_navigation import RECORD, Sent, Way
+from onpath.app.page.step_navigation import RECORD, LessonButton, Sent
 from onpath.app.steps.block_data import answer_data, curves_data, script_data, sketch_data
 from onpath.lessons.concept_test.concept_test import BEFORE
 from onpath.lessons.concept_test.on_route import last_test
@@ -173,16 +173,18 @@ def _predicted(part: EndedPart, words: Words) -> Iterator[Predicted]:
         )
 
 
-def _onward(run: LessonView) -> list[Way]:
-    """The ways on: to the next lesson, the test of a route, and the record."""
-    words, ways = run.words, list[Way]()
+def _onward(run: LessonView) -> list[LessonButton]:
+    """The buttons that lead on: to the next lesson, the test of a route, and the record."""
+    words, buttons = run.words, list[LessonButton]()
     if (after := next_lesson(run)) is not None:
         name, title = after
-        ways.append(Way(words("end.next", lesson=title), [_opened(name)], main=True))
+        buttons.append(LessonButton(words("end.next", lesson=title), [_opened(name)], main=True))
     if test := last_test(run.route, run.course, run.progress):
         title = titles_of_tests(run.course, words)[test]
-        ways.append(Way(words("test.open_name", title=title), [_opened(test)], main=True))
-    return [*ways, Way(words("end.record"), [RECORD])]
+        buttons.append(
+            LessonButton(words("test.open_name", title=title), [_opened(test)], main=True)
+        )
+    return [*buttons, LessonButton(words("end.record"), [RECORD])]
 
 
 def _opened(name: str) -> Sent:
@@ -192,15 +194,15 @@ def _opened(name: str) -> Sent:
 def _test_end(run: LessonView) -> Markup:
     """Thanks and, after the second test, the right answers and why."""
     words, route = run.words, run.progress.route
-    ways = [Way(words("end.record"), [RECORD])]
+    buttons = [LessonButton(words("end.record"), [RECORD])]
     if run.progress.lesson == BEFORE and route in run.course.routes:
         follow: Sent = {"do": "FollowRoute", "name": route}
-        ways = [Way(words("route.follow"), [follow], main=True), *ways]
+        buttons = [LessonButton(words("route.follow"), [follow], main=True), *buttons]
     return part_of_page(
         "lesson/test_end.html",
         title=titles_of_tests(run.course, words)[run.progress.lesson],
         results=results_of(run),
-        ways=ways,
+        buttons=buttons,
         words=words,
     )
 

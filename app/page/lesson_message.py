@@ -14,7 +14,7 @@ from onpath.app.common.templates import part_of_page
 from onpath.app.page.lesson_end import end_html, ended_charts
 from onpath.app.page.lesson_html import route_line
 from onpath.app.page.lesson_view import LessonView
-from onpath.app.page.step_navigation import ways_of
+from onpath.app.page.step_navigation import pager_of
 from onpath.app.scene.symbol_geometry import has_meaning
 from onpath.app.steps.block_data import answer_data, block_data, curves_data, script_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
@@ -60,7 +60,7 @@ def lesson_message(run: LessonView, robot: Robot) -> dict[str, Any]:
             if has_meaning(name, robot)
         },
         "head": _head(lesson, run),
-        "pager": part_of_page("lesson/pager.html", ways=ways_of(run), words=run.words),
+        "pager": part_of_page("lesson/pager.html", pager=pager_of(run), words=run.words),
     }
     return message | (_ended(run) if run.ended else _open(lesson, run))
 
@@ -116,19 +116,19 @@ def _parts(lesson: Lesson, run: LessonView) -> list[StepPart]:
     """The parts of the open step that are meant for the student's answers."""
     return [
         part
-        for place in range(len(lesson.steps[run.index].blocks))
-        if (part := _part(lesson, place, run)) is not None
+        for block_index in range(len(lesson.steps[run.index].blocks))
+        if (part := _part(lesson, block_index, run)) is not None
     ]
 
 
-def _part(lesson: Lesson, place: int, run: LessonView) -> StepPart | None:
-    block = lesson.steps[run.index].blocks[place]
+def _part(lesson: Lesson, block_index: int, run: LessonView) -> StepPart | None:
+    block = lesson.steps[run.index].blocks[block_index]
     if isinstance(block, Prediction):
         return _asked(lesson, run.index, run)
-    part, notes = part_of(lesson, run.index, place, run.words), run.notes
-    key = f"{run.index}.{place}"
+    part, notes = part_of(lesson, run.index, block_index, run.words), run.notes
+    key = f"{run.index}.{block_index}"
     if isinstance(block, Text):
-        html = run.text(place, block)
+        html = run.text(block_index, block)
         shown = None if html is None else msgspec.structs.replace(block, html=html)
         return None if shown is None else replace(part, block=shown)
     if isinstance(block, Task):
@@ -155,13 +155,13 @@ def _part(lesson: Lesson, place: int, run: LessonView) -> StepPart | None:
 def _asked(lesson: Lesson, index: int, run: LessonView) -> StepPart:
     """A prediction; what is right is told by the step that shows it."""
     blocks = lesson.steps[index].blocks
-    place = next(i for i, block in enumerate(blocks) if isinstance(block, Prediction))
-    block, answer = blocks[place], run.answer()
+    block_index = next(i for i, block in enumerate(blocks) if isinstance(block, Prediction))
+    block, answer = blocks[block_index], run.answer()
     assert isinstance(block, Prediction)
     happened = run.step_is("run") and run.truth is not None and not run.playing
     aside = part_of_page("lesson/beside.html", block=block, answer=answer, words=run.words)
     return replace(
-        part_of(lesson, index, place, run.words),
+        part_of(lesson, index, block_index, run.words),
         order=run.order(block) if isinstance(block, Choice) else (),
         lettered=True,
         told=happened and answer is not None,
@@ -189,13 +189,13 @@ def _step(
     step: Step, lesson: Lesson, index: int, parts: list[StepPart], run: LessonView
 ) -> dict[str, Any]:
     """A step; a closed one has no blocks."""
-    known = {part.place: _block(part, lesson, index, run) for part in parts}
+    known = {part.block_index: _block(part, lesson, index, run) for part in parts}
     count = len(step.blocks) if parts else 0
     return {
         "kind": step.kind,
         "optional": step.optional,
         "script": None if step.script is None else script_data(step.script),
-        "blocks": [known.get(place, {"kind": "hidden"}) for place in range(count)],
+        "blocks": [known.get(block_index, {"kind": "hidden"}) for block_index in range(count)],
         "figure": -1,
     }
 

@@ -20,7 +20,7 @@ class LessonView(LessonState):
     """A student's position in the lessons and the lab's results for the open step.
 
     Args:
-        student: session code of the lab; decides the order of options.
+        student: code of the lab; decides the order of options.
 
     Attributes:
         playing, verdicts, truth, pace: see `LessonSnapshot`.
@@ -58,14 +58,16 @@ class LessonView(LessonState):
         lesson = self.lesson
         return NO_SETUP if lesson is None else lesson.scene_at(self.index)
 
-    def text(self, place: int, block: Text) -> Markup | None:
+    def text(self, block_index: int, block: Text) -> Markup | None:
         """A text of the open step with the student's numbers; None if it belongs to other answers.
 
         Args:
-            place: index among the step's blocks.
+            block_index: index among the step's blocks.
         """
         lesson = self.lesson
-        if lesson is None or not is_shown(block.when, lesson.steps, self.notes, self.index, place):
+        if lesson is None or not is_shown(
+            block.when, lesson.steps, self.notes, self.index, block_index
+        ):
             return None
         return filled(block.html, lesson.steps, self.index, self.notes, self.words)
 

@@ -145,14 +145,14 @@ def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> s
         words("summary.clock", time=f"{snapshot.time:.1f}", path=path),
     ]
     for side, title in side_titles(snapshot.laws, words).items():
-        view = snapshot.robots[side]
+        robot = snapshot.robots[side]
         sentences.append(
             words(
                 "summary.robot",
                 robot=title,
-                now=f"{1e3 * view.distance:.1f}",
-                most=f"{1e3 * view.max_distance:.1f}",
-                speed=f"{1e3 * view.speed:.0f}",
+                now=f"{1e3 * robot.distance:.1f}",
+                most=f"{1e3 * robot.max_distance:.1f}",
+                speed=f"{1e3 * robot.speed:.0f}",
             )
         )
     return " ".join(sentences)

@@ -383,7 +383,7 @@ def _hooks(post: Post, robot: Robot) -> SceneCallbacks:
         post(c.MovePoint(index, plane_coordinates(robot, at), finished=False))
 
     return SceneCallbacks(
-        on_grab=lambda name, at: post(c.Grab(name, robot.unplace(at))),
+        on_grab=lambda name, at: post(c.Grab(name, robot.output_at(at))),
         on_release=lambda name: post(c.Release(name)),
         on_point_dragged=move,
         on_point_drag_end=lambda _: post(c.EndMove()),

@@ -32,7 +32,7 @@ class PageContext:
     """The context of one client's page.
 
     Attributes:
-        code: session code of its lab.
+        code: code of its lab.
         post: receives the commands for its lab.
         course: all lessons.
         keep_days: number of days without use after which the lab is deleted; 0 if it lasts only

@@ -8,7 +8,7 @@ from onpath.app.page.overlays import Overlays
 from onpath.lessons.course import Course
 from onpath.lessons.words import Words
 
-Place = tuple[str, int]
+StepKey = tuple[str, int]
 
 
 class StepDrawings:
@@ -25,7 +25,7 @@ class StepDrawings:
     ) -> None:
         self._overlays, self._course, self._words = overlays, course, words
         self._version, self._switched = -1, switched
-        self._place: Place | None = None
+        self._step: StepKey | None = None
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Draw what the open step asks for, if another step was open before."""
@@ -33,10 +33,10 @@ class StepDrawings:
             return
         self._version = snapshot.lesson.version
         view = LessonView(self._course, self._words, snapshot.lesson)
-        place = (view.progress.lesson, view.index) if view.lesson is not None else ("", -1)
-        if place == self._place:
+        step = (view.progress.lesson, view.index) if view.lesson is not None else ("", -1)
+        if step == self._step:
             return
-        self._place, switches, wanted = place, self._overlays.switches, view.setup.show
+        self._step, switches, wanted = step, self._overlays.switches, view.setup.show
         for name in self._switched.union(wanted):
             setattr(switches, name, name in wanted)
         self._switched.clear()

@@ -1,4 +1,4 @@
-"""The ways that lead from the open step to others: next, back, set up again, free lab."""
+"""The buttons that lead from the open step to others: next, back, set up again, free lab."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ RECORD: Sent = {"is": "record"}
 
 
 @dataclass(frozen=True, slots=True)
-class Way:
-    """A button.
+class LessonButton:
+    """A button of a lesson.
 
     Attributes:
         name: its whole name.
@@ -35,7 +35,7 @@ class Way:
 
 
 @dataclass(frozen=True, slots=True)
-class Ways:
+class Pager:
     """The buttons below a step's text.
 
     Attributes:
@@ -46,22 +46,22 @@ class Ways:
     """
 
     remark: str
-    forward: list[Way]
-    back: Way | None
-    others: list[Way]
+    forward: list[LessonButton]
+    back: LessonButton | None
+    others: list[LessonButton]
 
 
-def ways_of(run: LessonView) -> Ways:
+def pager_of(run: LessonView) -> Pager:
     """The buttons of the open step, or of the end."""
     words, lesson = run.words, run.lesson
     first = lesson is None or run.beside(-1) == (lesson.name, run.index)
-    back = Way(words("lesson.back"), [BACK], short="←")
+    back = LessonButton(words("lesson.back"), [BACK], short="←")
     if run.ended:
-        return Ways("", [], None if run.is_test else back, [])
+        return Pager("", [], None if run.is_test else back, [])
     remark = answered_line(run) if run.is_test else ""
     if not run.may_go(1):
         remark = words("lesson.wait")
-    return Ways(
+    return Pager(
         remark=remark,
         forward=_forward(run) if run.may_go(1) else [],
         back=None if first or not run.may_go(-1) else back,
@@ -69,28 +69,32 @@ def ways_of(run: LessonView) -> Ways:
     )
 
 
-def _forward(run: LessonView) -> list[Way]:
+def _forward(run: LessonView) -> list[LessonButton]:
     words = run.words
     if run.waits:
-        return [Way(words("lesson.skip"), [NEXT], short=words("site.skip_short"))]
+        return [LessonButton(words("lesson.skip"), [NEXT], short=words("site.skip_short"))]
     if run.at_end:
-        return [Way(words("test.hand_in" if run.is_test else "lesson.finish"), [FINISH], main=True)]
+        return [
+            LessonButton(
+                words("test.hand_in" if run.is_test else "lesson.finish"), [FINISH], main=True
+            )
+        ]
     if run.shows_next:
-        play = Way(words("lesson.play"), [NEXT, {"do": "PlayStep"}], main=True)
-        return [Way(words("lesson.next"), [NEXT]), play]
+        play = LessonButton(words("lesson.play"), [NEXT, {"do": "PlayStep"}], main=True)
+        return [LessonButton(words("lesson.next"), [NEXT]), play]
     unseen = run.step is not None and run.step.script is not None and not run.has_played()
     if unseen:
         name = words("lesson.next_unseen")
-        return [Way(name, [NEXT], short=words("lesson.next"))]
-    return [Way(words("lesson.next"), [NEXT], main=True)]
+        return [LessonButton(name, [NEXT], short=words("lesson.next"))]
+    return [LessonButton(words("lesson.next"), [NEXT], main=True)]
 
 
-def _past(run: LessonView) -> list[Way]:
+def _past(run: LessonView) -> list[LessonButton]:
     """Past the optional steps that come next; else to the end."""
     past = run.past_optional()
     if past is None or not run.may_go(past):
         return []
     if not past:
-        return [Way(run.words("lesson.past_all"), [FINISH])]
+        return [LessonButton(run.words("lesson.past_all"), [FINISH])]
     name = run.words("lesson.past_optional", step=run.index + 1 + past)
-    return [Way(name, [{"do": "GoToStep", "by": past}])]
+    return [LessonButton(name, [{"do": "GoToStep", "by": past}])]

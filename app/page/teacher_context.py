@@ -15,7 +15,7 @@ class TeacherChoices:
     """Selections on one teacher's page, kept when the page is rebuilt; see also `Display`.
 
     Attributes:
-        followed: session code of the student whose lab is shown; empty for the teacher's own lab.
+        followed: lab code of the student whose lab is shown; empty for the teacher's own lab.
         message: the outcome of deleting a student.
         picked: numbers of the sketches to show; empty for all.
         numbered: sketches in order of arrival, by lesson, step and round; `picked` counts them.
@@ -37,7 +37,7 @@ class TeacherContext:
         progress: the teacher's own progress through the lessons.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
-        delete: deletes the student of a session code, with everything that is stored of them.
+        delete: deletes the student of a lab code, with everything that is stored of them.
         forget: deletes the labs of all students of the class, and ends it; returns their number.
         stop: returns to the ordinary lab page.
     """

@@ -7,7 +7,7 @@ from math import hypot
 
 import numpy as np
 
-from onpath.app.lab.snapshots.snapshot import PathView, RobotView, Snapshot
+from onpath.app.lab.snapshots.snapshot import PathSnapshot, RobotSnapshot, Snapshot
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
 
@@ -39,50 +39,50 @@ class Captions:
 
     def follow(self, snapshot: Snapshot) -> dict[str, str]:
         """The captions for a snapshot, by side. Call it with snapshots in order of time."""
-        views = snapshot.robots.items()
-        self.shown = {side: self._of(side, view, snapshot) for side, view in views}
+        robots = snapshot.robots.items()
+        self.shown = {side: self._of(side, robot, snapshot) for side, robot in robots}
         return self.shown
 
-    def _of(self, side: str, view: RobotView, snapshot: Snapshot) -> str:
+    def _of(self, side: str, robot: RobotSnapshot, snapshot: Snapshot) -> str:
         is_held = side in snapshot.held_back
-        distance = self._largest_held(side, view) if is_held else view.distance
+        distance = self._largest_held(side, robot) if is_held else robot.distance
         if not is_held:
             self._before.pop(side, None)
-        kind = "stopped" if side in snapshot.stopped else _kind(view, is_held, distance)
-        if not kind and is_at_end(view, snapshot.path):
+        kind = "stopped" if side in snapshot.stopped else _kind(robot, is_held, distance)
+        if not kind and is_at_end(robot, snapshot.path):
             kind = "at_end"
         return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
 
-    def _largest_held(self, side: str, view: RobotView) -> float:
+    def _largest_held(self, side: str, robot: RobotSnapshot) -> float:
         """Largest distance since a robot has been held back, [m].
 
         Snapshots miss the peaks of the distance, but `max_distance` does not.
         """
         if side not in self._before:
-            self._before[side], self._largest[side] = view.max_distance, 0.0
-        grown = view.max_distance if view.max_distance > self._before[side] else 0.0
-        self._largest[side] = max(self._largest[side], view.distance, grown)
+            self._before[side], self._largest[side] = robot.max_distance, 0.0
+        grown = robot.max_distance if robot.max_distance > self._before[side] else 0.0
+        self._largest[side] = max(self._largest[side], robot.distance, grown)
         return self._largest[side]
 
 
-def is_at_end(view: RobotView, path: PathView) -> bool:
+def is_at_end(robot: RobotSnapshot, path: PathSnapshot) -> bool:
     """Whether a robot rests at an end of an open path."""
-    if abs(view.speed) > STILL or path.closed:
+    if abs(robot.speed) > STILL or path.closed:
         return False
-    return bool(np.linalg.norm(path.points[[0, -1]] - view.end, axis=1).min() < NEAR)
+    return bool(np.linalg.norm(path.points[[0, -1]] - robot.end, axis=1).min() < NEAR)
 
 
-def _kind(view: RobotView, is_held: bool, distance: float) -> str:
+def _kind(robot: RobotSnapshot, is_held: bool, distance: float) -> str:
     """Name of the caption for what a robot does, given whether its law runs by the clock."""
-    by_clock, is_off = law_named(view.law).by_clock, distance >= OFF
+    by_clock, is_off = law_named(robot.law).by_clock, distance >= OFF
     if is_held:
         return ("torn_off" if is_off else "held") if by_clock else "off" if is_off else "waits"
-    bounded = view.integral_used > FULL
-    if hypot(*view.force.tolist()) > PULLED:
-        return "pulled_far" if view.far > RETURNS else "pulled_bounded" if bounded else "pulled"
+    bounded = robot.integral_used > FULL
+    if hypot(*robot.force.tolist()) > PULLED:
+        return "pulled_far" if robot.far > RETURNS else "pulled_bounded" if bounded else "pulled"
     if not is_off:
         return ""
-    if view.far > RETURNS:
+    if robot.far > RETURNS:
         return "returns"
     return "chases" if by_clock else "off_bounded" if bounded else "off"
 

@@ -50,9 +50,9 @@ class ContactNodes:
     def update(self, snapshot: Snapshot) -> None:
         """Show a snapshot; sends nothing if nothing has changed."""
         path = snapshot.path.points
-        for side, view in snapshot.robots.items():
+        for side, robot in snapshot.robots.items():
             if side in self._labels:
-                self._labels[side].show(hypot(*view.force.tolist()), view.tip, path)
+                self._labels[side].show(hypot(*robot.force.tolist()), robot.tip, path)
         if not _same(snapshot.brakes, self._brakes):
             self._brakes = snapshot.brakes
             self._draw_guides()

@@ -140,7 +140,7 @@ def label_function(robot: Robot, bars: int) -> LabelFunction:
 
 def axes_of(robot: Robot) -> np.ndarray:
     """The axes of y from its origin, begin and end, shape (p, 2, 3), [m]."""
-    origin, *ends = robot.place(np.vstack([np.zeros(robot.system.p), np.eye(robot.system.p)]))
+    origin, *ends = robot.position(np.vstack([np.zeros(robot.system.p), np.eye(robot.system.p)]))
     return np.array([(origin, origin + AXIS * (end - origin)) for end in ends])
 
 
@@ -183,7 +183,7 @@ def plane_of(robot: Robot, ends: ca.SX, tip: ca.SX) -> LinksPlane:
     drawing, waist = robot.drawing, robot.drawing.waist
     start = ahead = ca.SX(ca.DM([1, 0, 0]))
     if waist is not None:
-        origin, first = robot.place(np.eye(2, robot.system.p, -1))
+        origin, first = robot.position(np.eye(2, robot.system.p, -1))
         level = (first - origin) * [1.0, 1.0, 0.0]
         start = ca.SX(ca.DM(level / np.linalg.norm(level)))
         forward = tip if waist.bar is None else _along(ends, waist.bar)

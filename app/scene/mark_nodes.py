@@ -63,4 +63,4 @@ class MarkNodes:
 
 def _placed(robot: Robot, at: tuple[float, float]) -> np.ndarray:
     """A point of the path's plane, [mm], in the robot's own frame, shape (3,), [m]."""
-    return robot.place(robot.frame.lift(1e-3 * np.array(at)))
+    return robot.position(robot.frame.lift(1e-3 * np.array(at)))

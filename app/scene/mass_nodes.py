@@ -80,7 +80,7 @@ def ellipse(
         end: shape (3,).
         directions: unit vectors of the path's plane, shape (k, 2).
     """
-    y = robot.unplace(end)
+    y = robot.output_at(end)
     try:
         masses = effective_masses(robot, robot.rest(y), parameters, directions)
     except ValueError:
@@ -88,4 +88,4 @@ def ellipse(
     radii = np.minimum(OF_A_KILOGRAM * np.sqrt(np.maximum(masses, 0.0)), LARGEST)
     frame = robot.frame
     lifted = frame.lift(directions) - frame.lift(np.zeros(2))
-    return robot.place(y + radii[:, None] * lifted)
+    return robot.position(y + radii[:, None] * lifted)

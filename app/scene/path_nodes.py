@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.stage import add_copies
 from onpath.app.scene.tones import LIGHT, Tones
@@ -48,7 +48,7 @@ class PathNodes:
         self._marks: viser.BatchedMeshHandle | None = None
         self._given: viser.LineSegmentsHandle | None = None
 
-    def draw(self, path: PathView) -> None:
+    def draw(self, path: PathSnapshot) -> None:
         """Update the nodes to show a path."""
         self._draw_curve(path.points)
         self._draw_points(path)
@@ -69,7 +69,7 @@ class PathNodes:
         else:
             self._curve.points = segments.astype(np.float32)
 
-    def _draw_points(self, path: PathView) -> None:
+    def _draw_points(self, path: PathSnapshot) -> None:
         one = np.tile(self._tones.point.linear, (len(path.control_points), 1))
         if path.selected is not None and path.selected < len(one):
             one[path.selected] = palette.SELECTED.linear

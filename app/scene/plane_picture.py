@@ -68,7 +68,7 @@ def map_corners(stage: Stage, robot: Robot) -> tuple[np.ndarray, np.ndarray]:
     and the floor leave and within the camera's view.
     """
     origin, right, up = stage.axes
-    base = robot.frame.planar(robot.unplace(np.zeros(3)))
+    base = robot.frame.planar(robot.output_at(np.zeros(3)))
     low, high = base - robot.reach, base + robot.reach
     apart = GAP * float(np.ptp(stage.origins @ right)) / 2 / float(right @ right)
     middle = float(((stage.low + stage.high) / 2 - origin) @ right) / float(right @ right)

@@ -32,7 +32,7 @@ class DragPlane:
 
 def plane_coordinates(robot: Robot, points: Array) -> Array:
     """Coordinates of the path's plane, (..., 2), of points of the robot's frame, (..., 3), [m]."""
-    return robot.frame.planar(robot.unplace(points))
+    return robot.frame.planar(robot.output_at(points))
 
 
 @dataclass(frozen=True, slots=True)

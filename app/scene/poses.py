@@ -29,7 +29,7 @@ class Poses(Struct, frozen=True, eq=False):
     Attributes:
         whole: the fields of `PoseShapes`, one after the other, each of all robots; float32, as sent
             to browsers.
-        fields: place and shape of each field within `whole`.
+        fields: span and shape of each field within `whole`.
     """
 
     whole: np.ndarray
@@ -37,15 +37,15 @@ class Poses(Struct, frozen=True, eq=False):
 
     def __getitem__(self, field: str) -> np.ndarray:
         """One field, a row for each bar, part or robot."""
-        place, shape = self.fields[field]
-        return self.whole[place].reshape(shape)
+        span, shape = self.fields[field]
+        return self.whole[span].reshape(shape)
 
-    def place(self, field: str, rows: slice = slice(None)) -> slice:
+    def span(self, field: str, rows: slice = slice(None)) -> slice:
         """Where some rows of a field are in `whole`."""
-        place, shape = self.fields[field]
+        span, shape = self.fields[field]
         begin, end, _ = rows.indices(shape[0])
         width = prod(shape[1:])
-        return slice(place.start + begin * width, place.start + end * width)
+        return slice(span.start + begin * width, span.start + end * width)
 
     @property
     def seldom_changing(self) -> np.ndarray:

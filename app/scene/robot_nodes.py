@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import Counts, RobotView
+from onpath.app.lab.snapshots.snapshot import Counts, RobotSnapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.arrows import Arrows, ArrowShape
 from onpath.app.scene.contact_nodes import FORCE_SHOWN
@@ -136,8 +136,8 @@ class Bars:
     def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
         """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
         return [
-            (self.node, "batched_positions", poses.place("bars", self._rows)),
-            (self.node, "batched_wxyzs", poses.place("quaternions", self._rows)),
+            (self.node, "batched_positions", poses.span("bars", self._rows)),
+            (self.node, "batched_wxyzs", poses.span("quaternions", self._rows)),
         ]
 
 
@@ -166,8 +166,8 @@ class BodyNode:
     def properties(self, poses: Poses) -> list[tuple[viser.BatchedMeshHandle, str, slice]]:
         """The moving properties and their places in `Poses.whole`; see `NodeGroup`."""
         return [
-            (self.node, "batched_positions", poses.place("bodies", self._rows)),
-            (self.node, "batched_wxyzs", poses.place("attitudes", self._rows)),
+            (self.node, "batched_positions", poses.span("bodies", self._rows)),
+            (self.node, "batched_wxyzs", poses.span("attitudes", self._rows)),
         ]
 
 
@@ -222,8 +222,8 @@ class RobotNodes:
         self._moving = NodeGroup(
             [
                 *(moving for each in (*self._bars, *bodies) for moving in each.properties(poses)),
-                (self._parts, "batched_positions", poses.place("parts")),
-                (self.grips, "batched_positions", poses.place("tips")),
+                (self._parts, "batched_positions", poses.span("parts")),
+                (self.grips, "batched_positions", poses.span("tips")),
             ]
         )
         self._seldom_changing = np.zeros_like(poses.seldom_changing)
@@ -322,7 +322,7 @@ class RobotNodes:
             self._arrows.draw(np.stack([tails, tails + self._force_scale * forces], axis=1))
         self._acting = acts
 
-    def update_traces(self, robots: list[RobotView]) -> None:
+    def update_traces(self, robots: list[RobotSnapshot]) -> None:
         """Redraw the traces if they have changed."""
         lines = [trace_segments(robot.trace, TRACE_SEGMENTS) for robot in robots]
         points = np.concatenate(lines) + self._trace_origins

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from onpath.app.lab.snapshots.snapshot import Motion, PathView, Snapshot
+from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot, Snapshot
 from onpath.app.scene.captions import Captions
 from onpath.app.scene.contact_nodes import ContactNodes
 from onpath.app.scene.hand_nodes import HandNodes
@@ -72,7 +72,7 @@ class Scene:
         self._origins = stage.origins
         hooks, pointer = hooks or SceneCallbacks(), Pointer(stage)
         self.mouse = Mouse(stage, pointer, hooks)
-        self._path: PathView | None = None
+        self._path: PathSnapshot | None = None
         self._path_nodes = PathNodes(
             client.scene, self._origins, self.mouse.connect_points, stage.tones
         )

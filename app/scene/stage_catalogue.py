@@ -88,7 +88,7 @@ def _path_plane(robot: Robot) -> DragPlane:
 
 def _axes(robot: Robot) -> tuple[Array, Array, Array]:
     """Origin of the path's plane, and its two coordinate directions, in the robot's frame."""
-    origin, right, up = robot.place(robot.frame.lift(np.array([(0.0, 0.0), (1, 0), (0, 1)])))
+    origin, right, up = robot.position(robot.frame.lift(np.array([(0.0, 0.0), (1, 0), (0, 1)])))
     return origin, right - origin, up - origin
 
 

@@ -38,7 +38,7 @@ def has_meaning(symbol: str, robot: Robot) -> bool:
     return SYMBOLS[symbol][2] in named
 
 
-def symbol_ways(symbol: str, robot: Robot, motion: Motion) -> list[Array]:
+def symbol_lines(symbol: str, robot: Robot, motion: Motion) -> list[Array]:
     """What a symbol of a joint means on each robot, as points of the output space.
 
     Args:
@@ -53,18 +53,18 @@ def symbol_ways(symbol: str, robot: Robot, motion: Motion) -> list[Array]:
         np.array(function(drawn[: 6 * bars].reshape(-1, 3).T, motion.point(i, END))).T
         for i, drawn in enumerate(motion.drawn)
     )
-    return [robot.unplace(np.nan_to_num(each)) for each in points]
+    return [robot.output_at(np.nan_to_num(each)) for each in points]
 
 
 @lru_cache(maxsize=64)
 def _function(symbol: str, robot: Robot, bars: int) -> ca.Function:
     """Ends of all bars (3, 2 n) and the end-point (3, 1) -> the points, (3, k), [m]."""
     ends, tip = ca.SX.sym("ends", 3, 2 * bars), ca.SX.sym("tip", 3)
-    way = next(_ways(symbol, robot, ends, tip))
-    return ca.Function("symbol", [ends, tip], [ca.densify(ca.cse(way))])
+    line = next(_lines(symbol, robot, ends, tip))
+    return ca.Function("symbol", [ends, tip], [ca.densify(ca.cse(line))])
 
 
-def _ways(symbol: str, robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[ca.SX]:
+def _lines(symbol: str, robot: Robot, ends: ca.SX, tip: ca.SX) -> Iterator[ca.SX]:
     """The line or joint of a symbol, if the robot has it."""
     drawing, plane = robot.drawing, plane_of(robot, ends, tip)
     links = [ends[:, 2 * angle.bar + 1] for angle in drawing.angles]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from onpath.app.common import palette
-from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.app.scene.meshes import Mesh
 from onpath.app.scene.stage import Stage, add_copies
 from onpath.models.paths.curve_fit import through_samples
@@ -58,7 +58,7 @@ class TubeShape:
     offsets: np.ndarray
 
 
-def tube_shape(robot: Robot, path: PathView) -> TubeShape:
+def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
     """The tube around a path as it is drawn."""
     curve = drawn_curve(robot, path)
     width = tube_width(curve)
@@ -71,7 +71,7 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     at = curve_frames(curve, theta[:: ALONG // LINES])
 
     def placed(points: np.ndarray) -> np.ndarray:
-        return robot.place(robot.frame.lift(points))
+        return robot.position(robot.frame.lift(points))
 
     return TubeShape(
         width=width,
@@ -83,9 +83,9 @@ def tube_shape(robot: Robot, path: PathView) -> TubeShape:
     )
 
 
-def drawn_curve(robot: Robot, path: PathView) -> Curve:
+def drawn_curve(robot: Robot, path: PathSnapshot) -> Curve:
     """The curve whose evenly spaced samples are drawn, in coordinates of the path's plane."""
-    y = robot.unplace(path.points)
+    y = robot.output_at(path.points)
     z = robot.frame.planar(y)
     rises = robot.frame.space is not None and float(np.ptp(y[:, 2])) > 1e-9
     samples = y if rises else z

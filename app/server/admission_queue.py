@@ -37,13 +37,13 @@ class AdmissionQueue:
     """The admitted and the waiting clients.
 
     Args:
-        places: number of clients that may be admitted at the same time.
+        capacity: number of clients that may be admitted at the same time.
     """
 
-    def __init__(self, places: int) -> None:
-        self._places = places
-        self._places_each = places - places // RESERVED
-        self._inside = PerAddress[int](places, self._places_each)
+    def __init__(self, capacity: int) -> None:
+        self._capacity = capacity
+        self._capacity_each = capacity - capacity // RESERVED
+        self._inside = PerAddress[int](capacity, self._capacity_each)
         self._waiting: dict[int, Waiting] = {}
         self._lock = threading.Lock()
 
@@ -92,10 +92,10 @@ class AdmissionQueue:
     ) -> Callable[[], None]:
         """Show that the lab is full. Returns a function that removes the notice and enters."""
         words = Words()
-        if len(self._inside) >= self._places:
-            text = words("full.text", places=self._places)
+        if len(self._inside) >= self._capacity:
+            text = words("full.text", places=self._capacity)
         else:
-            text = words("full.network", places=self._places_each)
+            text = words("full.network", places=self._capacity_each)
         close = show_notice(client, words("full.title"), text)
 
         def close_and_enter() -> None:

@@ -28,14 +28,14 @@ class Arrival:
     Attributes:
         kept: values by key; "" where there is none.
         address: the client's, as the limits on connections count it.
-        place: of its page; see `app.viser_adapter.addresses`.
+        prefix: of its page's address; see `app.viser_adapter.addresses`.
         language: the supported language that its browser prefers.
     """
 
     client: viser.ClientHandle
     kept: Kept
     address: str
-    place: str
+    prefix: str
     language: str
 
 
@@ -71,7 +71,7 @@ class Arrivals:
         connection = connection_of(self._server, number)
         if connection is None:  # disconnected already
             return
-        address, place, language = connection.address, connection.place, connection.language
+        address, prefix, language = connection.address, connection.prefix, connection.language
         surplus = self._silent.add(number, address)
         if surplus is not None:
             self._silent.discard(surplus)  # its page may connect again; then it is the newest
@@ -82,12 +82,12 @@ class Arrivals:
             kept[key] = value
             if len(kept) == len(self._keys) and self._silent.discard(number):
                 arrival = Arrival(
-                    client=client, kept=kept, address=address, place=place, language=language
+                    client=client, kept=kept, address=address, prefix=prefix, language=language
                 )
                 run_in_thread(self._server, partial(self._let_in, arrival))
 
         for key, by_class in self._keys.items():
-            stored = storage_key(key, place) if by_class else key
+            stored = storage_key(key, prefix) if by_class else key
             ask_item(client, stored, partial(answered, key))
         client.flush()
 

@@ -33,7 +33,7 @@ class ClassService:
     """A class of one server process.
 
     Args:
-        place: of its page, see `app.viser_adapter.addresses`.
+        prefix: of its page's address, see `app.viser_adapter.addresses`.
         course: the lessons, which may have changed since the class was stored.
         records: store the class, and students' data, which a teacher may delete.
         keeper: stores a student's lab on joining.
@@ -43,18 +43,18 @@ class ClassService:
     def __init__(
         self,
         classroom: Classroom,
-        sessions: LabRegistry,
-        place: str,
+        registry: LabRegistry,
+        prefix: str,
         course: Course,
         records: Records | None = None,
         keeper: WriteBehind | None = None,
         lost: Callable[[set[int]], None] = lambda _: None,
     ) -> None:
-        self._class, self._sessions, self._course = classroom, sessions, course
+        self._class, self._registry, self._course = classroom, registry, course
         self._records, self._keeper, self._lost = records, keeper, lost
         self._clients = set[int]()
         self._teachers: dict[int, tuple[str, TeacherChoices]] = {}
-        self._teacher_key = storage_key(TEACHER_KEY, place)
+        self._teacher_key = storage_key(TEACHER_KEY, prefix)
         self._attendance = ClassSync(classroom, self._student)
         self._attendance.rounds.start()
         self._class_keeper: ClassKeeper | None = None
@@ -111,7 +111,7 @@ class ClassService:
         """A lab's place in the class.
 
         Args:
-            code: session code of the lab.
+            code: code of the lab.
             reopen: rebuilds the client's page.
         """
 
@@ -125,7 +125,7 @@ class ClassService:
 
         def join(typed: str, nickname: str) -> str:
             self._class.join(code, typed, nickname)
-            entry, keeper = self._sessions.find(code), self._keeper
+            entry, keeper = self._registry.find(code), self._keeper
             if entry is not None and keeper is not None:  # the class needs the lab in the database
                 submit = partial(keeper.submit, code)
                 entry.scheduled.lab.post(ReportState(lambda lab: keep(lab, submit)))
@@ -167,7 +167,7 @@ class ClassService:
 
         def send_setup() -> None:
             push = self._class.push
-            lab.post(ReportState(lambda state: push(TakeSetup(capture(state.session)))))
+            lab.post(ReportState(lambda state: push(TakeSetup(capture(state.simulation)))))
 
         def stop() -> None:
             self._teachers.pop(client.client_id, None)
@@ -189,12 +189,12 @@ class ClassService:
         )
 
     def _student(self, code: str) -> tuple[Lab, bool] | None:
-        entry = self._sessions.find(code)
+        entry = self._registry.find(code)
         return None if entry is None else (entry.scheduled.lab, entry.client is not None)
 
     def _lab(self, code: str) -> ScheduledLab | None:
         """The lab with this code, for a teacher's page."""
-        entry = self._sessions.find(code)
+        entry = self._registry.find(code)
         return None if entry is None else entry.scheduled
 
     def _give_up(self) -> None:
@@ -209,14 +209,14 @@ class ClassService:
             ValueError: the lab is open in another process.
         """
         delete = self._records.delete if self._records is not None else lambda _: 0
-        entry = self._sessions.find(code)
+        entry = self._registry.find(code)
         client = None if entry is None else entry.client
         try:
-            self._sessions.delete(code, delete)
+            self._registry.delete(code, delete)
         except HeldElsewhere:
             raise CodedError("error.lab_is_open") from None
         finally:
-            if client is not None and self._sessions.find(code) is not entry:
+            if client is not None and self._registry.find(code) is not entry:
                 self._lost({client})  # the page comes back with a new lab
         self._class.leave(code)
         if self._class_keeper is not None:

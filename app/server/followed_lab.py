@@ -16,7 +16,7 @@ class FollowedLab:
     """The lab chosen on one teacher's page.
 
     Attributes:
-        lab: finds a lab by session code; returns None if there is none.
+        lab: finds a lab by its code; returns None if there is none.
     """
 
     classroom: Classroom

@@ -53,7 +53,7 @@ class LabFeed(CountingDisplay):
 
     @override
     def is_turn(self, lab: Lab, frame: int, stride: float) -> bool:
-        if stride == AT_EASE and self._source(lab, 1.0)[0].session.forces.grabbed:
+        if stride == AT_EASE and self._source(lab, 1.0)[0].simulation.forces.grabbed:
             return True  # every frame of delay is felt while dragging
         return is_turn(frame + self._offset, stride)
 
@@ -99,12 +99,12 @@ class LabFeed(CountingDisplay):
 
     def _has_news(self, lab: Lab) -> bool:
         """Whether anything in the scene has changed since it was last shown."""
-        session, shown = lab.session, self._shown
+        simulation, shown = lab.simulation, self._shown
         self._shown = now = (
-            *(run.slot for run in session.runs.values()),
-            session.viewing,
-            session.editor.version,
-            session.exaggeration,
+            *(run.slot for run in simulation.runs.values()),
+            simulation.viewing,
+            simulation.editor.version,
+            simulation.exaggeration,
             lab.lessons.progress,
         )
         return len(now) != len(shown) or not all(map(is_, now, shown))

@@ -1,7 +1,7 @@
-"""Assigns sessions to browsers, so that a reload returns to the same lab.
+"""Assigns labs to browsers, so that a reload returns to the same one.
 
-The browser stores a short list of session codes. A returning tab gets the session that was left
-most recently. A session without a client is paused, and dropped after a while.
+The browser stores a short list of lab codes. A returning tab gets the lab that was left
+most recently. A lab without a client is paused, and dropped after a while.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 
 CODE = re.compile(r"[a-z0-9]{12}")
 MOST_CODES = 8
-KEPT = 15 * 60.0  # [s] for which an abandoned session is kept, if it was used
+KEPT = 15 * 60.0  # [s] for which an abandoned lab is kept, if it was used
 HISTORY_KEPT = 30.0  # [s] for which its history is kept, which takes most of its memory
 MOST_ABANDONED = 60
 LEASE_WAIT = LEASE + 1.0  # [s] to wait for another process to give up a lab
@@ -56,7 +56,7 @@ class RegisteredLab:
 
 @dataclass(slots=True)
 class LabRegistry:
-    """All sessions by code.
+    """All labs by code.
 
     Attributes:
         make: makes a new lab.
@@ -67,7 +67,7 @@ class LabRegistry:
         keeper: stores changes, or None.
     """
 
-    simulation: SimulationThread
+    thread: SimulationThread
     make: Callable[[], Lab]
     clock: Callable[[], float] = time.monotonic
     load: Callable[[str], LabState | None] = lambda _: None
@@ -81,7 +81,7 @@ class LabRegistry:
     _throttle: Throttle = field(default_factory=Throttle)
 
     def join(self, client: int, known: str | None, language: str = "") -> RegisteredLab:
-        """The session of a new client.
+        """The lab of a new client.
 
         Args:
             known: the list of codes stored in the browser, as returned by `remembered`.
@@ -106,10 +106,10 @@ class LabRegistry:
         return self._give(client, entry)
 
     def enter(self, client: int, code: str) -> RegisteredLab:
-        """Join the session of a typed code; the client leaves its own.
+        """Join the lab of a typed code; the client leaves its own.
 
         Raises:
-            ValueError: no such session, it is open elsewhere, or there were too many attempts.
+            ValueError: no such lab, it is open elsewhere, or there were too many attempts.
             NotKept: the database is unavailable, or the stored state cannot be read.
         """
         with self._throttle.attempt(str(client)):
@@ -183,7 +183,7 @@ class LabRegistry:
     def _alone(self, code: str) -> Iterator[None]:
         """Lock one code, so that no other thread opens or releases its lab.
 
-        The body may block on the database; the lock of all sessions is not held meanwhile.
+        The body may block on the database; the lock of all labs is not held meanwhile.
         """
         with self._lock:
             self._lock.wait_for(lambda: code not in self._opening)
@@ -221,7 +221,7 @@ class LabRegistry:
             entry.client = client
             if entry.code not in self._entries:
                 self._entries[entry.code] = entry
-                self.simulation.add(entry.scheduled)
+                self.thread.add(entry.scheduled)
             return entry
 
     def find(self, code: str) -> RegisteredLab | None:
@@ -229,7 +229,7 @@ class LabRegistry:
         return self._entries.get(code)
 
     def leave(self, client: int) -> RegisteredLab | None:
-        """Pause a client's session when it disconnects; it may return, here or elsewhere."""
+        """Pause a client's lab when it disconnects; it may return, here or elsewhere."""
         with self._lock:
             entry = self._abandon(client)
             if entry is not None:
@@ -269,7 +269,7 @@ class LabRegistry:
         with self._alone(code):
             self._discard(code)
             self.lose(code)
-            self.simulation.call(lambda: None)  # the frame that may still have stored it has ended
+            self.thread.call(lambda: None)  # the frame that may still have stored it has ended
             self._discard(code)
             delete(code)
 
@@ -294,15 +294,15 @@ class LabRegistry:
             self._remove(entry)
 
     def _remove(self, entry: RegisteredLab) -> None:
-        self.simulation.remove(entry.scheduled)
+        self.thread.remove(entry.scheduled)
         self._entries.pop(entry.code, None)
-        entry.scheduled.session.history.clear()  # the rest waits until garbage is collected
+        entry.scheduled.simulation.history.clear()  # the rest waits until garbage is collected
 
     def _abandon(self, client: int) -> RegisteredLab | None:
         for entry in self._entries.values():
             if entry.client == client:
                 entry.client, entry.left = None, self.clock()
-                entry.scheduled.view = None
+                entry.scheduled.display = None
                 return entry
         return None
 
@@ -325,15 +325,15 @@ class LabRegistry:
             for entry in left:
                 if not entry.scheduled.lab.asked:
                     self._remove(entry)
-        sessions = [e.scheduled.session for e in left]
-        outdated = [s for s in sessions if s.viewing is None and len(s.history)]
+        simulations = [e.scheduled.simulation for e in left]
+        outdated = [s for s in simulations if s.viewing is None and len(s.history)]
 
         def forget() -> None:
-            for session in outdated:
-                forget_history(session)
+            for simulation in outdated:
+                forget_history(simulation)
 
         if outdated:
-            self.simulation.call(forget)
+            self.thread.call(forget)
 
     def _drop_old(self) -> None:
         waiting = sorted(self._waiting(), key=lambda e: e.left, reverse=True)

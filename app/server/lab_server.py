@@ -27,7 +27,7 @@ from onpath.app.page.build_queue import BuildQueue, one_at_a_time
 from onpath.app.page.own_part import own_part
 from onpath.app.page.page import Page
 from onpath.app.page.page_context import PageContext
-from onpath.app.page.teacher_view import TeacherView
+from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.stage import set_initial_camera
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.admission_queue import AdmissionQueue
@@ -85,7 +85,7 @@ class LabServer:
 
     Args:
         host, port: where to listen; port 0 takes a free one.
-        store: compiles and keeps the loops.
+        loop_cache: compiles and keeps the loops.
         course: the lessons; the built-in ones if None.
         records: where labs are stored; None stores nothing.
         classrooms: the classes that students may join.
@@ -105,7 +105,7 @@ class LabServer:
         self,
         host: str,
         port: int,
-        store: LoopCache,
+        loop_cache: LoopCache,
         course: Course | None = None,
         records: Records | None = None,
         classrooms: Sequence[Classroom] = (),
@@ -119,12 +119,12 @@ class LabServer:
         **listening: Any,
     ) -> None:
         listening.setdefault("limits", Limits(max_upload_bytes=path_upload.MOST_BYTES))
-        self._host, self._store, self._privacy_url = host, store, privacy_url
+        self._host, self._loop_cache, self._privacy_url = host, loop_cache, privacy_url
         self._socket: Path | None = listening.get("unix_socket")
         self._origins: Sequence[str] = listening.get("allowed_origins", ())
         self._room = AdmissionQueue(most_clients)
         self._course = lessons = course or built_in_course()
-        self.simulation = SimulationThread()
+        self.thread = SimulationThread()
         self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
         self._channel = DataChannel()
         self.server = make_server(
@@ -133,22 +133,22 @@ class LabServer:
             label="OnPath",
             channel=self._channel,
             scripts=own_part(),
-            health=partial(metrics_json, self.simulation),
+            health=partial(metrics_json, self.thread),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
             **listening,
         )
         self._records, self._retention = records, retention or Retention()
-        self.sessions = LabRegistry(
-            self.simulation, lambda: new_lab(store, lessons, robot, path, law)
+        self.registry = LabRegistry(
+            self.thread, lambda: new_lab(loop_cache, lessons, robot, path, law)
         )
-        self._memory = Periodic("memory", FREEING, self.sessions.free_memory)
+        self._memory = Periodic("memory", FREEING, self.registry.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
             self._store_labs(records)
         self._classes = ClassDirectory(classrooms, self._class_service)
-        self._places = dict[int, str]()
-        self._views = dict[int, LabFeed]()
+        self._prefixes = dict[int, str]()
+        self._feeds = dict[int, LabFeed]()
         self._seen = dict[int, str]()  # where clients have opened the site
         self._looks = dict[int, tuple[bool, bool]]()  # whether clients ask for dark, plain pages
         self._newcomers = BuildQueue()
@@ -160,13 +160,13 @@ class LabServer:
 
     def _store_labs(self, records: Records) -> None:
         self._keeper = WriteBehind(records, lost=self._lost)
-        self._expiry = Expiry(records, self._retention, self.sessions.held)
-        sessions = self.sessions
-        sessions.load, sessions.is_current = records.claim, records.is_current
-        sessions.keeper, sessions.give_up = self._keeper, records.give_up
+        self._expiry = Expiry(records, self._retention, self.registry.held)
+        registry = self.registry
+        registry.load, registry.is_current = records.claim, records.is_current
+        registry.keeper, registry.give_up = self._keeper, records.give_up
 
     def _start(self) -> None:
-        self.simulation.start()
+        self.thread.start()
         self._memory.start()
         if self._expiry is not None:
             self._expiry.start()
@@ -175,7 +175,7 @@ class LabServer:
             self._leases = LeaseKeeper(self._records, self._open_here, stored, self._lost)
             self._leases.look()
             self._leases.rounds.start()
-        self._watchdog.start(signs_of_life(self.simulation, self.server.get_event_loop()))
+        self._watchdog.start(signs_of_life(self.thread, self.server.get_event_loop()))
 
     @property
     def address(self) -> str:
@@ -201,11 +201,11 @@ class LabServer:
         self._watchdog.stop()
         self._memory.stop()
         self._newcomers.stop()
-        self.simulation.stop()
-        self.sessions.look()
-        self._store.close()
-        for view in list(self._views.values()):
-            view.close()
+        self.thread.stop()
+        self.registry.look()
+        self._loop_cache.close()
+        for feed in list(self._feeds.values()):
+            feed.close()
         exports.process.stop()
         path_upload.process.stop()
         self.server.stop()
@@ -219,33 +219,33 @@ class LabServer:
         if self._records is not None:
             self._records.close()
 
-    def _class_service(self, classroom: Classroom, place: str) -> ClassService:
+    def _class_service(self, classroom: Classroom, prefix: str) -> ClassService:
         return ClassService(
             classroom,
-            sessions=self.sessions,
-            place=place,
+            registry=self.registry,
+            prefix=prefix,
             course=self._course,
             records=self._records,
             keeper=self._keeper,
             lost=self._send_away,
         )
 
-    def _is_elsewhere(self, place: str) -> bool:
-        """Whether another process has the class at a place open."""
+    def _is_elsewhere(self, prefix: str) -> bool:
+        """Whether another process has the class under a prefix open."""
         if self._leases is None:
             return False
-        return self._leases.is_elsewhere(self._classes.stored_as(place))
+        return self._leases.is_elsewhere(self._classes.stored_as(prefix))
 
     def _open_here(self) -> list[str]:
         """The names in the database of all labs and classes that are open in this process."""
-        return [*self.sessions.held(), *self._classes.in_use()]
+        return [*self.registry.held(), *self._classes.in_use()]
 
     def _class_of(self, client: int) -> ClassService | None:
-        return self._classes.at(self._places.get(client, ""))
+        return self._classes.at(self._prefixes.get(client, ""))
 
     def _connected(self, arrival: Arrival) -> None:
         client, kept, number = arrival.client, arrival.kept, arrival.client.client_id
-        self._places[number] = arrival.place
+        self._prefixes[number] = arrival.prefix
         service = self._class_of(number)
         if service is not None and not service.greet(client, kept[TEACHER_KEY]):
             disconnect(self.server, {number})
@@ -260,49 +260,49 @@ class LabServer:
             self._disconnected(client)
 
     def _entered(self, client: viser.ClientHandle, known: str | None, language: str) -> None:
-        """Give a newly admitted client its session, if it is still connected."""
+        """Give a newly admitted client its lab, if it is still connected."""
         if client.client_id in self.server.get_clients():
-            entry = self.sessions.join(client.client_id, known, language)
+            entry = self.registry.join(client.client_id, known, language)
             self._newcomers.submit(partial(self._show, client, entry))
 
     def _show(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
-        """Show a session to a client, if both still exist."""
+        """Show a lab to a client, if both still exist."""
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
             return
-        if self.sessions.find(entry.code) is not entry or entry.client != client.client_id:
+        if self.registry.find(entry.code) is not entry or entry.client != client.client_id:
             return  # another process owns it now
         try:
             self._remember(client, entry.code)
-            view = self._view(client, entry)
+            feed = self._feed(client, entry)
         except Exception as error:
             log_error(error)
             turn_away(self.server, client.client_id, "a page that could not be built")
             return
-        self._views[client.client_id] = view
-        self._tabs.watch(client, entry.scheduled, view)
+        self._feeds[client.client_id] = feed
+        self._tabs.watch(client, entry.scheduled, feed)
         if client.client_id not in self.server.get_clients():
             self._disconnected(client)
 
     def _remember(self, client: viser.ClientHandle, code: str) -> None:
         """Let a browser keep a code before those of its other labs."""
-        key = storage_key(STORAGE_KEY, self._places.get(client.client_id, ""))
+        key = storage_key(STORAGE_KEY, self._prefixes.get(client.client_id, ""))
 
         def keep(kept: str) -> None:
-            client.local_storage.set_item(key, self.sessions.remembered(code, kept))
+            client.local_storage.set_item(key, self.registry.remembered(code, kept))
 
         ask_item(client, key, keep)
 
-    def _view(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
+    def _feed(self, client: viser.ClientHandle, entry: RegisteredLab) -> LabFeed:
         """Build the page of a lab, or of a teacher, and return its feed."""
         number, code = client.client_id, entry.code
         service, lab = self._class_of(number), entry.scheduled.lab
         reopen = partial(self._reopen, client, entry)
-        place = self._places.get(number, "")
+        prefix = self._prefixes.get(number, "")
         seat = (
             service.seat(client, code, reopen)
             if service
-            else self._classes.seat_elsewhere(place, code)
+            else self._classes.seat_elsewhere(prefix, code)
         )
         site = site_for_students(self._seen.get(number, ""), self.site)
         teaching = service.teaching(client, lab, reopen, site) if service else None
@@ -323,45 +323,45 @@ class LabServer:
         )
         nickname = partial(service.nickname, code) if service else str
         take = partial(take_page_snapshot, lab, 1.0, nickname=nickname())
-        first = self.simulation.call(take)
+        first = self.thread.call(take)
         if teaching is None:
             return LabFeed(Page(client, first, context), number, nickname, data=data)
         followed = service.followed(number) if service else None
-        page = TeacherView(client, first, context, teaching)
+        page = TeacherPage(client, first, context, teaching)
         return LabFeed(page, number, nickname, followed, data)
 
     def _enter(self, client: viser.ClientHandle, text: str) -> None:
-        """Move a client to the session of a typed code.
+        """Move a client to the lab of a typed code.
 
         Raises:
-            ValueError: invalid code, no such session, or the session is in use.
+            ValueError: invalid code, no such lab, or the lab is in use.
         """
-        self._reopen(client, self.sessions.enter(client.client_id, normalised(text)))
+        self._reopen(client, self.registry.enter(client.client_id, normalised(text)))
 
     def _lost(self, code: str) -> None:
         """Send away the client of a lab that another process has."""
         with suppress(NotKept):
             if self._records is not None and self._records.is_current(code):
                 return  # it has come back meanwhile
-        number = self.sessions.lose(code)
+        number = self.registry.lose(code)
         if number is not None:
             disconnect(self.server, {number})
 
     def _send_away(self, clients: set[int]) -> None:
         """Store all labs, and close the connections of clients; their pages reconnect at once."""
         if self._keeper is not None:
-            for code in self.sessions.held():
+            for code in self.registry.held():
                 if not self._keeper.flush(code):
                     break  # each of the others would wait just as long, in vain
         disconnect(self.server, clients)
 
     def _reopen(self, client: viser.ClientHandle, entry: RegisteredLab) -> None:
-        """Rebuild a client's page for a session that it already has."""
+        """Rebuild a client's page for a lab that it already has."""
         self._tabs.leave(client.client_id)
-        self.simulation.call(lambda: None)  # until the frame that still showed the page has ended
-        view = self._views.pop(client.client_id, None)
-        if view is not None:
-            view.close()
+        self.thread.call(lambda: None)  # until the frame that still showed the page has ended
+        feed = self._feeds.pop(client.client_id, None)
+        if feed is not None:
+            feed.close()
         with one_at_a_time:  # part of the page may be under construction
             clear_page(client)
         self._show(client, entry)
@@ -370,13 +370,13 @@ class LabServer:
         self._tabs.forget(client.client_id)
         self._seen.pop(client.client_id, None)
         self._looks.pop(client.client_id, None)
-        self.sessions.leave(client.client_id)
+        self.registry.leave(client.client_id)
         if (service := self._class_of(client.client_id)) is not None:
             service.gone(client.client_id)
-        self._places.pop(client.client_id, None)
-        view = self._views.pop(client.client_id, None)
-        if view is not None:
-            view.close()
+        self._prefixes.pop(client.client_id, None)
+        feed = self._feeds.pop(client.client_id, None)
+        if feed is not None:
+            feed.close()
         release_page(client)
         self._room.leave(client.client_id)
 
@@ -414,14 +414,14 @@ def serve(
     records = Records(database, needed=bool(database or in_public))
     if records.warning:
         log.warning("%s", records.warning)
-    store = LoopCache()
+    loop_cache = LoopCache()
     if robot.source is not None:
-        compile_loops(store, robot)
+        compile_loops(loop_cache, robot)
         prepare_shapes(robot.source.chain)
     lab = LabServer(
         host,
         port,
-        store=store,
+        loop_cache=loop_cache,
         course=course,
         records=records,
         classrooms=classrooms,
@@ -431,7 +431,7 @@ def serve(
     try:
         for number in END_SIGNALS:
             signal.signal(number, _end)
-        warm_up(store, course)
+        warm_up(loop_cache, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
         ready(lab.site)
         if open_browser:

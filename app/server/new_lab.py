@@ -5,7 +5,7 @@ from __future__ import annotations
 from onpath.app.common.newcomer import NEWCOMER
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.session import RobotSettings
+from onpath.app.lab.simulation import RobotSettings
 from onpath.lessons.course import Course
 from onpath.models.control.settable import with_values
 from onpath.models.control.sides import RIGHT
@@ -14,7 +14,7 @@ from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS, RobotEntry
 
 
 def new_lab(
-    store: LoopCache,
+    loop_cache: LoopCache,
     course: Course,
     robot: RobotEntry = FIVE_BAR,
     path: PathDesign | None = None,
@@ -27,16 +27,16 @@ def new_lab(
         path: the path at first, which this robot must be able to follow; None: the robot's circle.
         law: the law of the robot on the right at first; "": path following.
     """
-    lab = Lab(store, robot, course)
-    session = lab.session
+    lab = Lab(loop_cache, robot, course)
+    simulation = lab.simulation
     for name, entry in ROBOTS.items():
-        session.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))
-    session.set_parameters(session.earlier.pop(session.entry.name).parameters)
+        simulation.earlier[name] = RobotSettings(with_values(entry.parameters(), NEWCOMER))
+    simulation.set_parameters(simulation.earlier.pop(simulation.entry.name).parameters)
     if path is not None:
-        session.editor.commit(path)
-        session.editor.settle()
-        session.editor.forget_edits()
-        session.reset()
+        simulation.editor.commit(path)
+        simulation.editor.settle()
+        simulation.editor.forget_edits()
+        simulation.reset()
     if law:
-        session.reset({RIGHT: law})
+        simulation.reset({RIGHT: law})
     return lab

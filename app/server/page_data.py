@@ -14,9 +14,9 @@ from onpath.app.lab.commands.command_codec import NoCommand, command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.lab.snapshots.snapshot import Motion, PathView
+from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.page.page import Page
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
+from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 from onpath.models.systems.robots import Robot
 
@@ -44,7 +44,7 @@ class PageData:
         self._channel, self._own, self._is_own = channel, own, True
         self._stream = channel.open(self._receive)
         self._source, self._opened = FrameSource(), 0
-        self._path: PathView | None = None
+        self._path: PathSnapshot | None = None
         self._robot: object = None
         self._state: dict[str, Any] = {}
         self._is_resized = self._wants_record = self._skips = False
@@ -87,11 +87,11 @@ class PageData:
         if self._is_resized:
             self._is_resized = False
             on_resize()
-        self._source.note(lab.session)
+        self._source.note(lab.simulation)
         if not is_turn or stream.is_busy:
             return
         messages = list[Message]()
-        robot, path = lab.session.robot, drawn.path
+        robot, path = lab.simulation.robot, drawn.path
         if path is not self._path or robot is not self._robot:
             self._path, self._robot = path, robot
             messages.append(partial(path_message, robot, path))
@@ -172,10 +172,10 @@ class PageData:
 
 
 def _lit_message(symbol: str, robot: Robot, motion: Motion) -> bytes:
-    ways = [
-        np.rint(LENGTH * way).astype(int).tolist() for way in symbol_ways(symbol, robot, motion)
+    lines = [
+        np.rint(LENGTH * line).astype(int).tolist() for line in symbol_lines(symbol, robot, motion)
     ]
-    return msgspec.json.encode({"is": "lit", "symbol": symbol, "ways": ways})
+    return msgspec.json.encode({"is": "lit", "symbol": symbol, "lines": lines})
 
 
 def _refused(why: str) -> bytes:

@@ -24,7 +24,7 @@ TICK = 0.5  # [s] between checks
 
 
 class CountingDisplay(LabDisplay, Protocol):
-    """A view that counts its updates."""
+    """A display that counts its updates."""
 
     @property
     def updates(self) -> int:
@@ -33,7 +33,7 @@ class CountingDisplay(LabDisplay, Protocol):
 
 
 class TabVisibility:
-    """One browser. It is its lab's view as long as it draws. Thread-safe."""
+    """One browser. It is its lab's display as long as it draws. Thread-safe."""
 
     def __init__(
         self, client: viser.ClientHandle, clock: Callable[[], float] = time.monotonic
@@ -41,52 +41,52 @@ class TabVisibility:
         self._client, self._clock = client, clock
         self._lock = threading.Lock()
         self._lab: ScheduledLab | None = None
-        self._view: CountingDisplay | None = None
+        self._display: CountingDisplay | None = None
         self._heard = self._questioned = clock()
         self._updates = 0  # number of updates when the last reply came
         self._unanswered: float | None = None  # time of the unanswered question, [s]
         client.camera.on_update(self._hear)
 
-    def watch(self, lab: ScheduledLab, view: CountingDisplay) -> None:
+    def watch(self, lab: ScheduledLab, display: CountingDisplay) -> None:
         """Show a lab from now on."""
         with self._lock:
-            self._lab, self._view = lab, view
-            self._heard, self._updates, self._unanswered = self._clock(), view.updates, None
-            lab.view = view
+            self._lab, self._display = lab, display
+            self._heard, self._updates, self._unanswered = self._clock(), display.updates, None
+            lab.display = display
 
     def leave(self) -> None:
         """Show no lab."""
         with self._lock:
-            if self._lab is not None and self._lab.view is self._view:
-                self._lab.view = None
-            self._lab = self._view = None
+            if self._lab is not None and self._lab.display is self._display:
+                self._lab.display = None
+            self._lab = self._display = None
 
     def look(self) -> None:
-        """Ask the browser if it is time; detach the view if the reply is overdue."""
+        """Ask the browser if it is time; detach the display if the reply is overdue."""
         now = self._clock()
         with self._lock:
-            lab, view = self._lab, self._view
-            if lab is None or view is None:
+            lab, display = self._lab, self._display
+            if lab is None or display is None:
                 return
             if self._unanswered is None:
-                if view.updates == self._updates or now - self._heard < QUESTION_INTERVAL:
+                if display.updates == self._updates or now - self._heard < QUESTION_INTERVAL:
                     return
                 self._unanswered = now
             elif now - self._questioned < QUESTION_INTERVAL:
                 return
-            elif now - self._unanswered >= PATIENCE and lab.view is view:
-                lab.view = None
+            elif now - self._unanswered >= PATIENCE and lab.display is display:
+                lab.display = None
             self._questioned = now
         ask_for_camera(self._client)
 
     async def _hear(self, _: viser.CameraHandle) -> None:
         with self._lock:
             self._heard, self._unanswered = self._clock(), None
-            if self._lab is None or self._view is None:
+            if self._lab is None or self._display is None:
                 return
-            self._updates = self._view.updates
-            if self._lab.view is None:
-                self._lab.view = self._view
+            self._updates = self._display.updates
+            if self._lab.display is None:
+                self._lab.display = self._display
 
 
 class TabVisibilities:
@@ -97,12 +97,14 @@ class TabVisibilities:
         self._loop = server.get_event_loop()
         self._loop.call_soon_threadsafe(self._look)
 
-    def watch(self, client: viser.ClientHandle, lab: ScheduledLab, view: CountingDisplay) -> None:
+    def watch(
+        self, client: viser.ClientHandle, lab: ScheduledLab, display: CountingDisplay
+    ) -> None:
         """Show a lab in a browser, instead of any other."""
         number = client.client_id
         if number not in self._all:
             self._all[number] = TabVisibility(client)
-        self._all[number].watch(lab, view)
+        self._all[number].watch(lab, display)
 
     def leave(self, client: int) -> None:
         """Show no lab in a browser for now."""

@@ -21,7 +21,7 @@ import numpy as np
 from onpath.app.common.error_log import log_warning
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.assets.messages import languages
 from onpath.lessons.course import Course
@@ -39,7 +39,7 @@ REST = 3.0  # [s] in which the first browser can open its lab
 TRIES = 5
 
 
-def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
+def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread:
     """After `rest` [s], in a thread: read lessons, compile loops, import modules, build robots.
 
     A part that fails, for instance because too many files are open, is tried again after a rest.
@@ -50,9 +50,9 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
             list(versions.values())
 
     def compile_loops() -> None:
-        for run in Session(store).runs.values():
+        for run in Simulation(loop_cache).runs.values():
             for free in (True, False):
-                store.prepare(run.robot, replace(run.kind, free=free))
+                loop_cache.prepare(run.robot, replace(run.kind, free=free))
 
     def import_modules() -> None:
         for name in LATER:
@@ -63,7 +63,7 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
         mimetypes.init()  # the types of files, for downloads
 
     def work() -> None:
-        parts = [read_lessons, compile_loops, import_modules, partial(build_robots, store)]
+        parts = [read_lessons, compile_loops, import_modules, partial(build_robots, loop_cache)]
         tries = TRIES
         while parts and tries:
             time.sleep(rest)
@@ -76,22 +76,22 @@ def warm_up(store: LoopCache, course: Course, rest: float = REST) -> Thread:
     return thread
 
 
-def build_robots(store: LoopCache) -> None:
+def build_robots(loop_cache: LoopCache) -> None:
     """Build the equations and drawings of all robots, before somebody chooses one."""
     for entry in ROBOTS.values():
-        take_page_snapshot(Lab(store, entry), 1.0)
+        take_page_snapshot(Lab(loop_cache, entry), 1.0)
 
 
-def compile_loops(store: LoopCache, entry: RobotEntry) -> None:
+def compile_loops(loop_cache: LoopCache, entry: RobotEntry) -> None:
     """Compile the loops that a new lab with a robot needs, before anybody waits for them.
 
     Those of a robot with many joints take seconds.
     """
-    runs = Session(store, entry).runs.values()
+    runs = Simulation(loop_cache, entry).runs.values()
     loops = [(run.robot, replace(run.kind, free=free)) for run in runs for free in (True, False)]
     for i, (robot, kind) in enumerate(loops, 1):
         log.info("compiling %s: %d of %d", entry.label, i, len(loops))
-        store.make(robot, kind)
+        loop_cache.make(robot, kind)
 
 
 def _succeeds(part: Callable[[], None]) -> bool:

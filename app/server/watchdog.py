@@ -127,7 +127,9 @@ class Watchdog:
             self._end()
 
 
-def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop) -> dict[str, Sign]:
+def signs_of_life(
+    simulation_thread: SimulationThread, loop: asyncio.AbstractEventLoop
+) -> dict[str, Sign]:
     """The frame count of a simulation thread, and a count that an event loop increments."""
     count = network = 0
 
@@ -140,7 +142,7 @@ def signs_of_life(simulation: SimulationThread, loop: asyncio.AbstractEventLoop)
     loop.call_soon_threadsafe(beat)
     return {
         "the simulation thread": Sign(
-            lambda: simulation.frames.count, lambda: simulation.thread.native_id or 0
+            lambda: simulation_thread.frames.count, lambda: simulation_thread.thread.native_id or 0
         ),
         "the event loop": Sign(lambda: count, lambda: network),
     }

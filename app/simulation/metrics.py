@@ -45,7 +45,7 @@ class Metrics:
     rss_mb: float | None
 
 
-def metrics_json(simulation: SimulationThread, query: str) -> str:
+def metrics_json(thread: SimulationThread, query: str) -> str:
     """The metrics as JSON.
 
     Args:
@@ -56,17 +56,17 @@ def metrics_json(simulation: SimulationThread, query: str) -> str:
     except (KeyError, ValueError):
         seconds = WINDOW
     seconds = seconds if 1.0 <= seconds <= LONGEST else WINDOW
-    return msgspec.json.encode(measure_metrics(simulation, seconds)).decode() + "\n"
+    return msgspec.json.encode(measure_metrics(thread, seconds)).decode() + "\n"
 
 
-def measure_metrics(simulation: SimulationThread, seconds: float = WINDOW) -> Metrics:
+def measure_metrics(thread: SimulationThread, seconds: float = WINDOW) -> Metrics:
     """Measure this process over the last `seconds`."""
     now = time.perf_counter()
-    began, lateness = simulation.frames.latest().T
+    began, lateness = thread.frames.latest().T
     since = max(now - seconds, float(began[0])) if len(began) else now
     late = sorted(lateness[began > since].tolist())
     p50, p95, p99 = (_quantile_ms(late, part) for part in QUANTILES)
-    seen = [lab for lab in simulation.labs if lab.view is not None]
+    seen = [lab for lab in thread.labs if lab.display is not None]
     return Metrics(
         pid=os.getpid(),
         clock=round(now, 4),
@@ -74,7 +74,7 @@ def measure_metrics(simulation: SimulationThread, seconds: float = WINDOW) -> Me
         late_ms=(p50, p95, p99),
         overdue=round(sum(each > OVERDUE for each in late) / max(len(late), 1), 5),
         labs=len(seen),
-        simulated_s=tuple(round(lab.session.time, 3) for lab in seen),
+        simulated_s=tuple(round(lab.simulation.time, 3) for lab in seen),
         cpu_s=round(time.process_time(), 3),
         rss_mb=_resident(),
     )

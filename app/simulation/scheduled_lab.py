@@ -74,15 +74,15 @@ class ScheduledLab(Updated):
 
     Attributes:
         lab: the lab.
-        session: its simulated part.
-        view: its viewer, or None.
+        simulation: its simulated part.
+        display: what shows it, or None.
         used: processor time of its commands in about the last ten seconds, [s].
         refreshed: see `Updated`.
     """
 
     def __init__(self, lab: Lab) -> None:
-        self.lab, self.session = lab, lab.session
-        self.view: LabDisplay | None = None
+        self.lab, self.simulation = lab, lab.simulation
+        self.display: LabDisplay | None = None
         self.refreshed = NEVER
         self.used = self._longest = 0.0
         self._simulated = self._passed = 1e-6  # recent, low-pass filtered over about a second
@@ -91,7 +91,7 @@ class ScheduledLab(Updated):
     @property
     def is_seen(self) -> bool:
         """Whether a browser draws it; otherwise simulated time is paused."""
-        return self.view is not None
+        return self.display is not None
 
     @property
     def achieved(self) -> float:
@@ -132,19 +132,19 @@ class ScheduledLab(Updated):
             count: number of the frame.
             stride: frames of simulation per frame of display.
         """
-        if self.view is None:
+        if self.display is None:
             self._elapsed = NOTHING
             return
         self._elapsed = elapsed = self._elapsed.and_frame(seconds, length)
         if not self._is_due(count, stride):
             return
         self._elapsed = NOTHING
-        session = self.session
-        before = session.time
-        yield from self.lab.frame(session.rate * elapsed.length)
-        if session.running and not self.lab.frozen:
+        simulation = self.simulation
+        before = simulation.time
+        yield from self.lab.frame(simulation.rate * elapsed.length)
+        if simulation.running and not self.lab.frozen:
             kept = (1 - FADING) ** elapsed.frames
-            self._simulated = kept * self._simulated + session.time - before
+            self._simulated = kept * self._simulated + simulation.time - before
             self._passed = kept * self._passed + elapsed.seconds
 
     def _is_due(self, count: int, stride: float) -> bool:
@@ -160,31 +160,31 @@ class ScheduledLab(Updated):
     @property
     @override
     def is_outdated(self) -> bool:
-        view = self.view  # another thread may remove it
-        return view is not None and view.is_outdated
+        display = self.display  # another thread may remove it
+        return display is not None and display.is_outdated
 
     @override
     def is_turn(self, frame: int, stride: float) -> bool:
-        view = self.view
-        return view is not None and view.is_turn(self.lab, frame, stride)
+        display = self.display
+        return display is not None and display.is_turn(self.lab, frame, stride)
 
     @override
     def refresh(self, frame: int) -> None:
-        self.refreshed, view = frame, self.view
-        if view is not None:
+        self.refreshed, display = frame, self.display
+        if display is not None:
             try:
-                view.refresh(self.lab, self.achieved)
+                display.refresh(self.lab, self.achieved)
             except Exception as error:  # one lab must not stop the others
                 log_error(error)
 
     def show(self, count: int, stride: float) -> None:
         """Show its viewer what moves."""
-        view = self.view
-        if view is not None:
-            view.show(self.lab, count, stride)
+        display = self.display
+        if display is not None:
+            display.show(self.lab, count, stride)
 
     def send(self) -> None:
         """Send what has been shown."""
-        view = self.view
-        if view is not None:
-            view.send()
+        display = self.display
+        if display is not None:
+            display.send()

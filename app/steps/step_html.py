@@ -23,7 +23,7 @@ class StepPart:
 
     Attributes:
         kind: see `onpath.lessons.schema.KINDS`.
-        place: index among the step's blocks.
+        block_index: index among the step's blocks.
         here: whether a task can be done on the page; True for other parts.
         order: the order of a question's options, as indices; by default the author's.
         lettered: whether the options have letters, of which a class may speak.
@@ -35,7 +35,7 @@ class StepPart:
     """
 
     kind: str
-    place: int
+    block_index: int
     block: Block
     here: bool = True
     order: tuple[int, ...] = ()
@@ -47,14 +47,16 @@ class StepPart:
     aside: Markup | None = None
 
 
-def part_of(lesson: Lesson, index: int, place: int, words: Words, here: bool = True) -> StepPart:
+def part_of(
+    lesson: Lesson, index: int, block_index: int, words: Words, here: bool = True
+) -> StepPart:
     """A part of a step; the student's own numbers in a text have defaults, and are marked."""
-    block = lesson.steps[index].blocks[place]
+    block = lesson.steps[index].blocks[block_index]
     if isinstance(block, Text):
         html = marked(block.html, lesson.steps, index)
         block = replace(block, html=filled(html, lesson.steps, index, Notes(), words))
     order = tuple(range(len(getattr(block, "options", ()))))
-    return StepPart(KINDS[type(block)], place, block, here, order=order)
+    return StepPart(KINDS[type(block)], block_index, block, here, order=order)
 
 
 def step_html(

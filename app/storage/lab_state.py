@@ -45,7 +45,7 @@ class StateObserver:
     The user is told when the lab cannot be saved, and when it is saved again.
 
     Args:
-        code: session code of the lab.
+        code: code of the lab.
         lab: the lab, if its state is stored already; None for a new one.
     """
 
@@ -110,7 +110,7 @@ def put_back(lab: Lab, state: LabState) -> None:
 
 
 def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:
-    return capture(lab.session), lab.lessons.progress, lab.lessons.before
+    return capture(lab.simulation), lab.lessons.progress, lab.lessons.before
 
 
 def _state(setup: Setup, progress: Progress, before: Setup | None) -> LabState:

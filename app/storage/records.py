@@ -100,7 +100,7 @@ def file_url(file: Path) -> sa.URL:
 
 
 class Records:
-    """States of labs by session code, and of classes. Thread-safe.
+    """States of labs by code, and of classes. Thread-safe.
 
     Args:
         url: of the database, as for SQLAlchemy, such as "postgresql+psycopg://user@host/onpath";
@@ -340,7 +340,7 @@ def _state(row: sa.Row[Any]) -> dict[str, Any]:
 
 def _text(code: str, state: dict[str, Any]) -> str:
     if not 0 < len(code) <= LONGEST_CODE:
-        raise ValueError(f"a session code has up to {LONGEST_CODE} characters, not {len(code)}")
+        raise ValueError(f"a lab code has up to {LONGEST_CODE} characters, not {len(code)}")
     try:
         text = msgspec.json.encode(state).decode()
     except (TypeError, ValueError, RecursionError) as error:

@@ -33,40 +33,40 @@ def class_address(code: str) -> str:
     return f"/{CLASS}/{code}/"
 
 
-def class_link(code: str, place: str) -> str:
-    """The address of a class's page, relative to the page at a place."""
-    up = "../.." if place else "."
+def class_link(code: str, prefix: str) -> str:
+    """The address of a class's page, relative to the page under a prefix."""
+    up = "../.." if prefix else "."
     return f"{up}{class_address(code)}"
 
 
-def place_of(path: str) -> str:
-    """The place in a path, "c/CODE" or "l/NAME"; empty if there is none."""
+def prefix_of(path: str) -> str:
+    """The prefix in a path, "c/CODE" or "l/NAME"; empty if there is none."""
     found = _PLACE.match(path)
     return f"{found[1]}/{found[2]}".lower() if found else ""
 
 
 def takes_websocket(path: str) -> bool:
-    """Whether a websocket may be opened at a path: at a place in its one spelling, or at none.
+    """Whether a websocket may be opened at a path: under a prefix in its one spelling, or at none.
 
     viser's page omits the final slash.
     """
     return bool(_SOCKET.fullmatch(path)) or not _LIKE_A_PLACE.match(path)
 
 
-def class_code_in(place: str) -> str:
-    """The class code of a place; empty if the place is not a class's."""
-    kind, _, name = place.partition("/")
+def class_code_in(prefix: str) -> str:
+    """The class code of a prefix; empty if the prefix is not a class's."""
+    kind, _, name = prefix.partition("/")
     return name if kind == CLASS else ""
 
 
-def storage_key(key: str, place: str) -> str:
+def storage_key(key: str, prefix: str) -> str:
     """The key in a browser's storage for a value that differs between classes."""
-    code = class_code_in(place)
+    code = class_code_in(prefix)
     return f"{key}_{code}" if code else key
 
 
-def without_place(path: str) -> str:
-    """A path within its place."""
+def without_prefix(path: str) -> str:
+    """A path within its prefix."""
     rest = _PLACE.sub("", path, count=1)
     return rest if rest.startswith("/") else f"/{rest}"
 
@@ -75,7 +75,7 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
     """The redirection of a page that is asked for at a similar address, without its query.
 
     Args:
-        spreads: whether visitors without a class get places of their own.
+        spreads: whether visitors without a class get prefixes of their own.
     """
     if "Upgrade" in request.headers:
         return None
@@ -83,7 +83,7 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
     if found := _PLACE.match(path):
         rest = path[found.end() :] or "/"
         rest = "/" if rest in _START else f"{rest}{mark}{query}"
-        address = f"/{place_of(path)}{rest}"
+        address = f"/{prefix_of(path)}{rest}"
         return None if address == request.path else _redirect(connection, address)
     if not spreads or path not in _START:
         return None
@@ -98,7 +98,7 @@ def redirection(connection: ServerConnection, request: Request, spreads: bool) -
 
 
 def not_here(connection: ServerConnection) -> Response:
-    """The answer to a websocket at a place that another process serves.
+    """The answer to a websocket under a prefix that another process serves.
 
     It makes nginx pass the request on to the next process (`http_502`, a status that a process uses
     for nothing else); a page asks again every second. A full process answers pages with it, too.

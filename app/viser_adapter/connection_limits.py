@@ -195,14 +195,14 @@ class CountedConnection(ServerConnection):
     Attributes:
         peer: the address at its other end, which may be a proxy's.
         address: the client's, as the limits count it.
-        place: see addresses.py.
+        prefix: see addresses.py.
     """
 
     def __init__(self, *args: Any, connections: ConnectionLimits, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
         self.logger = self.protocol.logger = logging.LoggerAdapter(_log, {})  # holds no connection
         self._connections = connections
-        self.peer = self.address = self.place = ""
+        self.peer = self.address = self.prefix = ""
 
     @property
     def language(self) -> str:

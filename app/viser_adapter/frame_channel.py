@@ -62,14 +62,14 @@ class NodeGroup:
     The handles do not keep the values.
 
     Args:
-        properties: node, property, and its place in the array; a node's properties in succession.
+        properties: node, property, and its span in the array; a node's properties in succession.
     """
 
     def __init__(self, properties: Sequence[tuple[Any, str, slice]]) -> None:
         self._api = properties[0][0]._impl.api
         channel = getattr(self._api._websock_interface.queue_message, "__self__", None)
         self._channel = channel if isinstance(channel, FrameChannel) else None
-        named = [(handle._impl.name, name, place) for handle, name, place in properties]
+        named = [(handle._impl.name, name, span) for handle, name, span in properties]
         self._form = GroupForm(named, self._api._owner_id)
 
     def update(self, numbers: np.ndarray) -> None:

@@ -27,7 +27,7 @@ class GroupForm:
     """Float32 properties of nodes that are always updated together, from one array.
 
     Attributes:
-        properties: node, property, and its place in the array; a node's properties in succession.
+        properties: node, property, and its span in the array; a node's properties in succession.
         owner: of the nodes.
     """
 
@@ -37,7 +37,7 @@ class GroupForm:
     @cached_property
     def encoded(self) -> list[msgspec.Raw]:
         """The messages of an update whose arrays are the first ones of a frame."""
-        numbers = np.zeros(max(place.stop for _, _, place in self.properties), np.float32)
+        numbers = np.zeros(max(span.stop for _, _, span in self.properties), np.float32)
         messages = _serialised(GroupUpdate(self, numbers).messages(), [])
         return [msgspec.Raw(msgspec.msgpack.encode(message)) for message in messages]
 
@@ -62,7 +62,7 @@ class GroupUpdate:
 
     def arrays(self) -> list[np.ndarray]:
         """The numbers of each property."""
-        return [self.numbers[place] for _, _, place in self.group.properties]
+        return [self.numbers[span] for _, _, span in self.group.properties]
 
 
 def expanded(messages: Iterable[Message | GroupUpdate]) -> list[Message]:

@@ -28,7 +28,7 @@ from websockets.http11 import Request, Response
 from websockets.typing import Subprotocol
 
 from onpath.app.common.error_log import log_error
-from onpath.app.viser_adapter.addresses import not_here, place_of, redirection, without_place
+from onpath.app.viser_adapter.addresses import not_here, prefix_of, redirection, without_prefix
 from onpath.app.viser_adapter.connection_limits import ConnectionLimits, Proxies
 from onpath.app.viser_adapter.connections import connection_of
 from onpath.app.viser_adapter.data_channel import FAMILY, SUBPROTOCOL, DataChannel
@@ -84,12 +84,12 @@ def make_server(
     Args:
         allowed_origins: pages of other sites that may connect, "https://lab.example:8443". The
             server's own page always may, and so may clients that are not browsers. With such an
-            address, visitors get places of their own; see addresses.py.
+            address, visitors get prefixes of their own; see addresses.py.
         trusted_proxies: see `app.viser_adapter.connection_limits.Proxies`.
         unix_socket: listen on this file only, for a proxy of the same user that serves the page in
             a folder of its own.
         health, trouble: see `RequestFilter`.
-        elsewhere: whether another process serves a place; a websocket there is answered 502.
+        elsewhere: whether another process serves a prefix; a websocket there is answered 502.
         channel: the data channels of the pages, if they have any.
         course_url: see `page_scripts.words`.
         scripts: elements for the head of the page; see `add_scripts`.
@@ -109,13 +109,13 @@ def make_server(
     local_only = is_loopback(host) and not unix_socket
     door = RequestFilter(allowed_origins, local_only=local_only, health=health, trouble=trouble)
     redirects, spreads = unix_socket is None, bool(door.allowed)
-    to_place = partial(_to_place, redirects=redirects, spreads=spreads, elsewhere=elsewhere)
+    set_prefix = partial(_set_prefix, redirects=redirects, spreads=spreads, elsewhere=elsewhere)
     with _guarded_serve(
         listener=listener,
         requests=door,
         limits=limits,
         counts=connections,
-        to_place=to_place,
+        set_prefix=set_prefix,
         elsewhere=elsewhere,
         channel=DataChannel() if channel is None else channel,
         course_url=course_url,
@@ -162,14 +162,14 @@ def harden(server: viser.ViserServer, *, limits: Limits = Limits()) -> None:
 Answer = Callable[[SecureConnection, Request], Awaitable[Response | None]]
 
 
-def _to_place(
+def _set_prefix(
     connection: SecureConnection,
     request: Request,
     redirects: bool,
     spreads: bool,
     elsewhere: Callable[[str], bool],
 ) -> Response | None:
-    """Set the place of a connection, unless it belongs to another address or process.
+    """Set the prefix of a connection, unless it belongs to another address or process.
 
     Every process has the page. A proxy may send the page and its websocket to different ones, if it
     decides by the whole path.
@@ -182,8 +182,8 @@ def _to_place(
     is_tab = "Upgrade" in request.headers
     if redirects and (response := redirection(connection, request, spreads)):
         return response
-    connection.place, request.path = place_of(request.path), without_place(request.path)
-    return not_here(connection) if is_tab and elsewhere(connection.place) else None
+    connection.prefix, request.path = prefix_of(request.path), without_prefix(request.path)
+    return not_here(connection) if is_tab and elsewhere(connection.prefix) else None
 
 
 def _logged(answer: Answer) -> Answer:
@@ -228,7 +228,7 @@ def _guarded_serve(
     requests: RequestFilter,
     limits: Limits,
     counts: ConnectionLimits,
-    to_place: Callable[[SecureConnection, Request], Response | None],
+    set_prefix: Callable[[SecureConnection, Request], Response | None],
     elsewhere: Callable[[str], bool],
     channel: DataChannel,
     course_url: str,
@@ -248,10 +248,10 @@ def _guarded_serve(
             if answer := requests.refusal(request, connection.peer):  # or the health report
                 return connection.respond(*answer)
             if answer := counts.refusal(connection, request):
-                if elsewhere(place_of(request.path)):
+                if elsewhere(prefix_of(request.path)):
                     return not_here(connection)
                 return connection.respond(*answer)
-            if response := to_place(connection, request):
+            if response := set_prefix(connection, request):
                 return response
             return add_scripts(process_request(connection, request), course_url, scripts)
 

@@ -28,7 +28,7 @@ interface FrameMessage {
 }
 
 /** What a symbol means on each robot: points of a line, or one for a joint. */
-interface LitMessage { is: "lit"; symbol: string; ways: number[][][] }
+interface LitMessage { is: "lit"; symbol: string; lines: number[][][] }
 
 interface PathMessage {
     is: "path"
@@ -188,7 +188,7 @@ export class RemoteEngine implements Engine {
     private past: number | null = null
     private looked: { at: number | null; until: number } | null = null
     private symbol = "" // of joints, whose meaning is asked for
-    private ways: { symbol: string; ways: readonly Vector[][] } = { symbol: "", ways: [] }
+    private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
     private ticket = ""
@@ -260,7 +260,7 @@ export class RemoteEngine implements Engine {
     }
 
     lit(symbol: string, side: number): readonly Vector[] {
-        return symbol && this.ways.symbol === symbol ? this.ways.ways[side] ?? [] : []
+        return symbol && this.symbolLines.symbol === symbol ? this.symbolLines.lines[side] ?? [] : []
     }
 
     /** Ask what a symbol means, and be told as long as the robots move; of joints, only the server knows. */
@@ -308,8 +308,8 @@ export class RemoteEngine implements Engine {
             this.route = new SampledPath(message)
             this.tell("path")
         } else if (message.is === "lit") {
-            const { symbol, ways } = message
-            this.ways = { symbol, ways: ways.map(way => way.map(point => point.map(each => each / LENGTH))) }
+            const { symbol, lines } = message
+            this.symbolLines = { symbol, lines: lines.map(line => line.map(point => point.map(each => each / LENGTH))) }
             this.tell("samples")
         } else if (message.is === "state") {
             this.lab = { ...this.lab, ...message } // which has only what has changed

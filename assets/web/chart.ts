@@ -96,7 +96,7 @@ export class Chart {
         if (this.ghost) this.shadow(ink, this.ghost)
         for (const line of this.lines) {
             ink.setLineDash(line.dashed ? [7, 4] : [])
-            stroke(ink, this.way(line), tones()[line.tone], 2.5)
+            stroke(ink, this.points(line), tones()[line.tone], 2.5)
         }
         ink.setLineDash([])
         this.instant(ink)
@@ -110,7 +110,7 @@ export class Chart {
     }
 
     /** The visible part of a curve. */
-    private way({ times, values }: Curve): Pixel[] {
+    private points({ times, values }: Curve): Pixel[] {
         const [first, last] = [Math.max(firstAfter(times, this.from) - 1, 0), firstAfter(times, this.until) + 1]
         return times.slice(first, last).map((time, i) => [this.x(time), this.y(values[first + i]!)])
     }
@@ -178,18 +178,18 @@ export class Chart {
     }
 
     private shadow(ink: CanvasRenderingContext2D, ghost: Curve): void {
-        const way = this.way(ghost)
-        if (!way.length) return
+        const points = this.points(ghost)
+        if (!points.length) return
         const base = this.y(Math.max(this.axes.bottom, Math.min(0, this.axes.top)))
         const { yours } = tones()
         ink.globalAlpha = 0.14
         ink.fillStyle = yours
         ink.beginPath()
-        for (const [x, y] of [[way[0]![0], base] as const, ...way, [way[way.length - 1]![0], base] as const]) ink.lineTo(x, y)
+        for (const [x, y] of [[points[0]![0], base] as const, ...points, [points[points.length - 1]![0], base] as const]) ink.lineTo(x, y)
         ink.fill()
         ink.globalAlpha = 1
         ink.setLineDash([1, 6])
-        stroke(ink, way, yours, 3.5)
+        stroke(ink, points, yours, 3.5)
         ink.setLineDash([])
     }
 

@@ -14,7 +14,7 @@ const RENEWS = 3000 // [ms] that a page whose ticket was refused waits for anoth
 const REFUSALS = 4 // tickets in a row that are refused, after which the page stays away
 const SLOW = 3000, MUCH = 0.75 // [ms] without a message, or with less than this share of the speed
 const SLEPT = 20_000, WAKES = 10_000 // [ms] between two looks of a page that slept; without a message after that
-const DEAD = 75_000 // [ms] without a message, after which a connection counts as lost
+const DEAD = 75_000, BUILDS = 150_000 // [ms] without a message, after which a connection counts as lost: with a page, and without
 const RELOADED = "onpath-reloaded" // when a page was loaded anew for another version of the lab
 const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; see request_filter.py
 
@@ -65,6 +65,9 @@ export class Connection {
     /** Whether viser's page has come since it was connected last. */
     private get hasPage(): boolean { return this.ticket !== "" && this.ticket !== this.former }
 
+    /** Whether the lab itself says why there is no page: it is full, and the page waits for a place. */
+    private get waits(): boolean { return !this.hasPage && document.querySelector(".mantine-Modal-content") !== null }
+
     /** Look what is missing, and say so; called repeatedly.
      * @param face whether our part of the page is shown */
     look(face: boolean): void {
@@ -94,7 +97,7 @@ export class Connection {
         if (this.hasPage && refused.ticket === this.ticket && now > refused.at + RENEWS) {
             if (refused.times < REFUSALS) this.renew()
             else this.end("refused")
-        } else if (this.quiet > (this.slept ? WAKES : DEAD)) this.renew()
+        } else if (this.quiet > (this.slept ? WAKES : this.hasPage ? DEAD : BUILDS)) this.renew()
     }
 
     /** Count how long nothing has come, or too slowly; a page that stands still itself counts as one look. */
@@ -104,7 +107,7 @@ export class Connection {
             this.heard = engine.heard
             this.quiet = 0
             this.slept = false
-        } else if (this.open && (this.hasPage || this.slept) && document.visibilityState === "visible") this.quiet += gap
+        } else if (this.open && (this.slept || !this.waits) && document.visibilityState === "visible") this.quiet += gap
         const lab = isThere && engine.state.running ? engine.lab! : null
         this.late = lab && lab.achieved < MUCH * lab.rate ? this.late + gap : 0
     }
@@ -116,7 +119,7 @@ export class Connection {
             return this.found ?? (this.wasThere ? "lost" : "opening")
         }
         if (isThere) return Math.max(this.quiet, this.late) > SLOW ? "slow" : null
-        if (!this.hasPage && document.querySelector(".mantine-Modal-content")) return null // the lab says itself why
+        if (this.waits) return null
         if (this.wasThere) return "back"
         return this.hasPage ? "loading" : "building"
     }
@@ -153,6 +156,7 @@ export class Connection {
     }
 
     private hear({ type, versionMismatch }: { type: string; versionMismatch?: boolean }): void {
+        if (!this.hasPage) this.quiet = 0
         if (type === "connected") {
             clearTimeout(this.again)
             this.open = true

@@ -6,7 +6,7 @@ import type { Figure } from "./figure"
 import type { Simulation } from "./simulation"
 import { Transport } from "./transport"
 
-const WAYS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
+const DIRECTIONS: Record<string, Point> = { ArrowRight: [1, 0], ArrowLeft: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }
 
 export function made<T extends keyof HTMLElementTagNameMap>(
     tag: T,
@@ -121,11 +121,11 @@ export class Controls {
             g: ["run", () => page.engine.act({ do: "goOn" })],
             n: ["drag", () => simulation.select(((selected ?? -1) + 1) % followed.data.points.length)],
         }
-        const way = WAYS[event.key]
-        if (selected !== null && way) acts[event.key] = ["drag", () => followed.nudge(selected, ...way)]
+        const direction = DIRECTIONS[event.key]
+        if (selected !== null && direction) acts[event.key] = ["drag", () => followed.nudge(selected, ...direction)]
         if (selected !== null) acts["Escape"] = ["drag", () => simulation.select(null)]
         const [name, act] = acts[event.key] ?? acts[keyOf(event)] ?? []
-        if (!name || !act || !simulation.data.controls.includes(name) || (event.repeat && !way)) return
+        if (!name || !act || !simulation.data.controls.includes(name) || (event.repeat && !direction)) return
         event.preventDefault()
         act()
         this.page.changed()

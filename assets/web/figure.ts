@@ -27,6 +27,7 @@ export class Figure {
     private readonly strip = new Strip(this.data, this.engine, this.ended)
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
+    private readonly late = made("p", "late") // which moves nothing when it comes and goes
     private readonly poles = made("p", "poles")
     readonly controls = new Controls(this.simulation, this, this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
@@ -90,7 +91,7 @@ export class Figure {
         return [
             made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.past, ...brakes)),
             this.note,
-            made("div", "bar", ...(strip.length ? [title] : []), transport.element),
+            made("div", "bar", ...(strip.length ? [title, this.late, transport.element] : [transport.element, this.late])),
             ...strip,
             controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),
@@ -124,9 +125,10 @@ export class Figure {
         const captions = engine.texts.map(text => (past === null ? text.caption : ""))
         this.captions.forEach((element, i) => tell(element, captions[i]!))
         const late = engine.lost > LATE ? said(data, "standalone.late") : ""
-        const note = [notes(simulation), late].filter(Boolean).join(" ")
+        const note = notes(simulation)
         tell(this.note, note)
-        this.say(captions, note)
+        tell(this.late, late)
+        this.say(captions, `${note} ${late}`.trim())
     }
 
     /** Announce what robots do when it changes, and from time to time their millimetres. */
@@ -184,14 +186,14 @@ export class Figure {
         const { simulation, inLesson, ended: signal } = this
         let pulling = "" // the key that pulls
         addEventListener("keydown", event => {
-            const key = keyOf(event), way = PULLS[key]
+            const key = keyOf(event), direction = PULLS[key]
             if (isTyped(event) || (event.repeat && !inLesson)) return
             if (inLesson && key === "x") simulation.pull(null)
-            if (!way) return
+            if (!direction) return
             pulling = key
             const [x, y] = (inLesson && simulation.sides.find(side => side.pulledBy)?.pulledBy) || [0, 0]
             const step = inLesson ? FURTHER : PULL
-            simulation.pull([x + step * way[0], y + step * way[1]])
+            simulation.pull([x + step * direction[0], y + step * direction[1]])
         }, { capture: true, signal }) // also while a slider has the focus
         addEventListener("keyup", event => !inLesson && keyOf(event) === pulling && simulation.pull(null), { capture: true, signal })
         addEventListener("blur", () => simulation.pull(null), { signal })

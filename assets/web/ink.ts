@@ -34,7 +34,7 @@ export class Sheet {
     height = 0
     private magnified = 1
     private box = { width: 0, height: 0 }
-    // The browser then draws in memory: without a graphics card, the other way costs ten times as much.
+    // The browser then draws in memory: without a graphics card, the other points costs ten times as much.
     private readonly ink = this.canvas.getContext("2d", { willReadFrequently: true })
 
     /** `changed`: everything is to be drawn anew. */
@@ -75,11 +75,11 @@ export class Sheet {
     }
 }
 
-export function stroke(ink: CanvasRenderingContext2D, way: readonly Pixel[], colour: string, width: number): void {
+export function stroke(ink: CanvasRenderingContext2D, points: readonly Pixel[], colour: string, width: number): void {
     ink.strokeStyle = colour
     ink.lineWidth = width
     ink.beginPath()
-    for (const [x, y] of way) ink.lineTo(x, y)
+    for (const [x, y] of points) ink.lineTo(x, y)
     ink.stroke()
 }
 

@@ -19,14 +19,15 @@ import { StartPage } from "./start"
 import { shapesOf } from "./symbols"
 
 async function showFigure(data: FigureData, place: HTMLElement): Promise<void> {
-    place.replaceChildren() // the text for browsers without scripts
+    const still = [...place.querySelectorAll("img")]
+    place.replaceChildren() // also the text for browsers without scripts
     try {
         const simulation = new Simulation(data, await Kernels.from(data.module))
         // For an enclosing page, and for tests: advance(ticks), simulation.hold(true) and so on.
         Object.assign(window, { onpath: new Figure(simulation, place) })
         if (parent !== window) tellHeight()
     } catch (error) {
-        place.replaceChildren(refused(data, error))
+        place.replaceChildren(refused(data, error), ...still)
     }
 }
 
@@ -35,6 +36,7 @@ function tellHeight(): void {
     const observer = new ResizeObserver(entries => {
         const height = Math.ceil(entries[entries.length - 1]!.borderBoxSize[0]!.blockSize)
         parent.postMessage({ onpath: "height", height }, "*")
+        if (frameElement?.hasAttribute("srcdoc")) (frameElement as HTMLElement).style.height = `${height}px` // a notebook's
     })
     observer.observe(document.documentElement)
 }

@@ -24,7 +24,7 @@ export const AT_JOINTS: readonly string[] = ["q_1", "q_2", "delta", "rho"]
 
 export interface Shape {
     kind: "line" | "arrow" | "spring" | "damper" | "ring"
-    way: Point[]
+    points: Point[]
 }
 
 const LONG = 0.03 // [m], of a unit vector
@@ -35,26 +35,26 @@ const COILS = 7
 /** The shapes of a symbol; none if this robot has no such thing. */
 export function shapesOf(symbol: string, seen: Seen): Shape[] {
     const { tip, closest, reference, outline, joints } = seen
-    const line = (...way: Point[]): Shape[] => [{ kind: "line", way }]
-    const arrow = (from: Point, to: Point): Shape[] => [{ kind: "arrow", way: [from, to] }]
+    const line = (...points: Point[]): Shape[] => [{ kind: "line", points }]
+    const arrow = (from: Point, to: Point): Shape[] => [{ kind: "arrow", points: [from, to] }]
     const tied = reference ?? closest // the spring K1 pulls the end-point there
     switch (symbol) {
         case "lambda": case "xi_1": case "d": return line(closest, tip)
         case "theta": return line(...along(seen, closest))
         case "theta_r": return reference ? line(...along(seen, reference)) : []
         case "e": return reference ? arrow(reference, tip) : []
-        case "y": return [{ kind: "ring", way: [tip] }]
+        case "y": return [{ kind: "ring", points: [tip] }]
         case "sigma": return line(...outline)
         case "T": return arrow(closest, moved(closest, tangent(seen), LONG))
         case "N": return arrow(closest, moved(closest, turned(tangent(seen)), LONG))
         case "F": return away(tip, seen.pushed) > 0 ? arrow(tip, seen.pushed) : []
-        case "K_1": return [{ kind: "spring", way: [tied, tip] }]
-        case "K_2": return [{ kind: "damper", way: [tied, tip] }]
-        case "K_4": return reference ? [] : [{ kind: "spring", way: [moved(tip, tangent(seen), PIECE), tip] }]
-        case "K_5": return reference ? [] : [{ kind: "damper", way: [moved(tip, tangent(seen), PIECE), tip] }]
+        case "K_1": return [{ kind: "spring", points: [tied, tip] }]
+        case "K_2": return [{ kind: "damper", points: [tied, tip] }]
+        case "K_4": return reference ? [] : [{ kind: "spring", points: [moved(tip, tangent(seen), PIECE), tip] }]
+        case "K_5": return reference ? [] : [{ kind: "damper", points: [moved(tip, tangent(seen), PIECE), tip] }]
     }
-    const way = joints[symbol] ?? []
-    return way.length ? [{ kind: way.length > 1 ? "line" : "ring", way }] : []
+    const points = joints[symbol] ?? []
+    return points.length ? [{ kind: points.length > 1 ? "line" : "ring", points }] : []
 }
 
 /** What the symbols of joints mean on a five-bar. */
@@ -70,8 +70,8 @@ export function jointsOfFiveBar(base: Point, elbow: Point, short: Point, tip: Po
 /** Draw shapes in one colour; `pixel` converts from metres. */
 export function drawShapes(ink: CanvasRenderingContext2D, shapes: Shape[], pixel: (point: Point) => Point, colour: string): void {
     ink.lineCap = ink.lineJoin = "round"
-    for (const { kind, way } of shapes) {
-        const at = way.map(pixel)
+    for (const { kind, points } of shapes) {
+        const at = points.map(pixel)
         if (kind === "ring") trace(ink, circle(at[0]!, 12), colour)
         else if (kind === "line") trace(ink, at.length && size(at) < 3 ? circle(at[0]!, 4) : at, colour)
         else if (kind === "arrow") for (const part of arrowhead(at[0]!, at[1]!)) trace(ink, part, colour)
@@ -80,9 +80,9 @@ export function drawShapes(ink: CanvasRenderingContext2D, shapes: Shape[], pixel
 }
 
 /** A line with a white rim, so that it is seen on the robot, too. */
-function trace(ink: CanvasRenderingContext2D, way: Point[], colour: string): void {
-    stroke(ink, way, "#ffffffd0", 8)
-    stroke(ink, way, colour, 4)
+function trace(ink: CanvasRenderingContext2D, points: Point[], colour: string): void {
+    stroke(ink, points, "#ffffffd0", 8)
+    stroke(ink, points, colour, 4)
 }
 
 /** The path from θ = 0, or from its beginning if it is open, to a point on it. */
@@ -150,7 +150,7 @@ function circle([x, y]: Point, radius: number): Point[] {
 }
 
 const away = (a: Point, b: Point): number => Math.hypot(a[0] - b[0], a[1] - b[1])
-const size = (way: Point[]): number => Math.max(...way.map(point => away(point, way[0]!)))
+const size = (points: Point[]): number => Math.max(...points.map(point => away(point, points[0]!)))
 const direction = (from: Point, to: Point): number => Math.atan2(to[1] - from[1], to[0] - from[0])
-const moved = (from: Point, way: Point, by: number): Point => [from[0] + by * way[0], from[1] + by * way[1]]
+const moved = (from: Point, along: Point, by: number): Point => [from[0] + by * along[0], from[1] + by * along[1]]
 const turned = ([x, y]: Point): Point => [-y, x]

@@ -1342,9 +1342,11 @@ stop-because = { $reason }. Vermutliche Ursache: { $causes }
 efforts-stated = Größte Drehmomente der Motoren laut seiner Datei: { $limits }.
 efforts-exceeded = der Motor von { $joint } gab { $gave }, mehr als die { $limit }, die in der Datei des Roboters stehen; mit einer Motorgrenze von 100 % gibt er nicht mehr
 caution-flexible = Mit { $rate } Regeleingriffen je Sekunde ist der biegsame Roboter auch unberührt nicht stabil: Er wird nach wenigen Sekunden stehen bleiben. Wähle mindestens { $slowest } Hz
+caution-flexible_weak = Hinter Drehgebern oder Rauschen braucht das Gesetz für die Spitze des biegsamen Balkens mehr als { $limit } N m: Die Spitze kann sich aufschaukeln, und der Roboter stehen bleiben. Wähle eine höhere Grenze oder keine
 forecast-singular = die Entkopplungsmatrix ist am Start singulär: Dort können die Motoren den Ausgang aus der Ruhe nicht in jede Richtung beschleunigen, sodass es für das, was das Regelgesetz verlangt, keine Drehmomente gibt
 forecast-no_rest = der Roboter kann am Start nicht ruhen: Seine Koordinaten ohne Motor setzen sich in Bewegung, was immer die Motoren tun
 forecast-unstable = die Nulldynamik ist instabil: Während der Ausgang auf der Bahn bleibt, wächst die Bewegung der Koordinaten ohne Motor, anfangs alle { $time } s auf das Zehnfache (Exponent { $rate } 1/s)
+forecast-exhausted = schon Stillstehen braucht auf dieser Bahn { $share } % der Drehmomentgrenze: gegen die Schwerkraft und wegen der Messfehler. Für die Bewegung bleibt zu wenig: Der Roboter kann von der Bahn abkommen und stehen bleiben
 forecast-unmodelled = die Bahnfolgeregelung kann hier weiter von ihrer Bahn abkommen als die Nachlaufregelung: Ihre Geschwindigkeiten kommen aus dem Modell des Reglers, und es gibt einen Fehler darin, eine Nutzlast, Reibung, Rechenzeit oder eine Drehmomentgrenze
 cause-poles_across = diese Verstärkungen sind quer zur Bahn bei dieser Regelrate und Verzögerung instabil (K2 oder K3 senken oder die Rate erhöhen)
 cause-poles_along = diese Verstärkungen sind längs der Bahn bei dieser Regelrate und Verzögerung instabil (K5 senken oder die Rate erhöhen)
@@ -1542,8 +1544,8 @@ error-share_strange = Dieser Code enthält Dinge, die kein Labor hat.
 error-share_does_not_fit = Dieser Code passt nicht zu diesem OnPath: { $error }.
 error-no_such_lab = zu diesem Code gibt es kein Labor
 error-lab_is_open = dieses Labor ist in einem anderen Fenster offen: Schließe erst jenes
-error-session_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
-error-session_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor; einer sieht aus wie { $example }
+error-lab_code_length = der Code eines Labors hat { $length } Buchstaben und Ziffern, wie { $example }
+error-lab_code_letters = das ist kein Code eines Labors: 0, 1, i, l und o kommen in keinem vor; einer sieht aus wie { $example }
 
 ## Ablehnungen: was in einer Datenbank gespeichert wird (app/storage)
 
@@ -1579,11 +1581,16 @@ standalone-hint_hold = Die Roboter festhalten und vergleichen. Wer an der Linie 
 standalone-hint_pull = Mit der Maus oder einem Finger an einer Spitze ziehen. Wer an der Linie unten zieht, blickt zurück.
 standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
 standalone-law = Gesetz
-standalone-late = Die simulierte Zeit hinkt nach: Dieses Gerät ist zu langsam, um in Echtzeit zu zeichnen.
+standalone-late = Die Zeit hinkt nach: Das Gerät ist zu langsam.
 standalone-coincide = zwei Kontrollpunkte würden zusammenfallen
 standalone-selected = Kontrollpunkt { $number } von { $all } ist gewählt: Mit den Pfeiltasten wird er bewegt.
 standalone-drag_hint = Die Punkte der Bahn lassen sich ziehen; die Taste N wählt den nächsten, und die Pfeiltasten bewegen ihn.
 standalone-no_script = Diese Abbildung braucht JavaScript, das hier ausgeschaltet oder von der Content-Security-Policy des Servers verboten ist.
+standalone-only_picture = Ein Bild des Aufgezeichneten. Die Roboter bewegen sich hier nicht: { $reason }
+standalone-still = Die Roboter in ihrem größten Abstand von der Bahn und der Abstand über der Zeit: { $laws }
+standalone-still_robot =
+    { $law }
+    bis zu { $far } mm von der Bahn
 standalone-refused = Diese Abbildung läuft hier nicht: Sie braucht WebAssembly. Wenn der Browser es hat, verbietet es der Server: Seine Content-Security-Policy muss dann 'wasm-unsafe-eval' in script-src erlauben. ({ $reason })
 standalone-description = Eine Simulation, die in dieser Seite läuft: { $laws }
 

@@ -915,7 +915,7 @@ identified-other_robot = Identification works with the five-bar linkage only: ch
 report-title = Record of my lessons
 report-made = Made on { $date }
 report-date = %Y-%m-%d at %H:%M
-report-code = session code { $code }
+report-code = lab code { $code }
 report-point = .
 report-none = No lesson has been opened yet.
 report-lesson = Lesson
@@ -988,9 +988,11 @@ stop-because = { $reason }. Likely cause: { $causes }
 efforts-stated = Largest torques of the motors by its file: { $limits }.
 efforts-exceeded = the motor of { $joint } gave { $gave }, more than the { $limit } that the robot's file states; with a torque limit of 100 % it gives no more
 caution-flexible = With { $rate } control actions a second, the flexible link is not even stable untouched: it will stop within seconds. Choose at least { $slowest } Hz
+caution-flexible_weak = Behind encoders or noise, the law for the tip of the flexible link asks for more than { $limit } N m: the tip may swing, and the robot stop. Choose a higher limit, or none
 forecast-singular = the decoupling matrix is singular at the start: from rest there, the motors cannot accelerate the output in every direction, so that no torques give the motion that the law asks for
 forecast-no_rest = the robot cannot rest at the start: its coordinates without a motor begin to move, whatever the motors do
 forecast-unstable = the zero dynamics are unstable: while the output stays on the path, the motion of the coordinates without a motor grows, at first tenfold every { $time } s (exponent { $rate } 1/s)
+forecast-exhausted = standing still on this path already takes { $share } % of the torque limit, for gravity and for what the errors of the sensors ask for. Too little is left for the motion: the robot may leave its path and stop
 forecast-unmodelled = path following may get farther from its path than the tracker here: its velocities come from the controller's model, and there is an error in it, a payload, friction, a delay or a torque limit
 cause-poles_across = these gains are unstable across the path at this control rate and delay (lower K2 or K3, or raise the rate)
 cause-poles_along = these gains are unstable along the path at this control rate and delay (lower K5, or raise the rate)
@@ -1167,7 +1169,7 @@ error-svg_doctype = line { $line }: a DOCTYPE and entities are not read; delete 
 error-svg_large = line { $line }: the drawing has more than { $most } elements, or more than { $deepest } nested in each other
 error-svg_shape = line { $line }: this { $tag } cannot be read ({ $reason })
 
-## Refusals: share codes and session codes
+## Refusals: share codes and lab codes
 
 error-share_too_long = This text is much too long: a share code has a few hundred characters.
 error-share_missing = There is no share code in this text: it begins with ONPATH{ $version }-.
@@ -1180,8 +1182,8 @@ error-share_strange = This share code contains things that no lab has.
 error-share_does_not_fit = This share code does not fit this version of OnPath: { $error }.
 error-no_such_lab = there is no lab with this code
 error-lab_is_open = this lab is open in another window: close that one first
-error-session_code_length = a session code has { $length } letters and digits, like { $example }
-error-session_code_letters = this is not a session code: 0, 1, i, l and o do not occur in one; one looks like { $example }
+error-lab_code_length = a lab code has { $length } letters and digits, like { $example }
+error-lab_code_letters = this is not a lab code: 0, 1, i, l and o do not occur in one; one looks like { $example }
 
 ## Refusals: what is kept in a database (app/storage)
 
@@ -1217,11 +1219,16 @@ standalone-hint_hold = Hold the robots back, and compare. Drag the line below to
 standalone-hint_pull = Pull an end-point with the mouse or a finger. Drag the line below to look back.
 standalone-scene = The robot under the law { $law }, drawn from the side
 standalone-law = Law
-standalone-late = Simulated time runs late: this device is too slow to draw in real time.
+standalone-late = Time runs late: this device is too slow.
 standalone-coincide = two control points would coincide
 standalone-selected = Control point { $number } of { $all } is selected: move it with the arrow keys.
 standalone-drag_hint = Drag the points of the path, or press N to select the next one and move it with the arrow keys.
 standalone-no_script = This figure needs JavaScript, which is switched off here or forbidden by the Content-Security-Policy of the server.
+standalone-only_picture = A picture of what was recorded. The robots do not move here: { $reason }
+standalone-still = The robots at their largest distance from the path, and the distance over time: { $laws }
+standalone-still_robot =
+    { $law }
+    up to { $far } mm from the path
 standalone-refused = This figure does not run here: it needs WebAssembly. If your browser has it, the server forbids it: its Content-Security-Policy then has to allow 'wasm-unsafe-eval' in script-src. ({ $reason })
 standalone-description = A simulation that runs in this page: { $laws }
 

@@ -21,12 +21,12 @@ def question_before(steps: Sequence[Step], index: int, block: int = 0) -> tuple[
     """The latest question above a block of a step, with its key in the notes; None without one."""
     for at in range(index, -1, -1):
         blocks = steps[at].blocks[:block] if at == index else steps[at].blocks
-        for place in range(len(blocks) - 1, -1, -1):
-            question = blocks[place]
+        for block_index in range(len(blocks) - 1, -1, -1):
+            question = blocks[block_index]
             if isinstance(question, Choice):
                 return str(at), question
             if isinstance(question, Quiz | NumberQuestion):
-                return f"{at}.{place}", question
+                return f"{at}.{block_index}", question
     return None
 
 

@@ -114,10 +114,10 @@ def _parts(place: str) -> tuple[str, str]:
 def _value(kind: str, steps: Sequence[Step], index: int, notes: Notes, words: Words) -> str:
     """The latest answer of a kind up to a step, as HTML; empty if there is none."""
     for at in range(index, -1, -1):
-        for place, block in enumerate(steps[at].blocks):
+        for block_index, block in enumerate(steps[at].blocks):
             answer = (notes.second if str(at) in notes.asked_again else notes.answers).get(str(at))
             if isinstance(block, NumberQuestion) and kind == "number":
-                given = notes.numbers.get(f"{at}.{place}")
+                given = notes.numbers.get(f"{at}.{block_index}")
                 return "" if given is None else words.number(given)
             if isinstance(block, Sketch) and kind.startswith("sketch"):
                 values = () if answer is None else answer.values

@@ -117,13 +117,33 @@ class CalledLoop(Loop):
         state, rows = self.run(states[0], settings[0], tables[0], ticks)
         return state[None], rows[None]
 
+    def check(self, state: Array, settings: Array, table: Array) -> None:
+        """Call a new copy of the function at the start of a run.
+
+        Raises:
+            CodedError: it fails, or what it returns is not a command; with file and line.
+        """
+        given = self.layouts.settings.unpack(settings)
+        span = float(given["hold_ticks"][0]) * float(given["dt"][0])
+        basis = self._basis(state[: self._changed], settings)[0]
+        values = table.reshape(self._table_shape, order="F") @ basis
+        assert self._law.called is not None and self._law.origin is not None
+        try:
+            seen = self._seen(state[: self._changed], settings, values, 0, span)
+            _command(self._law.called()(seen), self._p)
+        except (Exception, SystemExit) as error:
+            raise error_in(self._law.name, error, *self._law.origin) from None
+
     def _begin(self, state: Array) -> None:
         """Restore the law's memory if the run begins again in the state of its last beginning."""
         if self._before is not None and np.array_equal(self._before[0], state):
             self._now = self._before[1]
         if self._now is None:
             self._now = self._made()
-        self._before = state.copy(), copy.deepcopy(self._now)
+        try:
+            self._before = state.copy(), copy.deepcopy(self._now)
+        except Exception as error:  # of whatever the law keeps
+            self._now.failure = self._reason(TypeError(f"its memory cannot be copied: {error}"))
 
     def _made(self) -> _Progress:
         assert self._law.called is not None
@@ -172,11 +192,11 @@ def _command(given: Any, p: int) -> Array:
     """
     form = f"{p} finite numbers, θ'' and λ''" + ("" if p == 2 else " in each normal direction")
     try:
-        numbers = np.asarray(given, dtype=float)
-    except (TypeError, ValueError):
+        numbers = np.asarray(given)
+    except ValueError:
         raise ValueError(f"it returned {given!r:.60}, not {form}") from None
-    valid = numbers.shape == (p,) and (np.abs(numbers) < LARGEST_NUMBER).all()  # NaN fails too
-    if not valid:
+    real = numbers.dtype.kind in "iuf"  # no texts, and nothing complex
+    if numbers.shape != (p,) or not real or not (np.abs(numbers) < LARGEST_NUMBER).all():  # or NaN
         raise ValueError(f"it returned {given!r:.60}, not {form}")
     return numbers
 

@@ -16,6 +16,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.errors import Message
 from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.efforts import exceeded
 from onpath.models.systems.parameters import Parameters, declared, time_step
 from onpath.models.systems.robots import NOT_FINITE, Robot
 
@@ -147,6 +148,8 @@ def _seen(
         causes.append(Message("cause.limit", {"limit": f"{limit:g}", "unit": unit}))
     if (force := np.linalg.norm(last["force"], axis=1).max()) > PULLED:
         causes.append(Message("cause.force", {"force": f"{force:.0f}"}))
+    if limit == 0 and (more := exceeded(robot, np.abs(last["u"]).max(axis=0))) is not None:
+        causes.append(more)
     turned = np.abs(last["theta_rate"]).max() / parameters.control_rate
     if last["far"].max() > 0 and not known:
         fast = Message("cause.turned", {"turned": f"{turned:.2g}"})

@@ -6,8 +6,9 @@ mathematics. Positions in the picture are (right, up), [m], seen from far away.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
+from types import MappingProxyType
 
 import casadi as ca
 import numpy as np
@@ -26,7 +27,8 @@ REFINEMENTS = 4
 Lift = Callable[[ca.SX, bool], ca.SX]
 
 
-def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
+@lru_cache(maxsize=16)
+def page_functions(robot: Robot, kind: Kind) -> Mapping[str, ca.Function]:
     """The functions for a robot on paths of a kind.
 
     All points y are those of the output space, (p, 1), [m]; `table` is `Curve.table`, `grid` has
@@ -55,7 +57,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
     tangent = lift(local.first, True)
     force = ca.SX.sym("force", system.p)
     tip = ca.vec(ca.densify(bars))[-3:]  # in the robot's frame
-    return {
+    functions = {
         "picture": ca.Function("picture", [q], [_dense(seen @ bars), _dense(seen @ joints)]),
         "tip": ca.Function("tip", [q], [_dense(_unplaced(robot, tip))]),
         "place": place,
@@ -66,6 +68,7 @@ def page_functions(robot: Robot, kind: Kind) -> dict[str, ca.Function]:
         "fault": _fault(robot),
         "hand": _hand(robot, kind, seen, y),
     }
+    return MappingProxyType(functions)
 
 
 def measurements(robot: Robot, parameters: Parameters) -> dict[str, ca.Function]:
@@ -85,16 +88,9 @@ def grid_of(robot: Robot, curve_points: Array) -> Array:
 
 
 def view_of(robot: Robot) -> tuple[ca.DM, ca.DM]:
-    """The projection from the robot's frame to the picture, (2, 3), and `place` of y = 0.
-
-    A robot that moves in the vertical plane is seen at right angles to it.
-    """
-    drawing, flat = robot.drawing, robot.system.p == 2
-    up, turn = (0.0, 0.0) if flat else (drawing.elevation, drawing.azimuth)
-    right = [np.cos(turn), np.sin(turn), 0.0]
-    above = [-np.sin(turn) * np.sin(up), np.cos(turn) * np.sin(up), np.cos(up)]
-    seen = ca.DM([right, above])
-    return seen, seen @ ca.DM(robot.place(np.zeros(robot.system.p)))
+    """`Robot.seen`, (2, 3), and `place` of y = 0."""
+    seen = ca.DM(robot.seen)
+    return seen, seen @ ca.DM(robot.position(np.zeros(robot.system.p)))
 
 
 def front_of(robot: Robot) -> Array:
@@ -115,7 +111,7 @@ def placed(robot: Robot, vector: ca.SX, seen: ca.DM) -> ca.SX:
 
 
 def _unplaced(robot: Robot, point: ca.SX) -> ca.SX:
-    """`Robot.unplace`."""
+    """`Robot.output_at`."""
     return ca.DM(robot.axes) @ (point - ca.DM(robot.home))
 
 

@@ -122,6 +122,9 @@ def look_ahead(
     Measured with the rigid five-bar at 100 Hz from 1 s to 6 s, for h = 0.5 and 5 ms, K1 = 400: mean
     speed 1.9 % too high and 0.07 % too low; largest distance 0.10 and 0.06 mm; stable up to K2 =
     181.5 and 98.
+    Behind encoders of 2000 steps, noise of 1e-4 rad and an observer: 1.8 % too high and 0.1 % too
+    low; 0.3 mm; the arm stands the same K2 as with exact measurements, within 3 %. A filter leaves
+    15 and 11 % and 1 mm.
 
     Args:
         q, v: as measured, (n, 1).

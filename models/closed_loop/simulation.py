@@ -139,6 +139,11 @@ _kernel, _typed_kernel = lru_cache(maxsize=MOST)(_built), lru_cache(maxsize=MOST
 """Separate caches, so that typed laws cannot displace the kernels of the registry's laws."""
 
 
+def forget_kernels() -> None:
+    """Build kernels again: a law's name means another law now."""
+    _kernel.cache_clear()
+
+
 def settings_vector(
     robot: Robot, layouts: LoopLayouts, parameters: Parameters, curve: Curve, push: Push
 ) -> Array:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from onpath.models.arrays import Array
+from onpath.models.control.laws.registry import law_named
 from onpath.models.layout import Layout
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.distance import path_distance
@@ -34,6 +35,7 @@ class Trajectory:
         stopped_at: time at which the run was stopped as diverged, [s], or None.
         reason: the reason for the stop, or "".
         level_set: whether the first component of ξ is s(y), [m²], instead of a distance, [m].
+        label: the law's label, which is known even where the law is not.
     """
 
     law: str
@@ -45,6 +47,7 @@ class Trajectory:
     stopped_at: float | None = None
     reason: str = ""
     level_set: bool = False
+    label: str = ""
 
     def thinned(self) -> Trajectory:
         """The record with one row per millisecond, whatever the tick was."""
@@ -81,6 +84,7 @@ def join(law: str, parts: list[Trajectory]) -> Trajectory:
         speed=np.concatenate([part.speed for part in parts]),
         held=np.concatenate([part.held for part in parts]),
         level_set=parts[-1].level_set,
+        label=parts[-1].label,
     )
 
 
@@ -113,6 +117,7 @@ def record(
         distance=np.concatenate(distance),
         speed=fields["speed"][:, 0],
         held=np.concatenate(held),
+        label=law_named(law).label,
     )
 
 
@@ -160,6 +165,20 @@ def header(
     ]
 
 
+def numbers_of(robot: Robot, run: Trajectory, measured: bool) -> Array:
+    """The columns of the CSV after that of the law, see `header`, one row per millisecond.
+
+    Args:
+        measured: whether there are columns for the measured joint angles.
+    """
+    f = run.fields
+    names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
+    seen = [f[name] for name in names]
+    sensed = [f.get(MEASURED, f["q"][:, : robot.system.joints])] if measured else []  # exact: q
+    held = run.held.astype(float)
+    return np.column_stack([*seen, run.distance, f["u"], f["force"], held, *sensed])
+
+
 def write_csv(
     file: TextIO,
     robot: Robot,
@@ -175,17 +194,11 @@ def write_csv(
     """
     writer = csv.writer(file, lineterminator="\n")
     runs = list(trajectories)
-    level_set, measured = (run.level_set for run in runs), (MEASURED in run.fields for run in runs)
-    read = any(measured)
-    writer.writerow(header(robot, any(level_set), sides is not None, read))
+    read = any(MEASURED in run.fields for run in runs)
+    level_set = any(run.level_set for run in runs)
+    writer.writerow(header(robot, level_set, sides is not None, read))
     for number, run in enumerate(runs):
-        f = run.fields
-        names = ("q", "v", "y", "theta", "theta_rate", "xi", "xi_rate", "theta_ref", "speed_ref")
-        seen = [f[name] for name in names]
-        sensed = (
-            [f.get(MEASURED, f["q"][:, : robot.system.joints])] if read else []
-        )  # exact: as they are
-        columns = np.column_stack([*seen, run.distance, f["u"], f["force"], run.held, *sensed])
+        columns = numbers_of(robot, run, read)
         law = f'"{run.law}"' if "," in run.law else run.law
         name = law if sides is None else f"{sides[number]},{law}"
         line = f"%.9g,{name}{',%.9g' * columns.shape[1]}\n"

@@ -11,8 +11,9 @@ Outside [-π, π] an open curve continues along its end tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -72,6 +73,10 @@ class Curve:
     def _drawn(self) -> Array:
         """Points from θ = -π to π, shape (n, d), [m]."""
         return self.at(np.linspace(-np.pi, np.pi, 181))
+
+    def data(self) -> dict[str, Any]:
+        """The curve by the names of its attributes."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
 
     @property
     def dimension(self) -> int:
@@ -302,6 +307,12 @@ def chebyshev_curve(coefficients: Array) -> Curve:
         table[: len(derived)] = derived / np.pi**order
         orders.append(table)
     return Curve(False, _by_terms(orders))
+
+
+def curve_from(data: Mapping[str, Any]) -> Curve:
+    """The inverse of `Curve.data`, to the last bit of what is computed from it."""
+    values: dict[str, Any] = {**data, "series": _by_terms([*data["series"]])}
+    return Curve(**values)
 
 
 def _by_terms(orders: list[Array]) -> Array:

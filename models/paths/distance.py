@@ -12,8 +12,9 @@ from onpath.models.arrays import Array
 from onpath.models.paths.curves import Curve, local_minima, nearest
 from onpath.models.paths.frames import Frame, Plane
 
-CHUNK = 4096  # points per array operation, which bounds the memory
+CHUNK = 1024  # points per array operation, which stay in the processor's cache
 MOST = 4  # local minima of a distance that are refined
+STILL = 1e-7  # [rad]; Newton's next step from a smaller one is lost in rounding
 NEAR = 0.1  # [rad], largest correction of a guess for which its Taylor polynomial is trusted
 
 
@@ -48,22 +49,28 @@ def _minima(
     """
     grid = curve.sample(samples)
     step = float(grid[1] - grid[0])
-    row, column = _candidates(_squared(y, frame.lift(curve.at(grid))))
+    row, column = _candidates(_squared(y, frame.lift(curve.at(grid))), curve.closed)
     each, theta = y[row], grid[column]
-    for _ in range(3):
-        theta = _refined(frame, curve, each, theta, step)[0]
-    return row, theta, np.linalg.norm(frame.lift(curve.at(theta)) - each, axis=1)
+    theta, distance = _refined(frame, curve, each, theta, step)
+    moving = np.arange(len(theta))
+    for _ in range(2):
+        found, distance[moving] = _refined(frame, curve, each[moving], theta[moving], step)
+        moved = np.abs(found - theta[moving]) > STILL
+        theta[moving] = found
+        moving = moving[moved]
+    gap = frame.lift(curve.at(theta[moving])) - each[moving]
+    distance[moving] = np.sqrt(_dot(gap, gap))
+    return row, theta, distance
 
 
-def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+def _candidates(squared: Array, closed: bool) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows and columns of each row's local minima, row by row, (n, k) -> two of shape (m,)."""
-    is_lowest = np.ones(squared.shape, dtype=bool)
-    rising = squared[:, :-1] <= squared[:, 1:]
-    is_lowest[:, :-1] &= rising
-    is_lowest[:, 1:] &= squared[:, 1:] <= squared[:, :-1]
+    rises = squared[:, :-1] <= squared[:, 1:]
+    ends = (squared[:, -1:] <= squared[:, :1]) if closed else np.ones((len(squared), 1), bool)
+    after, before = np.hstack([rises, ends]), np.hstack([~ends if closed else ends, ~rises])
+    is_lowest = after & before
     count = is_lowest.sum(axis=1)
-    alone = len(squared) == 1  # for one row, BLAS differs in the last bit
-    if not alone and count.min() > 0 and count.max() <= MOST:
+    if count.min() > 0 and count.max() <= MOST:
         row, column = np.nonzero(is_lowest)
         return row, column
     column = local_minima(squared, MOST)
@@ -71,11 +78,9 @@ def _candidates(squared: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 
 def _squared(y: Array, points: Array) -> Array:
-    """Squared distances of all y, (n, p), to all points, (k, p): (n, k)."""
-    squared = (y[:, None, 0] - points[:, 0]) ** 2
-    for axis in range(1, y.shape[1]):
-        squared += (y[:, None, axis] - points[:, axis]) ** 2
-    return squared
+    """Squared distances of all y, (n, p), to all points, (k, p), less |y|²: (n, k)."""
+    sizes = (points**2).sum(axis=1)
+    return np.column_stack([np.ones(len(y)), -2.0 * y]) @ np.vstack([sizes, points.T])
 
 
 def _beyond_the_ends(frame: Frame, curve: Curve, y: Array) -> Array:
@@ -194,8 +199,16 @@ def _refined(
     for _ in range(2):
         gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
         tangent = first + step * (second + step / 2 * third)
-        squared = (tangent**2).sum(-1)
-        slope = np.maximum(squared + (gap * (second + step * third)).sum(-1), least * squared)
-        step = np.clip(step - ((gap * tangent).sum(-1) / slope)[..., None], -reach, reach)
+        squared = _dot(tangent, tangent)
+        slope = np.maximum(squared + _dot(gap, second + step * third), least * squared)
+        step = np.clip(step - (_dot(gap, tangent) / slope)[..., None], -reach, reach)
     gap = point + step * (first + step / 2 * (second + step / 3 * third)) - y
-    return theta + step[..., 0], np.sqrt((gap**2).sum(-1))
+    return theta + step[..., 0], np.sqrt(_dot(gap, gap))
+
+
+def _dot(a: Array, b: Array) -> Array:
+    """Products of vectors, (..., p) -> (...); much faster than `sum` along so short an axis."""
+    products = a[..., 0] * b[..., 0]
+    for axis in range(1, a.shape[-1]):
+        products += a[..., axis] * b[..., axis]
+    return products

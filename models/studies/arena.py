@@ -16,6 +16,7 @@ from functools import lru_cache
 from typing import Any
 from zlib import crc32
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -113,6 +114,21 @@ class Result:
     def row(self) -> Row:
         """The row of the table that it belongs to."""
         return self.law, self.remedy
+
+    def data(self) -> dict[str, Any]:
+        """What the run has given, as numbers and texts."""
+        reason = self.reason
+        told = msgspec.to_builtins(reason) if isinstance(reason, Message) else reason
+        measures = {name: getattr(self, name) for name in (*STEPS, "stopped_at_s")}
+        return {**measures, "reason": told, "shown": self.shown.tolist()}
+
+
+def result_from(data: Mapping[str, Any], row: Row, trial: Trial) -> Result:
+    """The inverse of `Result.data`."""
+    told, shown = data["reason"], np.array(data["shown"]).reshape(-1, 4)
+    reason = told if isinstance(told, str) else msgspec.convert(told, Message)
+    values: dict[str, Any] = {**data, "reason": reason, "shown": shown}
+    return Result(*row, trial, **values)
 
 
 STEPS = {
@@ -298,20 +314,15 @@ def _loop(kernel: Kernel) -> Loop:
     return fastest_loop(kernel)
 
 
-def results_of(row: Row, trials: Sequence[Trial]) -> list[Result]:
-    """The results of a row in some trials. An error in the law counts as a stop at the start."""
+def result_of(row: Row, trial: Trial) -> Result:
+    """The result of a row in a trial. An error in the law counts as a stop at the start."""
     law, remedy = row
-    found = list[Result]()
-    for trial in trials:
-        experiment = trial.experiment(bool(remedy))
-        try:
-            moved = run_under(experiment, law)
-        except ValueError as error:
-            told = message_of(error)
-            found.append(Result(law, remedy, trial, stopped_at_s=0.0, reason=told))
-            continue
-        found.append(measured(law, remedy, trial, experiment, moved))
-    return found
+    experiment = trial.experiment(bool(remedy))
+    try:
+        moved = run_under(experiment, law)
+    except ValueError as error:
+        return Result(law, remedy, trial, stopped_at_s=0.0, reason=message_of(error))
+    return measured(law, remedy, trial, experiment, moved)
 
 
 def measured(

@@ -12,6 +12,7 @@ from functools import partial
 from itertools import groupby
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -31,11 +32,12 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.closed_loop.trajectory import MEASURED, Trajectory, record
 from onpath.models.control.forecast import SINGULAR, check_possible, forecasts
+from onpath.models.control.laws.law import Law
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import changed, specs
-from onpath.models.errors import Message
+from onpath.models.errors import CodedError, Message
 from onpath.models.paths.curve_faults import ambiguities, curve_faults
-from onpath.models.paths.curves import Curve, circle
+from onpath.models.paths.curves import Curve, circle, curve_from
 from onpath.models.studies import schedule as schedules
 from onpath.models.studies.schedule import Schedule
 from onpath.models.studies.scheduled_run import ScheduledRun
@@ -45,9 +47,11 @@ from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.flexible_robot import flexible_five_bar_robot, start_of
 from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.parameters import Parameters, rise_of
+from onpath.models.systems.parameters import Parameters, declared, rise_of
 from onpath.models.systems.robots import Robot, RobotEntry
 
+_CHECKED = set[tuple[Law, Robot]]()
+"""Laws that are called, whose results have been checked for a robot."""
 NEAR = 1e-9  # [m], distance that counts as on the path
 OF_SPEED = ("speed", "ramp", "speed_profile", "profile_period")
 """Parameters that a profile of the schedule replaces."""
@@ -60,7 +64,7 @@ class Experiment:
     Attributes:
         name: as on the command line.
         title: one line for the user.
-        make: the robot for given parameters.
+        entry: the robot.
         parameters: of the robot, the control laws and the task.
         schedule: the events over time.
         start: (robot, r) -> the end-point at rest at the start, shape (p,), [m].
@@ -70,16 +74,35 @@ class Experiment:
 
     name: str
     title: str
-    make: Callable[[Parameters], Robot]
+    entry: RobotEntry
     parameters: Parameters
     schedule: Schedule
     start: Callable[[Robot, float], Array]
     path: Curve | None = None
     lifts: bool = True
 
+    def __reduce__(self) -> tuple[Callable[..., Experiment], tuple[dict[str, Any]]]:
+        return experiment_from, (self.data(),)
+
+    def data(self) -> dict[str, Any]:
+        """The experiment by names and values, so that it can be pickled."""
+        settings = {
+            name: getattr(self.parameters, name) for name in declared(type(self.parameters))
+        }
+        return {
+            "name": self.name,
+            "title": self.title,
+            "robot": self.entry,
+            "settings": settings,
+            "own_gains": self.parameters.own_gains,
+            "schedule": msgspec.to_builtins(self.schedule),
+            "start": self.begin(),
+            "path": None if self.path is None else self.path.data(),
+        }
+
     def robot(self) -> Robot:
         """The robot for the parameters."""
-        return self.make(self.parameters)
+        return self.entry.make(self.parameters)
 
     def curve(self) -> Curve:
         """The path to follow."""
@@ -143,6 +166,28 @@ class Experiment:
         return whole
 
 
+def experiment_from(data: Mapping[str, Any]) -> Experiment:
+    """The inverse of `Experiment.data`.
+
+    Raises:
+        ValueError: a setting that this version of OnPath does not have, or a bad value.
+    """
+    entry: RobotEntry = data["robot"]
+    for name in data["settings"]:
+        if name not in declared(entry.parameters):
+            raise ValueError(f"this version of OnPath has no setting {name} of {entry.label}")
+    return Experiment(
+        name=data["name"],
+        title=data["title"],
+        entry=entry,
+        parameters=entry.parameters(**data["settings"], own_gains=data["own_gains"]),
+        schedule=msgspec.convert(data["schedule"], Schedule),
+        start=partial(_always, data["start"]),
+        path=None if data["path"] is None else curve_from(data["path"]),
+        lifts=False,
+    )
+
+
 def check_path(robot: Robot, path: Curve, name: str = "") -> None:
     """Check that a robot can follow a path.
 
@@ -170,7 +215,8 @@ def forecast_text(experiment: Experiment, laws: Sequence[str]) -> str:
     `run` refuses a singular start.
     """
     robot = experiment.robot()
-    messages = forecasts(robot, laws, experiment.parameters, robot.rest(experiment.begin()))
+    begin, parameters = robot.rest(experiment.begin()), experiment.parameters
+    messages = forecasts(robot, laws, parameters, begin, experiment.curve())
     return "; ".join(str(each) for each in messages if each != SINGULAR)
 
 
@@ -202,7 +248,7 @@ def on_path(entry: RobotEntry, parameters: Parameters, path: Curve) -> Experimen
     return Experiment(
         name="on_path",
         title=entry.label,
-        make=entry.make,
+        entry=entry,
         parameters=parameters,
         schedule=Schedule(),
         start=lambda robot, _: robot.frame.lift(raised(path, parameters).at(np.array(0.0))),
@@ -237,7 +283,7 @@ def _position(entry: RobotEntry) -> Experiment:
     return Experiment(
         name="position",
         title="Experiment 1: to a place on the circle",
-        make=entry.make,
+        entry=entry,
         parameters=entry.parameters(task="position"),
         schedule=Schedule(duration=4.0),
         start=lambda robot, r: robot.frame.lift(0.6 * r * off),
@@ -248,7 +294,7 @@ def _obstruction(entry: RobotEntry) -> Experiment:
     return Experiment(
         name="obstruction",
         title="Experiment 2: the end-point is held back for a while",
-        make=entry.make,
+        entry=entry,
         parameters=entry.parameters(),
         schedule=Schedule(duration=8.0, hold_from=3.0, hold_to=5.0),
         start=lambda robot, r: robot.frame.lift(np.array([r, 0.0])),
@@ -269,7 +315,7 @@ def _there_and_back() -> Experiment:
     return Experiment(
         name="flexible",
         title="Flexible link: there and back along the path",
-        make=FLEXIBLE.make,
+        entry=FLEXIBLE,
         parameters=FlexibleParameters(output="redefined"),
         schedule=Schedule(duration=6.0, reverse_at=3.0),
         start=lambda robot, _: _off_the_ellipse(robot),
@@ -306,22 +352,8 @@ def run(
         ValueError: the law is unknown, the path is out of the robot's reach, or no run is
             possible from the start.
     """
-    law_named(law)
+    kernel, running, scheduled = _begun(experiment, law, loop)
     robot, curve = experiment.robot(), experiment.curve()
-    check_level_set(experiment.parameters, curve)
-    kind = kind_of(law, experiment.parameters, curve)
-    kernel = kernel_of(robot, kind)
-    schedule, start = experiment.schedule, experiment.begin()
-    check_possible(robot, law, experiment.parameters, robot.rest(start))
-    running = callable_loop(robot, kind, kernel, loop(kernel))
-    scheduled = ScheduledRun(
-        robot=robot,
-        loop=running,
-        curve=curve,
-        parameters=experiment.parameters,
-        schedule=schedule,
-        start=start,
-    )
     segments: list[tuple[Array, Curve, bool]] = []
     fault: tuple[int, Message] | None = None
     done = 0
@@ -338,6 +370,51 @@ def run(
         if fault is not None:
             break
     return _finished(robot, kernel, law, _joined(segments), experiment, fault)
+
+
+def check_called(experiment: Experiment, law: str) -> None:
+    """Check what a law that is called returns at the start of an experiment.
+
+    Raises:
+        CodedError: it fails, or it returns no command, with file and line.
+    """
+    known = law_named(law)
+    if known.called is None or (known, experiment.robot().core) in _CHECKED:
+        return
+    try:
+        _begun(experiment, law, InterpretedLoop)
+    except ValueError as error:  # others say that no run is possible here
+        if isinstance(error, CodedError) and error.message.code == "error.law_fails":
+            raise
+
+
+def _begun(
+    experiment: Experiment, law: str, loop: Callable[[Kernel], Loop]
+) -> tuple[Kernel, Loop, ScheduledRun]:
+    """What `run` runs, after all checks: the kernel, its loop, and the run at its start.
+
+    Raises:
+        ValueError: see `run`.
+    """
+    law_named(law)
+    robot, curve = experiment.robot(), experiment.curve()
+    check_level_set(experiment.parameters, curve)
+    kind = kind_of(law, experiment.parameters, curve)
+    kernel, start = kernel_of(robot, kind), experiment.begin()
+    check_possible(robot, law, experiment.parameters, robot.rest(start))
+    running = callable_loop(robot, kind, kernel, loop(kernel))
+    scheduled = ScheduledRun(
+        robot=robot,
+        loop=running,
+        curve=curve,
+        parameters=experiment.parameters,
+        schedule=experiment.schedule,
+        start=start,
+    )
+    if isinstance(running, CalledLoop) and (law_named(law), robot.core) not in _CHECKED:
+        running.check(*scheduled.inputs())
+        _CHECKED.add((law_named(law), robot.core))
+    return kernel, running, scheduled
 
 
 def _joined(segments: list[tuple[Array, Curve, bool]]) -> list[tuple[Array, Curve, bool]]:
@@ -382,7 +459,7 @@ def summary(experiment: Experiment, runs: list[Trajectory]) -> dict[str, Any]:
     held = experiment.schedule.hold_from < experiment.schedule.hold_to
     laws = {
         run.law: {
-            **(_summary(run) if run.stopped_at is None else _stopped(run.stopped_at, held)),
+            **(_summary(run) if run.stopped_at is None else of_stopped(run.stopped_at, held)),
             "never_held": bool(never_held(experiment, run)),
         }
         for run in runs
@@ -404,7 +481,7 @@ def _summary(run: Trajectory) -> dict[str, Any]:
     }
 
 
-def _stopped(time: float, held: bool) -> dict[str, Any]:
+def of_stopped(time: float, held: bool) -> dict[str, Any]:
     """The summary of a run that was stopped at a time, [s].
 
     Args:

@@ -126,7 +126,10 @@ def _numbers(values: list[Any], shape: str) -> Array:
     except (ValueError, OverflowError):
         raise ValueError(f"path: expected {shape}, [m]") from None
     if not np.all(np.abs(numbers) <= LARGEST):  # NaN fails too
-        raise ValueError(f"path: expected numbers between -{LARGEST:g} and {LARGEST:g} m")
+        expected = f"path: expected numbers between -{LARGEST:g} and {LARGEST:g} m"
+        largest = float(np.abs(numbers).max())
+        asked = f", got {largest:g} m: did you mean {largest / 1000:g}?"
+        raise ValueError(expected + (asked if LARGEST < largest < np.inf else ""))
     return numbers
 
 

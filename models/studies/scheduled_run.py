@@ -67,6 +67,11 @@ class ScheduledRun:
         self._moves, self._inputs = False, np.empty(0)  # of the last part
         self._tick, self._state = 0, self._first(start)
 
+    def inputs(self) -> tuple[Array, Array, Array]:
+        """State, settings and table of the loop at the start."""
+        settings = self._settings()
+        return self._state, settings, self._curve.table()
+
     def parts(self) -> Iterator[tuple[Array, bool]]:
         """(log rows, held) of consecutive parts of the run, each of at most `CHUNK` rows."""
         table, last = self._curve.table(), round(self._schedule.duration / self._dt)

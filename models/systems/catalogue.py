@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import copyreg
+from collections.abc import Callable
 from importlib import import_module
 from pkgutil import iter_modules
+from typing import Any
 
 from onpath.models import systems
 from onpath.models.errors import CodedError
 from onpath.models.systems.chain_robot import chain_entry
 from onpath.models.systems.parameter_specs import unknown_name
-from onpath.models.systems.rigid_chain import ChainSource
+from onpath.models.systems.rigid_chain import ChainSource, source_from
 from onpath.models.systems.robots import RobotEntry
 
 
@@ -59,6 +62,37 @@ def add_robot(entry: RobotEntry) -> RobotEntry:
     if known is not entry and known.source is None:
         raise CodedError("robot_file.same_name", name=entry.name)
     return known
+
+
+def robot_again(name: str, data: dict[str, Any] | None) -> RobotEntry:
+    """A robot that was pickled; one from a file is added to the catalogue.
+
+    If the catalogue has a robot of this name that is made differently, it stays, and the one
+    returned is not in it.
+
+    Args:
+        data: `ChainSource.data` of a robot from a file; None for one of this package.
+
+    Raises:
+        ValueError: this version of OnPath has no such robot, or cannot read its data.
+    """
+    if data is None:
+        return robot_named(name)
+    entry = chain_entry(source_from(data))
+    known = ROBOTS.setdefault(name, entry)
+    return known if known == entry else entry
+
+
+def _pickled(entry: RobotEntry) -> tuple[Callable[..., RobotEntry], tuple[Any, ...]]:
+    """What `copyreg` asks for."""
+    if _FOUND.get(entry.name) == entry:
+        return robot_again, (entry.name, None)
+    if entry.source is None:
+        raise TypeError(f"{entry.name}: only robots of OnPath and from files can be pickled")
+    return robot_again, (entry.name, entry.source.data())
+
+
+copyreg.pickle(RobotEntry, _pickled)  # type: ignore[arg-type]
 
 
 def added_chains() -> list[ChainSource]:

@@ -161,7 +161,7 @@ def _kinematic_faults(entry: RobotEntry) -> Iterator[str]:
     if not _agree(robot.endpoint(q), reached):
         off = np.abs(robot.endpoint(q) - reached).max()
         yield f"the skeleton's last bar does not end at home + h(q): off by up to {off:.3g} m"
-    far = np.linalg.norm(robot.place(_wide(robot)), axis=-1)
+    far = np.linalg.norm(robot.position(_wide(robot)), axis=-1)
     if (far > robot.reach + CLOSE).any():
         farthest = f"{far.max():.3g} m"
         yield f"reach is {robot.reach:g} m, but an end-point {farthest} from the origin is in reach"

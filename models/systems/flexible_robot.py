@@ -47,6 +47,10 @@ SLOWEST = {"composite": 200, "redefined": 500}
 """Lowest control rates at which the robot follows its circle with the default gains, [Hz]."""
 SLOWEST_FILTERED = 500
 """The same with encoders or noise and without an observer."""
+LEAST_LIMIT = 1.2
+"""Smallest torque limit with which composite control does so behind encoders of 2000 steps, noise
+of 1e-4 rad and an observer, [N m]; behind a filter even 4 N m are not enough. With exact
+measurements it takes 0.1 N m."""
 PIECES = 10  # straight bars that represent the bent link
 _SHARES = np.linspace(0.0, 1.0, PIECES + 1)
 DRAWING = Drawing(
@@ -225,14 +229,17 @@ def critical_alpha(parameters: Parameters, joints: Array) -> float:
 
 
 def caution(parameters: Parameters) -> Message | None:
-    """`RobotEntry.caution`: the control may be too slow for the link's vibration."""
+    """`RobotEntry.caution`: control too slow, or motors too weak, for the link's vibration."""
     chosen = own_parameters(FlexibleParameters, parameters)
     measured = chosen.encoder_counts > 0 or chosen.sensor_noise > 0
     filtered = measured and chosen.observer_time == 0
     slowest = SLOWEST_FILTERED if filtered else SLOWEST[chosen.output]
-    if chosen.control_rate >= slowest:
-        return None
-    return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})
+    if chosen.control_rate < slowest:
+        return Message("caution.flexible", {"rate": chosen.control_rate, "slowest": slowest})
+    least = np.inf if filtered else LEAST_LIMIT
+    if measured and chosen.output == "composite" and 0 < chosen.torque_limit < least:
+        return Message("caution.flexible_weak", {"limit": f"{chosen.torque_limit:g}"})
+    return None
 
 
 ROBOT = RobotEntry(

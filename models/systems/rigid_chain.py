@@ -21,8 +21,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from typing import Any
 
 import casadi as ca
+import msgspec
 import numpy as np
 
 from onpath.models.arrays import Array
@@ -159,6 +161,33 @@ class ChainSource:
     def redundant(self) -> bool:
         """Whether it has more joints than outputs."""
         return self.chain.n > len(self.axes)
+
+    def data(self) -> dict[str, Any]:
+        """The source as numbers, texts, lists and mappings by the names of its attributes."""
+        return msgspec.to_builtins(self, enc_hook=_listed)
+
+    def is_as(self, other: ChainSource) -> bool:
+        """Whether another source makes the same robot, whatever it is called and looks like."""
+        return self.mechanics() == other.mechanics()
+
+    def mechanics(self) -> list[Any]:
+        """All of the data but names and looks."""
+        chain = msgspec.to_builtins(self.chain, enc_hook=_listed)
+        bodies = [{**body, "shapes": ()} for body in chain["bodies"]]
+        return [bodies, chain["tip"], chain["facing"], self.home, self.axes, self.substeps]
+
+
+def source_from(data: dict[str, Any]) -> ChainSource:
+    """The inverse of `ChainSource.data`.
+
+    Raises:
+        ValueError: something is missing in the data, or of another kind.
+    """
+    return msgspec.convert(data, ChainSource, dec_hook=lambda _, values: np.array(values))
+
+
+def _listed(array: Any) -> Any:
+    return array.tolist()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,6 +19,7 @@ from onpath.models.systems.drawing import Drawing
 from onpath.models.systems.forces import Grip
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.rigid_chain import Chain, ChainSource
+from onpath.models.systems.robot_sketch import described, sketch
 from onpath.models.systems.rows import Rows
 from onpath.models.systems.system import MechanicalSystem
 
@@ -29,6 +30,8 @@ SINGULAR, AT_A_LIMIT = Message("stop.singular"), Message("stop.limit")
 LEAST_REGULARITY = 0.02
 """Regularity relative to home below which a run is stopped, unless a robot has its own stops."""
 FARTHEST = 1e3  # [m], beyond the reach of every robot, also of one that slides without limits
+CELLS = 41
+"""Of a sketch, in each direction."""
 _FINITE = float(np.finfo(float).max)
 _PLANE, _DRAWING, _GRIP = Plane(), Drawing(), Grip()  # shared, because they are keys of caches
 
@@ -116,7 +119,7 @@ class Robot:
 
     def endpoint(self, q: Array) -> Array:
         """The actual end-point, shape (..., n) -> (..., p), [m]."""
-        return self.unplace(_tip(self.core)(q))
+        return self.output_at(_tip(self.core)(q))
 
     def rest(self, y: Array) -> Array:
         """Configurations at rest with the end-point at y, shape (..., p) -> (..., n).
@@ -183,18 +186,41 @@ class Robot:
         ends = np.cumsum([each.numel() for each in self.extras.values()])[:-1]
         return dict(zip(self.extras, np.split(values, ends, axis=-1), strict=True))
 
-    def place(self, y: Array) -> Array:
+    def position(self, y: Array) -> Array:
         """Points of the output space in the robot's frame, (..., p) -> (..., 3), [m]."""
         return y @ self.axes + np.array(self.home)
 
-    def unplace(self, point: Array) -> Array:
-        """The inverse of `place`, (..., 3) -> (..., p), [m]."""
+    def output_at(self, point: Array) -> Array:
+        """The inverse of `position`, (..., 3) -> (..., p), [m]."""
         return (point - np.array(self.home)) @ self.axes.T
 
     @property
     def axes(self) -> Array:
         """Directions of the outputs in the robot's frame, shape (p, 3)."""
         return np.array(self.drawing.axes or AXES[self.system.p], dtype=float)
+
+    @property
+    def seen(self) -> Array:
+        """The projection from the robot's frame to a picture, right and up, shape (2, 3).
+
+        A robot that moves in the vertical plane is seen at right angles to it, from far away.
+        """
+        flat = self.system.p == 2
+        up, turn = (0.0, 0.0) if flat else (self.drawing.elevation, self.drawing.azimuth)
+        right = [np.cos(turn), np.sin(turn), 0.0]
+        above = [-np.sin(turn) * np.sin(up), np.cos(turn) * np.sin(up), np.cos(up)]
+        return np.array([right, above])
+
+    def sketched(self) -> str:
+        """A drawing at home, with the points of the path's plane that it can reach, as SVG."""
+        q, home = self.system.q, self.rest(self.frame.lift(np.zeros(2)))
+        picture = ca.Function("picture", [q], [*self.skeleton(q, ca.SX(1))])
+        bars, joints = (self.seen @ np.array(part) for part in picture(home))
+        line = np.linspace(-self.reach, self.reach, CELLS)
+        z = np.stack(np.meshgrid(line, line), axis=-1).reshape(-1, 2)
+        inside = z[self.margin(z) > LEAST_REGULARITY]
+        cells = self.position(self.frame.lift(inside)) @ self.seen.T
+        return sketch(bars.T, joints.T, cells, 2 * self.reach / (CELLS - 1))
 
 
 AXES = {2: ((1, 0, 0), (0, 0, 1)), 3: ((1, 0, 0), (0, 1, 0), (0, 0, 1))}
@@ -327,9 +353,13 @@ class FlexibleLink:
     critical_alpha: Callable[[Parameters, Array], float]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class RobotEntry:
     """An entry of the catalogue.
+
+    Two entries are equal if they have the same name and, if they come from files, the same bodies,
+    joints, end-point, home and outputs. It is pickled by its name, or with its bodies, so that
+    where it is read its file is not needed.
 
     Attributes:
         name: as on the command line and in files, the name of its equations of motion.
@@ -359,6 +389,25 @@ class RobotEntry:
     caution: Callable[[Parameters], Message | None] = lambda _: None
     linkage: BalancedLinkage | None = None
     source: ChainSource | None = None
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, RobotEntry):
+            return NotImplemented
+        if self is other or self.name != other.name or self.source is other.source:
+            return self.name == other.name
+        sources = self.source, other.source
+        return sources[0] is not None and sources[1] is not None and sources[0].is_as(sources[1])
+
+    def __hash__(self) -> int:
+        return hash(self.name)
+
+    def __repr__(self) -> str:
+        return f"<robot {self.name}: {self.label}. {self.text}>"
+
+    def _repr_html_(self) -> str:
+        robot = self.make(self.parameters())
+        joints = robot.chain.joints if robot.chain else ()
+        return described(self.label, self.name, self.text, robot.sketched(), joints)
 
     def keeps_states(self, before: Parameters, now: Parameters) -> bool:
         """Whether two sets of parameters give the same robot apart from those in `goes_on`."""

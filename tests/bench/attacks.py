@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import asyncio
 import random
-import re
 import sys
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Sequence
@@ -18,10 +17,9 @@ from math import inf
 from typing import Any
 
 from typing_extensions import override
-from websockets.asyncio.client import ClientConnection, connect
+from websockets.asyncio.client import ClientConnection
 from websockets.exceptions import WebSocketException
 from websockets.frames import Opcode
-from websockets.typing import Subprotocol
 
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from onpath.app.viser_adapter.message_filter import Limits
@@ -32,13 +30,13 @@ from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, packed
 from tests.bench.dear_commands import dear_message
 from tests.bench.hostile_messages import (
     BROKEN,
-    COMMANDS,
     DRAG,
     GARBAGE,
     HONEST,
     HOSTILE,
     INDEXES,
     VERSIONS,
+    wild_message,
 )
 from tests.bench.raw_socket import frames, handshake
 from tests.bench.simulated_browser import Browser, stand_back
@@ -51,7 +49,6 @@ TURNED_AWAY = 0.1  # [s] until it comes back
 GREETING = frames(packed("ViewerCameraMessage", **CAMERA))
 UNFINISHED = frames(bytes(980_000))[:-1]
 TOO_LARGE = frames(bytes(1_000_001))
-TICKET = re.compile(r'data-ticket="([^"]+)"')
 PATHS = ("ellipse", "clover", "rounded square", "figure of eight", "segment", "circle")
 
 Attack = Callable[[int], Coroutine[Any, Any, None]]
@@ -66,7 +63,6 @@ class Intruder(Browser):
 
     Attributes:
         widgets: the ids of its widgets by label.
-        ticket: of its data channel, once it is known.
         socket: its connection, once it has begun.
     """
 
@@ -74,7 +70,6 @@ class Intruder(Browser):
         super().__init__(port, 0, SOURCE)
         self._misuse, self._rate = misuse, rate
         self.widgets: dict[str, str] = {}
-        self.ticket = ""
 
     async def find(self, label: str) -> str:
         """The id of the widget whose label begins so, as soon as there is one."""
@@ -94,11 +89,8 @@ class Intruder(Browser):
 
     async def _answer(self, socket: ClientConnection, message: dict[str, Any]) -> None:
         await super()._answer(socket, message)
-        properties = message.get("props", {})
-        if label := properties.get("label"):
+        if label := message.get("props", {}).get("label"):
             self.widgets[label] = message["uuid"]
-        if found := TICKET.search(str(properties.get("content", ""))):
-            self.ticket = found[1]
 
     async def _use(self, socket: ClientConnection, until: float) -> None:
         self.socket = socket
@@ -107,8 +99,12 @@ class Intruder(Browser):
             await asyncio.sleep(1 / self._rate)
 
 
-class Greedy(Browser):
-    """A tab that sends the dearest commands through its data channel, as fast as is allowed."""
+class Script(Browser):
+    """A tab whose script sends what `say` draws, as fast as is allowed."""
+
+    def __init__(self, port: int, say: Callable[[random.Random], str | bytes]) -> None:
+        super().__init__(port, 0, SOURCE)
+        self._say = say
 
     @override
     async def _use(self, socket: ClientConnection, until: float) -> None:
@@ -117,12 +113,15 @@ class Greedy(Browser):
     @override
     async def _read_data(self, ticket: str) -> None:
         draw = random.Random(ticket)
+        await again(lambda: self._speak(ticket, draw))
+
+    async def _speak(self, ticket: str, draw: random.Random) -> None:
         async with self._connected(DATA) as data:
             await data.send(ticket)
             reading = asyncio.create_task(_read_all(data))
             try:
                 while not reading.done():
-                    message = dear_message(draw)
+                    message = self._say(draw)
                     await data.send(message)
                     await asyncio.sleep(max(1 / RATE, len(message) / BYTES))
             finally:
@@ -134,12 +133,11 @@ async def _read_all(data: ClientConnection) -> None:
         pass
 
 
-def greedy_tabs(number: int) -> Attack:
-    """A number of tabs that ask for the dearest work; see `Greedy`."""
+def scripts(number: int, say: Callable[[random.Random], str | bytes]) -> Attack:
+    """A number of tabs whose scripts all say such things; see `Script`."""
 
     async def attack(port: int) -> None:
-        visits = [again(lambda: Greedy(port, 0, SOURCE).browse(inf)) for _ in range(number)]
-        await asyncio.gather(*visits)
+        await asyncio.gather(*(again(lambda: Script(port, say).browse(inf)) for _ in range(number)))
 
     return attack
 
@@ -200,20 +198,6 @@ async def read_nothing(tab: Intruder) -> AsyncIterator[bytes]:
     tab.socket.transport.pause_reading()
     yield GREETING
     await asyncio.sleep(inf)
-
-
-async def misuse_data(tab: Intruder) -> AsyncIterator[bytes]:
-    """Send nonsense and wild commands through the data channel of the page, again and again."""
-    while not tab.ticket:
-        await asyncio.sleep(TURNED_AWAY)
-    yield GREETING
-    address = f"ws://127.0.0.1:{tab.port}"
-    options: dict[str, Any] = {"local_addr": (SOURCE, 0)}
-    async with connect(address, subprotocols=[Subprotocol(DATA)], **options) as data:
-        await data.send(random.choice([tab.ticket, tab.ticket, tab.ticket[:-1]]))
-        while True:
-            await data.send(random.choice(COMMANDS))
-            await asyncio.sleep(1 / RATE)
 
 
 async def look_on(tab: Intruder) -> AsyncIterator[bytes]:
@@ -296,9 +280,9 @@ ATTACKS: dict[str, Attack] = {
     "robots": tabs(8, pressing(("Robot…", True), *((label, True) for label in ROBOT_LABELS))),
     "all places": tabs(66, look_on),  # D10
     "nonsense": tabs(8, send_nonsense, MIXED),  # D16
-    "data channels": tabs(8, misuse_data),
-    "one dear tab": greedy_tabs(1),
-    "dear tabs": greedy_tabs(8),
+    "wild scripts": scripts(8, wild_message),
+    "one dear tab": scripts(1, dear_message),
+    "dear tabs": scripts(8, dear_message),
     "tickets": connections(20, [frames(b"x" * 32, opcode=Opcode.TEXT), UNFINISHED], [DATA]),
     "come and go": tabs(20, leave),  # D18
     "floods": connections(20, [100 * GREETING, TOO_LARGE]),

@@ -2,11 +2,21 @@
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import math
+import random
+from collections.abc import Callable
 from typing import Any
 
 from websockets.frames import Opcode
 
+from onpath.app.lab.commands.command_codec import page_commands
+from onpath.app.server.built_in_course import built_in_course
+from onpath.app.server.page_data import LIGHTS, RECORD, RESIZED, SKIP
+from onpath.models.control.laws.registry import LAWS
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.catalogue import ROBOTS
 from tests.bench.client_protocol import CAMERA
 from tests.bench.raw_socket import frames
 
@@ -94,3 +104,46 @@ COMMANDS = [
     '{"do": "UseShared", "text": "ONPATH1-aaaa"}',
 ]
 """Messages for a data channel: some are no commands, others are commands that cost much."""
+OWN = [RESIZED, SKIP, RECORD, *LIGHTS]
+"""Messages of a page that are no commands."""
+NUMBERS = [-1e9, -1.0, -1e-9, 0.0, 1e-300, 0.05, 0.3, 1.0, 1e9]
+NAMES = [*("left", "right", "de", "en", "K1", "speed", "dt", "delay", "certain"), *ROBOTS, *LAWS]
+NAMES += [*presets(), *built_in_course().lessons]
+
+
+def _points(draw: random.Random) -> list[list[float]]:
+    spread = draw.choice([1e-6, 0.05, 1.0, 1e9])
+    return [[draw.gauss(0, spread), draw.gauss(0, spread)] for _ in range(draw.choice([1, 2, 300]))]
+
+
+_DRAWN: dict[str, Callable[[random.Random], Any]] = {
+    "bool": lambda draw: draw.random() < 0.5,
+    "int": lambda draw: draw.choice([-(10**9), -1, 0, 1, 3, 10**9]),
+    "float": lambda draw: draw.choice(NUMBERS),
+    "str": lambda draw: draw.choice(NAMES),
+    "Any": lambda draw: draw.choice([*NAMES, *NUMBERS]),
+    "Array": lambda draw: draw.choice([draw.choices(NUMBERS, k=2), _points(draw)]),
+    "tuple[float, ...]": lambda draw: draw.choices(NUMBERS, k=draw.randrange(40)),
+}
+"""Values of fields, by their types."""
+
+
+def wild_message(draw: random.Random) -> str | bytes:
+    """A message for a data channel: a command with any values, or one of the above.
+
+    Few are no text; for these, a connection is closed.
+    """
+    kind = draw.random()
+    if kind < 0.01:
+        return draw.randbytes(100)
+    if kind < 0.2:
+        return draw.choice([*COMMANDS, *OWN])
+    name, command = draw.choice([*page_commands().items()])
+    fields = {field.name: _value(str(field.type), draw) for field in dataclasses.fields(command)}
+    return json.dumps({"do": name, **fields}, default=repr)
+
+
+def _value(kind: str, draw: random.Random) -> Any:
+    """A value of a field, or a hostile one."""
+    drawn = _DRAWN.get(kind.removesuffix(" | None"))
+    return drawn(draw) if drawn is not None and draw.random() < 0.9 else draw.choice(HOSTILE)

@@ -79,8 +79,8 @@ def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = Tru
                     raise TimeoutError("the browser or the lab does not answer")
                 page.wait_for_timeout(2)
 
-        until(lambda: watch.tip is not None and any(lab.view for lab in server.simulation.labs))
-        lab = next(lab for lab in server.simulation.labs if lab.view is not None)
+        until(lambda: watch.tip is not None and any(lab.display for lab in server.thread.labs))
+        lab = next(lab for lab in server.thread.labs if lab.display is not None)
         lab.lab.post(c.SetParameter("task", "position"))
         lab.lab.post(c.SetParameter("target", 0.4))  # between two control points
         page.wait_for_timeout(3000)
@@ -134,6 +134,6 @@ class _Watch:
 
 def _tip(lab: ScheduledLab) -> np.ndarray:
     """The end-point in the world, shape (3,), [m]."""
-    session = lab.session
-    base = stage_of(session.robot).bases[RIGHT]
-    return base + session.robot.place(session.runs[RIGHT].shown()["y"])
+    simulation = lab.simulation
+    base = stage_of(simulation.robot).bases[RIGHT]
+    return base + simulation.robot.position(simulation.runs[RIGHT].shown()["y"])

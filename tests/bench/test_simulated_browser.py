@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Iterator
 from contextlib import aclosing, contextmanager
+from itertools import cycle
 from socket import create_server
 from threading import Thread
 
@@ -27,8 +29,10 @@ from onpath.models.closed_loop.simulation import (
 )
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import ROBOTS
+from tests.bench.attacks import Script
 from tests.bench.simulated_browser import Browser, NotServed, Observations, crowd, first_poses
 
+WAIT = 60.0  # [s]; only ends a test that would hang
 FRAMES = 20  # of the data channel
 
 
@@ -56,16 +60,36 @@ def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
     server = LabServer("127.0.0.1", 0, LoopCache())
     try:
         first, then = asyncio.run(look(server.server.get_port()))
-        labs = server.simulation.labs
+        labs = server.thread.labs
     finally:
         server.stop()
     assert first.clients == then.clients == 2
     assert then.seconds == pytest.approx(4.5, abs=0.5)
     assert 10 < then.slowest_hz <= then.median_hz < 62
     assert then.bytes_per_s > 0 and 0 < then.cpu < 1.5
-    assert all(lab.session.time > 1.0 for lab in labs)
-    assert max(run.max_distance for lab in labs for run in lab.session.runs.values()) > 0.004
-    assert any(lab.session.parameters.K1 != 400.0 for lab in labs)
+    assert all(lab.simulation.time > 1.0 for lab in labs)
+    assert max(run.max_distance for lab in labs for run in lab.simulation.runs.values()) > 0.004
+    assert any(lab.simulation.parameters.K1 != 400.0 for lab in labs)
+
+
+@pytest.mark.thorough
+def test_what_a_script_says_reaches_its_lab_also_after_it_was_hung_up_on() -> None:
+    said = cycle([b"no text", '{"do": "SetParameter", "name": "K1", "value": 77.0}'])
+    server = LabServer("127.0.0.1", 0, LoopCache())
+
+    async def attack() -> None:
+        script = Script(server.server.get_port(), lambda draw: next(said))
+        browsing = asyncio.create_task(script.browse(math.inf))
+        async with asyncio.timeout(WAIT):
+            while all(lab.simulation.parameters.K1 != 77.0 for lab in server.thread.labs):
+                await asyncio.sleep(0.05)
+        browsing.cancel()
+        await asyncio.gather(browsing, return_exceptions=True)
+
+    try:
+        asyncio.run(attack())
+    finally:
+        server.stop()
 
 
 @pytest.mark.thorough

@@ -110,11 +110,11 @@ def test_no_address_to_copy_names_the_server(
         address = tab.page.url
         kept = [] if path.startswith("/c/") else ["fixedDpr"]  # a place has no query
         assert parameters(tab) == kept and address.startswith(f"{server.address}{path}")
-        before, left = tab.client, tab.view
+        before, left = tab.client, tab.display
         server.server.get_event_loop().call_soon_threadsafe(
             server.server._websock_server._live_connections[before.client_id].transport.abort
         )
-        wait_for(lambda: tab.scheduled.view not in (None, left))
+        wait_for(lambda: tab.scheduled.display not in (None, left))
         tab.page.locator("[data-page]").first.wait_for(state="attached")
         assert tab.page.url == address
 

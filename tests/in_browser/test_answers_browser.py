@@ -44,7 +44,7 @@ def test_answers_are_pressed_by_mouse_finger_and_keys(browser: Browser, server: 
             expect(option).to_be_checked(checked=each == letter)
         box = options[letter].locator("xpath=ancestor::label").bounding_box()
         assert box is not None and box["height"] >= 34.0
-    assert tab.session.time == 0  # Space on an answer is not the lab's
+    assert tab.simulation.time == 0  # Space on an answer is not the lab's
     commit.click()
     tab.button("Let it happen").wait_for()
     answer = tab.lab.lessons.answer()

@@ -20,93 +20,93 @@ def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
     """The main result, which a student must be able to find within a minute."""
     lab = tab.lab
     tab.press("Pause")
-    wait_for(lambda: not lab.session.running)
+    wait_for(lambda: not lab.simulation.running)
     tab.press("Reset")
-    wait_for(lambda: lab.session.time == 0.0)
+    wait_for(lambda: lab.simulation.time == 0.0)
     for _ in range(5):  # two laps: as in the paper's experiment, held back at the rightmost point
         tab.ask(*[c.StepOnce()] * 400)
     tab.press("Hold both back")
-    wait_for(lambda: len(lab.session.forces.held) == 2)
+    wait_for(lambda: len(lab.simulation.forces.held) == 2)
     tab.press("Run")
-    wait_for(lambda: lab.session.time > 4.0)
-    assert lab.session.runs[FOLLOWER].max_distance < 0.003
-    assert lab.session.runs[TRACKER].max_distance > 0.040
+    wait_for(lambda: lab.simulation.time > 4.0)
+    assert lab.simulation.runs[FOLLOWER].max_distance < 0.003
+    assert lab.simulation.runs[TRACKER].max_distance > 0.040
     shown = tab.page.get_by_role("group", name="Path following").inner_text()
     assert float(shown.split()[0]) < 3.0
     tab.press("Let both go")
-    wait_for(lambda: not lab.session.forces.held)
+    wait_for(lambda: not lab.simulation.forces.held)
     tab.button("Hold both back").wait_for()
-    wait_for(lambda: max(run.distance for run in lab.session.runs.values()) < 2e-3)
+    wait_for(lambda: max(run.distance for run in lab.simulation.runs.values()) < 2e-3)
 
 
 def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
-    held = tab.session.forces.held
+    held = tab.simulation.forces.held
     box = tab.button("Hold while pressed").bounding_box()
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     with tab.dragging(middle, in_scene=False):
         wait_for(lambda: len(held) == 2)
-        begun = tab.session.time
-        wait_for(lambda: tab.session.time > begun + 1.0)
+        begun = tab.simulation.time
+        wait_for(lambda: tab.simulation.time > begun + 1.0)
         assert len(held) == 2
     wait_for(lambda: not held)
-    begun = tab.session.time
-    wait_for(lambda: tab.session.time > begun + 0.5)
+    begun = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > begun + 0.5)
     assert not held
 
 
 def test_pause_step_and_run(tab: Tab) -> None:
     lab = tab.lab
     tab.press("Pause")
-    wait_for(lambda: not lab.session.running)
-    paused = lab.session.time
+    wait_for(lambda: not lab.simulation.running)
+    paused = lab.simulation.time
     for steps in (1, 2, 3):
         tab.press("Step")
-        wait_for(lambda steps=steps: lab.session.time >= paused + (steps - 0.5) * 1e-3)
-        assert lab.session.time == pytest.approx(paused + steps * 1e-3, abs=1e-9)
+        wait_for(lambda steps=steps: lab.simulation.time >= paused + (steps - 0.5) * 1e-3)
+        assert lab.simulation.time == pytest.approx(paused + steps * 1e-3, abs=1e-9)
     tab.press("Run")
-    wait_for(lambda: lab.session.time > paused + 0.2)
+    wait_for(lambda: lab.simulation.time > paused + 0.2)
 
 
 def test_time_runs_slower(tab: Tab) -> None:
     tab.page.get_by_label("Time runs at").select_option("×0.125")
-    wait_for(lambda: tab.session.rate == 0.125)
+    wait_for(lambda: tab.simulation.rate == 0.125)
     tab.page.get_by_text(re.compile(r"running at 0\.[01]\d×")).wait_for()
 
 
 def test_gains_by_number_and_by_slider(tab: Tab) -> None:
     lab = tab.lab
     tab.enter("K2", "10")
-    wait_for(lambda: lab.session.parameters.K2 == 10.0)
+    wait_for(lambda: lab.simulation.parameters.K2 == 10.0)
     tab.open("Advanced")
     tab.enter("K3", "8000")  # more than K1 K2
-    wait_for(lambda: lab.session.parameters.K3 == 8000.0)
+    wait_for(lambda: lab.simulation.parameters.K3 == 8000.0)
     tab.page.get_by_text("⚠").wait_for()
     tab.slider("K1").scroll_into_view_if_needed()
     handle = tab.slider("K1").bounding_box()
     assert handle is not None
     start = (handle["x"] + handle["width"] / 2, handle["y"] + handle["height"] / 2)
     with tab.dragging(start, (start[0] + 40, start[1]), in_scene=False):
-        wait_for(lambda: lab.session.parameters.K1 > 600.0)
+        wait_for(lambda: lab.simulation.parameters.K1 > 600.0)
     shown = tab.number("K1")
-    wait_for(lambda: float(shown.input_value()) == lab.session.parameters.K1)
+    wait_for(lambda: float(shown.input_value()) == lab.simulation.parameters.K1)
     tab.press("Reset to defaults")
-    wait_for(lambda: lab.session.parameters == type(lab.session.parameters)())
+    wait_for(lambda: lab.simulation.parameters == type(lab.simulation.parameters)())
     wait_for(lambda: float(shown.input_value()) == 400.0)
 
 
 def test_a_number_beyond_the_limits_is_clamped(tab: Tab) -> None:
     tab.enter("K1", "99999")
-    wait_for(lambda: tab.session.parameters.K1 == 2500.0)
+    wait_for(lambda: tab.simulation.parameters.K1 == 2500.0)
     wait_for(lambda: tab.number("K1").input_value() == "2500")
 
 
 def test_a_path_that_crosses_itself_is_followed_with_a_warning(tab: Tab) -> None:
     tab.choose("Path", "figure of eight (crosses itself)")
     tab.page.get_by_role("status").filter(has_text="crosses itself").wait_for()
-    wait_for(lambda: tab.session.editor.design.name == "figure of eight")
+    wait_for(lambda: tab.simulation.editor.design.name == "figure of eight")
     tab.choose("Path", "clover")
-    wait_for(lambda: tab.session.editor.design.name == "clover")
+    wait_for(lambda: tab.simulation.editor.design.name == "clover")
     tab.wait_for_no_message()
 
 
@@ -114,44 +114,44 @@ def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
     tab.ask(c.SetParameter("K1", 0.0), c.SetParameter("K2", 0.0))
     tab.ask(*[c.MoveHand(-0.1, -0.1)] * 4)
     tab.page.get_by_role("status").filter(has_text="Reset starts the run again").wait_for()
-    assert any(run.diverged for run in tab.session.runs.values())
+    assert any(run.diverged for run in tab.simulation.runs.values())
     tab.ask(c.ResetParameters())
     tab.press("Reset")
-    wait_for(lambda: all(run.diverged is None for run in tab.session.runs.values()))
+    wait_for(lambda: all(run.diverged is None for run in tab.simulation.runs.values()))
     tab.wait_for_no_message()
-    wait_for(lambda: tab.session.runs[FOLLOWER].distance < 1e-3 < tab.session.time)
+    wait_for(lambda: tab.simulation.runs[FOLLOWER].distance < 1e-3 < tab.simulation.time)
 
 
 def test_rewind_and_go_on_from_there(tab: Tab) -> None:
     lab = tab.lab
-    wait_for(lambda: lab.session.time > 2.5)
+    wait_for(lambda: lab.simulation.time > 2.5)
     tab.press("Pause")
-    wait_for(lambda: not lab.session.running)
+    wait_for(lambda: not lab.simulation.running)
     handle = tab.page.get_by_role("slider", name="Look back")
     tab.focus(handle)
     handle.press("PageDown")
     for _ in range(5):
         handle.press("ArrowLeft")
-    then = lab.session.time
+    then = lab.simulation.time
 
     def shown() -> float:  # in tenths of a second
         return float(handle.get_attribute("aria-valuenow") or 0)
 
     def viewed() -> float:
-        return then if lab.session.viewing is None else lab.session.viewing
+        return then if lab.simulation.viewing is None else lab.simulation.viewing
 
     wait_for(lambda: then - viewed() > 1.45 and abs(shown() - viewed()) < 0.051)
     viewing = viewed()
-    times, _ = lab.session.history.samples(-1.0, then, 10_000)
+    times, _ = lab.simulation.history.samples(-1.0, then, 10_000)
     assert then - viewing < 1.5 + 6 * np.diff(times).max()  # each step ends at a sample
     tab.press("Go on from here")
-    wait_for(lambda: lab.session.viewing is None and lab.session.running)
-    assert lab.session.time < then
-    wait_for(lambda: lab.session.time > viewing + 0.2)
-    assert lab.session.runs[FOLLOWER].distance < 1e-3
+    wait_for(lambda: lab.simulation.viewing is None and lab.simulation.running)
+    assert lab.simulation.time < then
+    wait_for(lambda: lab.simulation.time > viewing + 0.2)
+    assert lab.simulation.runs[FOLLOWER].distance < 1e-3
     tab.button("Go on from here").wait_for(state="hidden")
     tab.press("Restore what was discarded")
-    wait_for(lambda: lab.session.time == then)
+    wait_for(lambda: lab.simulation.time == then)
 
 
 # Keys.
@@ -160,33 +160,33 @@ def test_rewind_and_go_on_from_there(tab: Tab) -> None:
 def test_keys_do_what_the_buttons_do(tab: Tab) -> None:
     lab, keys = tab.lab, tab.page.keyboard
     keys.press("Space")
-    wait_for(lambda: not lab.session.running)
-    paused = lab.session.time
+    wait_for(lambda: not lab.simulation.running)
+    paused = lab.simulation.time
     keys.press("ArrowRight")
-    wait_for(lambda: lab.session.time > paused)
-    assert lab.session.time == pytest.approx(paused + 1e-3, abs=1e-9)
+    wait_for(lambda: lab.simulation.time > paused)
+    assert lab.simulation.time == pytest.approx(paused + 1e-3, abs=1e-9)
     keys.press("h")
-    wait_for(lambda: len(lab.session.forces.held) == 2)
+    wait_for(lambda: len(lab.simulation.forces.held) == 2)
     keys.press("h")
-    wait_for(lambda: not lab.session.forces.held)
+    wait_for(lambda: not lab.simulation.forces.held)
     keys.press("r")
-    wait_for(lambda: lab.session.time == 0.0)
+    wait_for(lambda: lab.simulation.time == 0.0)
     keys.press("Space")
-    wait_for(lambda: lab.session.running and lab.session.time > 0.1)
+    wait_for(lambda: lab.simulation.running and lab.simulation.time > 0.1)
 
 
 def test_space_after_a_click_on_pause_is_one_toggle_not_two(tab: Tab) -> None:
     tab.press("Pause")
-    wait_for(lambda: not tab.session.running)
+    wait_for(lambda: not tab.simulation.running)
     tab.button("Run").wait_for()
     tab.page.keyboard.press("Space")
-    wait_for(lambda: tab.session.running)
-    begun = tab.session.time
-    wait_for(lambda: tab.session.time > begun + 0.5)
+    wait_for(lambda: tab.simulation.running)
+    begun = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > begun + 0.5)
 
 
 def test_a_control_point_moves_by_keys_and_by_numbers(tab: Tab) -> None:
-    editor, keys = tab.session.editor, tab.page.keyboard
+    editor, keys = tab.simulation.editor, tab.page.keyboard
     first = editor.points()[0].copy()
     keys.press("n")
     wait_for(lambda: editor.selected == 0)

@@ -19,7 +19,7 @@ from onpath.app.common.access_codes import shown
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.page.teacher_view import TeacherView
+from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.addresses import class_address
@@ -63,8 +63,8 @@ class InLecture(LabServer):
 @pytest.fixture(scope="module")
 def tabs(browser: Browser) -> Iterator[Class]:
     room = Classroom()
-    store = LoopCache()
-    server = InLecture("127.0.0.1", 0, store, classrooms=[room])
+    loop_cache = LoopCache()
+    server = InLecture("127.0.0.1", 0, loop_cache, classrooms=[room])
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})
@@ -143,7 +143,7 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
         dimmed = "getComputedStyle(document.body, '::before').backgroundColor"
         assert student.page.evaluate(dimmed) == "rgba(15, 23, 42, 0.6)"
         student.page.get_by_text("paused").first.wait_for()
-        before = student.session.time
+        before = student.simulation.time
         asked = student.lab.asked
         button = student.button("Run")
         assert button.get_attribute("aria-disabled") == "true"
@@ -152,13 +152,13 @@ def test_frozen_labs_are_paused_and_say_so(tabs: Class) -> None:
         button.focus()
         student.page.keyboard.press("Enter")
         wait_for(lambda student=student, asked=asked: student.lab.asked > asked)
-        assert student.session.running and student.session.time == before
+        assert student.simulation.running and student.simulation.time == before
         assert student.lab.notice[1] == "stop"
         assert student.page.evaluate(dimmed) == "rgba(15, 23, 42, 0.6)"
     tabs.teacher.press("Let all labs go on")
     for student in tabs.students:
-        before = student.session.time
-        wait_for(lambda student=student, before=before: student.session.time > before)
+        before = student.simulation.time
+        wait_for(lambda student=student, before=before: student.simulation.time > before)
         student.wait_for_no_message()
         button = student.button("Pause")
         wait_for(lambda button=button: button.get_attribute("aria-disabled") is None)
@@ -271,9 +271,9 @@ def test_a_demonstration_is_played_on_the_teachers_stage_which_is_put_back(tabs:
     for leave in (back, page.get_by_role("button", name=re.compile("^Next for all"))):
         play.click()
         wait_for(lambda: teacher.lab.lessons.playing)
-        assert teacher.session.editor.design.name == "circle"
+        assert teacher.simulation.editor.design.name == "circle"
         leave.click()
-        wait_for(lambda: teacher.session.editor.design.name == "clover")
+        wait_for(lambda: teacher.simulation.editor.design.name == "clover")
         back.wait_for(state="hidden")
     room.push(TakeStep(LESSON, where.step))
     for student in tabs.students:
@@ -393,7 +393,7 @@ def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None
     teacher.ask(c.SetParameter("K2", 33.0))
     teacher.press("Send my set-up to all")
     wait_for(lambda: "“Set up again” restores" in first.said())
-    assert first.session.parameters.K2 == 33.0 and first.lab.lessons.index == 1
+    assert first.simulation.parameters.K2 == 33.0 and first.lab.lessons.index == 1
     assert first.page.get_by_role("heading", name="Draw what the tracker does").is_visible()
     first.press("Next")
     wait_for(lambda: first.lab.lessons.index == 2)
@@ -411,17 +411,17 @@ def test_the_teacher_watches_a_lab_without_changing_it(tabs: Class) -> None:
     teacher.field("Follow").click()
     teacher.page.get_by_role("option", name="1. Ada").click()
     teacher.page.get_by_text("This is the lab of Ada").wait_for()
-    feed = teacher.scheduled.view
+    feed = teacher.scheduled.display
     assert isinstance(feed, LabFeed)
     view, (ada, _) = feed.page, tabs.room.members().values()
-    assert isinstance(view, TeacherView)
+    assert isinstance(view, TeacherPage)
     wait_for(lambda: view._built[0] == ada.number)
     assert first.lab.lessons.lesson is not None
     assert teacher.button("Hold both back").count() == 0
     teacher.page.keyboard.press("h")
     teacher.answer()
     first.ask()
-    assert not first.session.forces.held and not teacher.session.forces.held
+    assert not first.simulation.forces.held and not teacher.simulation.forces.held
     teacher.page.get_by_label("Tube", exact=True).filter(visible=True).click()
     wait_for(lambda: teacher.client.scene.get_handle_by_name("/show/tube") is not None)
     assert first.client.scene.get_handle_by_name("/show/tube") is None

@@ -24,10 +24,10 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     tab = Tab(server, context, draws=False)
     tab.open("Compare laws")
     tab.press("Compare")
-    before = tab.session.time
+    before = tab.simulation.time
     rows = tab.page.locator(f"{TABLE} tbody tr")
     expect(rows).to_have_count(3, timeout=60_000)
-    wait_for(lambda: tab.session.time > before)
+    wait_for(lambda: tab.simulation.time > before)
     told = {cells[0]: float(cells[1]) for cells in map(str.split, _lines(tab))}
     assert told["Trajectory"] > 40
     assert told["Path"] < 6 and told["Waiting"] < 6

@@ -30,18 +30,35 @@ from tests.support.student import Student
 SITE = "http://lab.example/"
 LONGEST = 30.0  # [s] of a first message
 LAST = 120.0  # [s]; later, nothing disturbs
+BACK = 30.0  # [s] until a page that stood still is back, and has been for some time
 ENOUGH = 12 * LONGEST  # [s] for all first messages one after another, and pauses in between
 
 # What the page finds instead of viser, network and server. `wrong` lists the moments without
 # a sentence, and those with one although all is there.
 NETWORK = """plan => {
+    const OPENS = 40 // [s] that viser's worker lets a websocket take; see connection.ts
+    const NOTICED = 5 // [s] until a page may have noticed that nothing comes any more
+    const FORGETS = 40 // [s] until a server has noticed that a page does not answer any more
     const now = () => Date.now() / 1000, later = (act, after) => setTimeout(act, 1000 * after)
     const drawn = (() => { let n = 0; return () => plan.delays[n++ % plan.delays.length] })()
-    const lab = { up: true, tickets: new Map(), wrong: [], tabs: [], datas: [], whole: 0, same: 0 }
+    const lab = { up: true, tickets: new Map(), tabs: [], datas: [] }
+    Object.assign(lab, { wrong: [], whole: 0, same: 0, calm: 0 })
     window.lab = lab
     let number = 0
     window.requestAnimationFrame = act => later(() => act(performance.now()), 1)
     Object.defineProperty(navigator, "onLine", { get: () => !lab.offline })
+    const seen = () => lab.hidden ? "hidden" : "visible"
+    Object.defineProperty(document, "visibilityState", { get: seen })
+    lab.hide = hidden => {
+        lab.hidden = hidden
+        lab.calm = now() + NOTICED
+        document.dispatchEvent(new Event("visibilitychange"))
+    }
+    const notice = () => { // of a lab that is full
+        const box = document.createElement("div")
+        box.className = "mantine-Modal-content"
+        return box
+    }
     const reachable = () => lab.up && !lab.offline
 
     class FakeWorker extends EventTarget {
@@ -54,8 +71,9 @@ NETWORK = """plan => {
         postMessage({ type }) {
             if (type !== "set_server" && type !== "retry") return
             this.leave?.()
-            const tab = { alive: true, ticket: "" }, generation = ++this.generation
-            const current = () => tab.alive && generation === this.generation
+            const tab = { at: now(), alive: true, opens: true, mute: false, ticket: "" }
+            const generation = ++this.generation, isLast = () => generation === this.generation
+            const current = () => tab.alive && isLast()
             const end = () => {
                 tab.alive = false
                 lab.tickets.delete(tab.ticket)
@@ -63,6 +81,7 @@ NETWORK = """plan => {
             }
             tab.drop = () => {
                 const tell = current()
+                tab.opens = false
                 end()
                 if (tell) this.say({ type: "closed" })
             }
@@ -70,30 +89,43 @@ NETWORK = """plan => {
                 tab.alive = false
                 lab.tickets.delete(tab.ticket)
             }
+            tab.fallMute = () => { // and nobody notices: a router has forgotten the connection
+                tab.mute = true
+                tab.alive = false
+                later(() => lab.tickets.delete(tab.ticket), FORGETS)
+            }
+            later(() => {
+                if (!isLast() || !tab.opens) return
+                tab.alive = true // to be told
+                tab.drop()
+            }, OPENS)
             this.leave = end
             lab.tabs.push(tab)
             later(() => {
                 if (!current()) return
                 if (!reachable() || plan.forbidden) return tab.drop()
                 this.current = tab
+                tab.opens = false
                 this.say({ type: "connected" })
+                if (plan.waits) document.querySelector("#root").append(notice())
                 later(() => {
                     if (!current()) return
                     tab.ticket = `${++number}`
                     const { ticket } = tab
                     lab.tickets.set(ticket, tab)
                     later(() => current() && this.show(ticket), drawn())
-                }, drawn())
+                }, plan.waits ?? drawn())
             }, reachable() ? drawn() : 0.01)
         }
         show(ticket) {
+            this.say({ type: "message_batch" })
             const root = document.querySelector("#root")
             root.innerHTML = plan.page
             root.querySelector("[data-page]").dataset.ticket = ticket
         }
         get isWhole() {
             const shown = document.querySelector("[data-page]")?.dataset.ticket
-            const told = lab.datas.some(data => data.told === shown)
+            const told = lab.datas.some(data => data.told === shown && !data.mute)
             return Boolean(this.current && shown && shown === this.current.ticket && told)
         }
     }
@@ -121,9 +153,11 @@ NETWORK = """plan => {
             this.ticket = text
             later(() => {
                 const tab = lab.tickets.get(text)
+                if (this.mute) return
                 if (!tab) return this.end(4001)
                 later(() => {
-                    if (this.readyState !== 1 || !tab.alive) return this.end(1001)
+                    if (this.mute) return
+                    if (this.readyState !== 1 || !lab.tickets.has(text)) return this.end(1001)
                     for (const message of plan.messages) this.hear(message)
                     this.told = text
                     this.beat(tab)
@@ -131,8 +165,8 @@ NETWORK = """plan => {
             }, drawn())
         }
         beat(tab) {
-            if (this.readyState !== 1) return
-            if (!tab.alive) return this.end(1001)
+            if (this.readyState !== 1 || this.mute) return
+            if (!lab.tickets.has(tab.ticket)) return this.end(1001)
             this.hear('{"is":"alive"}')
             later(() => this.beat(tab), 1)
         }
@@ -152,6 +186,11 @@ NETWORK = """plan => {
     const faults = {
         viser: () => lab.tabs.forEach(tab => tab.drop()),
         silently: () => lab.tabs.forEach(tab => tab.die()),
+        mute: () => {
+            for (const tab of lab.tabs) if (tab.alive) tab.fallMute()
+            for (const data of lab.datas) data.mute = true
+            lab.calm = now() + NOTICED
+        },
         data: code => lab.datas.forEach(data => data.end(code)),
         restart: (_, lasts) => {
             lab.up = false
@@ -177,8 +216,9 @@ NETWORK = """plan => {
             const isWhole = lab.worker.isWhole
             lab.same = isWhole === was ? lab.same + 1 : 0
             was = isWhole
-            lab.whole = isWhole ? lab.same : 0
-            if (lab.same > 3 && isWhole === Boolean(said)) lab.wrong.push([now(), isWhole, said])
+            lab.whole = isWhole && !lab.worker.current.mute ? lab.same : 0
+            const matters = lab.same > 3 && !lab.hidden && now() > lab.calm && !plan.waits
+            if (matters && isWhole === Boolean(said)) lab.wrong.push([now(), isWhole, said])
         }, 200)
     })
 }"""
@@ -205,13 +245,33 @@ class Fault:
     lasts: float = 1.0
 
 
+@dataclass(frozen=True)
+class Away:
+    """When [s] a page stands still, and how long [s]; its timers come once in each `step` [s].
+
+    One step is a phone that is asleep, several are a tab behind another one.
+    """
+
+    at: float
+    step: float
+    steps: int = 1
+    hidden: bool = True
+
+
 seconds = st.floats(0.01, LONGEST)
 faults = st.builds(
     Fault,
-    st.sampled_from(["viser", "data", "restart", "offline", "silently"]),
+    st.sampled_from(["viser", "data", "restart", "offline", "silently", "mute"]),
     st.floats(0.0, LAST - LONGEST),
     st.sampled_from([1000, 1001, 1006, 1008, 1011, 1012, 1013, 1015]),
     seconds,
+)
+aways = st.builds(
+    Away,
+    at=st.floats(0.0, LAST),
+    step=st.sampled_from([1.0, 10.0, 60.0, 600.0]),
+    steps=st.integers(1, 10),
+    hidden=st.booleans(),
 )
 
 
@@ -258,7 +318,14 @@ def document() -> str:
 class Visit:
     """A page in such a network: between two times [s], until it has been whole for some seconds."""
 
-    def __init__(self, browser: Browser, plan: dict[str, Any], least: float, most: float) -> None:
+    def __init__(
+        self,
+        browser: Browser,
+        plan: dict[str, Any],
+        least: float,
+        most: float,
+        away: Away | None = None,
+    ) -> None:
         context = browser.new_context()
         self.page, self.errors = context.new_page(), list[str]()
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
@@ -266,21 +333,45 @@ class Visit:
         text = document().replace("PLAN", f"<script>({NETWORK})({json.dumps(plan)})</script>")
         self.page.route("**/*", lambda route: route.fulfill(body=text, content_type="text/html"))
         self.page.goto(SITE)
-        passed = 0.0
-        while passed < most and not (passed > least and self.page.evaluate("lab.whole > 50")):
+        if away is not None:
+            self.page.clock.run_for(1e3 * away.at)
+            self._stand_still(away)
+        while (now := self._now) < most and not (now > least and self._is_whole):
             self.page.clock.run_for(5000)
-            passed += 5.0
         self.parts: dict[str, Any] = self.page.evaluate(PARTS)
         self.wrong: list[Any] = self.page.evaluate("lab.wrong")
-        self.tabs: int = self.page.evaluate("lab.tabs.length")
+        self.last_try: float = self.page.evaluate("lab.tabs.at(-1).at")
         context.close()
 
+    def _stand_still(self, away: Away) -> None:
+        self.page.evaluate("hidden => lab.hide(hidden)", away.hidden)
+        for _ in range(away.steps):
+            self.page.clock.fast_forward(1e3 * away.step)
+        self.page.evaluate("lab.hide(false)")
 
-def becomes_whole(browser: Browser, told: Told, delays: list[float], faults: list[Fault]) -> None:
+    @property
+    def _now(self) -> float:
+        return self.page.evaluate("Date.now() / 1000")
+
+    @property
+    def _is_whole(self) -> bool:
+        return self.page.evaluate("lab.whole > 50")
+
+
+def becomes_whole(
+    browser: Browser,
+    told: Told,
+    delays: list[float],
+    faults: list[Fault],
+    away: Away | None = None,
+    within: float = ENOUGH,
+) -> None:
     """Assert that a page is whole in the end, and has said until then what was missing."""
     plan = {**told, "delays": delays, "faults": [asdict(each) for each in faults]}
     last = max((each.at + each.lasts for each in faults), default=0.0)
-    visit = Visit(browser, plan, last, last + ENOUGH)
+    if away is not None:
+        last = max(last, away.at + away.step * away.steps)
+    visit = Visit(browser, plan, last, last + within, away)
     assert visit.errors == []
     assert visit.parts == {
         "strip": 1,
@@ -299,9 +390,10 @@ def becomes_whole(browser: Browser, told: Told, delays: list[float], faults: lis
         (LONGEST, None),
         (0.01, Fault("restart", 5.0, lasts=15.0)),
         (0.01, Fault("silently", 5.0)),
+        (0.5, Fault("mute", 1.0)),
         (0.01, Fault("data", 5.0, 1008)),
     ],
-    ids=["late", "restarted", "dead", "closed"],
+    ids=["late", "restarted", "dead", "dead before it is there", "closed"],
 )
 def test_a_page_becomes_whole_by_itself(
     browser: Browser, told: Told, delay: float, fault: Fault | None
@@ -309,18 +401,45 @@ def test_a_page_becomes_whole_by_itself(
     becomes_whole(browser, told, [delay], [fault] if fault else [])
 
 
+PHONE, LAPTOP, TAB = Away(10.0, 600.0), Away(10.0, 600.0, hidden=False), Away(10.0, 60.0, 10)
+
+
+@pytest.mark.parametrize(
+    ("away", "fault"),
+    [
+        (PHONE, None),
+        (PHONE, Fault("mute", 20.0)),
+        (LAPTOP, Fault("mute", 20.0)),
+        (TAB, Fault("restart", 20.0)),
+        (TAB, Fault("viser", 20.0)),
+    ],
+    ids=["phone", "dead phone", "dead laptop", "tab, restarted", "tab, closed"],
+)
+def test_a_page_that_stood_still_for_minutes_soon_becomes_whole(
+    browser: Browser, told: Told, away: Away, fault: Fault | None
+) -> None:
+    becomes_whole(browser, told, [0.01], [fault] if fault else [], away, within=BACK)
+
+
 @pytest.mark.thorough
 @settings(suppress_health_check=[HealthCheck.too_slow], max_examples=15)
-@given(st.lists(seconds, min_size=1, max_size=12), st.lists(faults, max_size=4))
+@given(st.lists(seconds, min_size=1, max_size=12), st.lists(faults, max_size=4), st.none() | aways)
 def test_whatever_is_late_or_ends_a_page_becomes_whole_and_says_so(
-    browser: Browser, told: Told, delays: list[float], faults: list[Fault]
+    browser: Browser, told: Told, delays: list[float], faults: list[Fault], away: Away | None
 ) -> None:
-    becomes_whole(browser, told, delays, faults)
+    becomes_whole(browser, told, delays, faults, away)
 
 
 def test_only_a_page_that_is_forbidden_stays_away(browser: Browser, told: Told) -> None:
     plan = {**told, "delays": [0.01], "faults": [], "forbidden": True}
-    early, late = (Visit(browser, plan, until, until) for until in (15.0, 60.0))
-    assert early.parts["notice"] == late.parts["notice"] == "forbidden"
-    assert early.tabs == late.tabs
-    assert early.wrong == late.wrong == []
+    visit = Visit(browser, plan, 60.0, 60.0)
+    assert visit.parts["notice"] == "forbidden" and visit.last_try < 15.0
+    assert visit.wrong == []
+
+
+def test_a_page_that_waits_for_a_place_keeps_its_place_in_the_queue(
+    browser: Browser, told: Told
+) -> None:
+    plan = {**told, "delays": [0.01], "faults": [], "waits": 600.0}
+    visit = Visit(browser, plan, 620.0, 660.0)
+    assert visit.parts["hold"] and visit.last_try < 1.0

@@ -78,8 +78,8 @@ def texts(step: Step) -> list[str]:
 def assert_open(pupil: Pupil, step: Step) -> None:
     """Assert that this step is open, with its robot and plots, and says nothing too early."""
     tab, run, scene = pupil.tab, pupil.tab.lab.lessons, pupil.lesson.scene_at(pupil.index)
-    assert run.waits == bool(step.predictions()) and not (run.waits and tab.session.running)
-    assert tab.session.entry.name == (scene.robot or pupil.lesson.front.robot)
+    assert run.waits == bool(step.predictions()) and not (run.waits and tab.simulation.running)
+    assert tab.simulation.entry.name == (scene.robot or pupil.lesson.front.robot)
     if step.kind == "run":
         absent = missing(tab, *texts(step))
         assert run.has_played() or len(absent) == len(texts(step))
@@ -96,7 +96,7 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
     assert missing(tab, *texts(step), *questions, *(task.text for task in step.tasks())) == []
     plots = [plot for plot in pupil.lesson.scene_at(pupil.index).plots if plot != "phase"]
     titles = tab.page.locator(".u-title").all_text_contents()
-    in_space = tab.session.robot.system.p == 3  # where a path has two directions across
+    in_space = tab.simulation.robot.system.p == 3  # where a path has two directions across
     kinds = {plot: "-space" if in_space and plot.startswith("across") else "" for plot in plots}
     assert {ENGLISH(f"axis.{plot}{kind}") for plot, kind in kinds.items()} <= set(titles)
 

@@ -128,7 +128,7 @@ def test_an_open_page_follows_the_browser_s_scheme_but_interrupts_nobody(
     tab.page.evaluate("setTimeout(() => document.activeElement.blur())")  # which reloads the page
     tab.page.wait_for_function("window.isFirst === undefined")
     expect(tab.page.locator("html")).to_have_attribute("data-mantine-color-scheme", "dark")
-    wait_for(lambda: tab.scheduled.view is not None and tab.scheduled.view is not tab.view)
+    wait_for(lambda: tab.scheduled.display is not None and tab.scheduled.display is not tab.display)
     assert tab.scheduled.lab is lab
     tab.page.context.close()
 

@@ -66,7 +66,7 @@ def test_nothing_is_seen_of_the_viewer_s_own_page(browser: Browser, server: LabS
     assert tab.page.evaluate("window.looks") > 0
     assert tab.page.evaluate("window.uncovered") == []
     tab.press("Hold both back")
-    wait_for(lambda: len(tab.session.forces.held) == 2)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
     context.close()
 
 
@@ -74,23 +74,23 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab = visit(browser, server, newcomer=True)
     invitation, spoken = tab.page.locator("#op-invitation"), tab.page.locator("#op-voice")
     tab.button("Hold them back").click()
-    wait_for(lambda: len(tab.session.forces.held) == 2)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
     expect(invitation).to_be_hidden()
     expect(spoken).to_contain_text(
         re.compile(r"Held back\. Trajectory tracking: torn off: up to \d+ mm")
     )
     expect(spoken).to_contain_text(re.compile(r"Path following: waits: up to \d mm"))
     tab.button("Let them go").click()
-    wait_for(lambda: not tab.session.forces.held)
+    wait_for(lambda: not tab.simulation.forces.held)
     expect(invitation).to_contain_text("pull")
     tab.page.keyboard.press("d")
-    wait_for(lambda: tab.session.forces.hands)
+    wait_for(lambda: tab.simulation.forces.hands)
     expect(invitation).to_be_hidden()
     tab.page.keyboard.press("x")
     expect(invitation).to_contain_text("Bend the path")
     tab.reload()
     expect(invitation).to_contain_text("Bend the path")
-    tab.ask(c.MovePoint(2, 1.2 * tab.session.editor.points()[2]))
+    tab.ask(c.MovePoint(2, 1.2 * tab.simulation.editor.points()[2]))
     tab.button("Open lesson 1").click()
     tab.page.get_by_role("heading", name="Two robots, one circle").wait_for()
     expect(invitation).to_be_hidden()
@@ -105,10 +105,10 @@ def test_the_introduction_is_followed_with_keys(browser: Browser, server: LabSer
     page = tab.page
     tab.button("Hold them back").focus()
     page.keyboard.press("Enter")
-    wait_for(lambda: len(tab.session.forces.held) == 2)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
     expect(tab.button("Let them go")).to_be_focused()
     page.keyboard.press("Enter")
-    wait_for(lambda: not tab.session.forces.held)
+    wait_for(lambda: not tab.simulation.forces.held)
     expect(page.locator("#op-invited")).to_be_focused()  # it has no button
     expect(page.locator("#op-invited")).to_have_attribute("aria-live", "polite")
     page.context.close()
@@ -119,12 +119,12 @@ def test_the_introduction_can_be_skipped_for_good(browser: Browser, server: LabS
     tab.button("Skip the introduction").click()
     expect(tab.page.locator("#op-invitation")).to_be_hidden()
     tab.press("Hold both back")
-    wait_for(lambda: tab.session.forces.held)
+    wait_for(lambda: tab.simulation.forces.held)
     tab.press("Let both go")
-    wait_for(lambda: not tab.session.forces.held)
+    wait_for(lambda: not tab.simulation.forces.held)
     tab.reload()
-    time = tab.session.time
-    wait_for(lambda: tab.session.time > time + 1)
+    time = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > time + 1)
     expect(tab.page.locator("#op-invitation")).to_be_hidden()
     tab.page.context.close()
 
@@ -194,7 +194,7 @@ def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
     tab.page.keyboard.press("Escape")
     tab.page.get_by_role("dialog").wait_for(state="hidden")
     tab.ask(c.Hold(False))
-    wait_for(lambda: all(run.distance < 1e-3 for run in tab.session.runs.values()))
+    wait_for(lambda: all(run.distance < 1e-3 for run in tab.simulation.runs.values()))
     tab.settle()
     expect(spoken).to_contain_text("Held back.")
     tab.press("Language, display")
@@ -310,9 +310,9 @@ def test_with_reduced_motion_the_robots_are_at_rest_at_first(
     browser: Browser, server: LabServer
 ) -> None:
     tab = visit(browser, server, reduced_motion="reduce")
-    wait_for(lambda: not tab.session.running)
+    wait_for(lambda: not tab.simulation.running)
     tab.press("Run")
-    wait_for(lambda: tab.session.running)
+    wait_for(lambda: tab.simulation.running)
     tab.page.context.close()
 
 
@@ -339,7 +339,7 @@ def retype(tab: Tab, label: str, text: str) -> None:
 
 
 def gain(tab: Tab) -> float:
-    return tab.session.parameters.K1
+    return tab.simulation.parameters.K1
 
 
 def test_a_number_may_be_written_with_a_power_of_ten(tab: Tab) -> None:
@@ -474,9 +474,9 @@ def test_the_first_hold_moves_nothing_in_the_panel(browser: Browser) -> None:
     tab = visit(browser, server)
     tab.page.evaluate(WATCH_PANEL)
     tab.button("Hold both back").click()
-    wait_for(lambda: len(tab.session.forces.held) == 2)
-    time = tab.session.time
-    wait_for(lambda: tab.session.time > time + 1)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
+    time = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > time + 1)
     tab.settle()
     assert tab.page.evaluate("[moved, bars]") == [0, 0]
     tab.page.context.close()

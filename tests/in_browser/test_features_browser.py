@@ -103,7 +103,7 @@ ROWS = {
     ),
     "one-sided wall": Row(said=("wall.switch",)),
     "looking back over the last minute": Row(said=("chart.look",)),
-    "set-ups, share codes, sessions that are kept": Row(said=("keep.share", "keep.paste")),
+    "set-ups, share codes, labs that are kept": Row(said=("keep.share", "keep.paste")),
     "classroom, concept test, routes, record as a page": Row(said=("keep.report", "class.export")),
     "export of CSV, pictures and films, identification": Row(
         said=("export.table", "export.picture", "export.film", "gains.identify")
@@ -162,7 +162,7 @@ def seen(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator
     folder = tmp_path_factory.mktemp("seen")
     found = {name: Seen() for name in (FIGURE, LESSONS, FREE)}
     laws = (OWN, "path_following")
-    file = onpath.figure(folder / "figure.html", laws=laws, choices=["set_point"])
+    file = onpath.figure(law=laws, choices=["set_point"]).save(folder / "figure.html")
     figure = SiteReader(browser, file.as_uri())
     wait_for(lambda: figure.page.evaluate("'onpath' in window"), WAIT)
     for each in _before_and_while_held(figure):

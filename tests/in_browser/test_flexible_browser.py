@@ -35,7 +35,7 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
     for entry in (FIVE_BAR, FLEXIBLE):
         tab.page.get_by_alt_text(entry.label).wait_for()
     tab.page.get_by_alt_text(FLEXIBLE.label).click()
-    wait_for(lambda: tab.session.entry is FLEXIBLE and tab.session.time > 0.3)
+    wait_for(lambda: tab.simulation.entry is FLEXIBLE and tab.simulation.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for()
     tab.settle()
     yield tab
@@ -45,17 +45,17 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 def deflection(tab: Tab) -> float:
     """Deflection of the follower's tip, or of a robot that has stopped, [m]."""
-    robot, runs = tab.session.robot, tab.session.runs
+    robot, runs = tab.simulation.robot, tab.simulation.runs
     still = [run for run in runs.values() if run.diverged is not None]
     rows = [run.shown() for run in still or [runs[FOLLOWER]]]
-    bent = [robot.measured(row["q"], row["v"], tab.session.parameters) for row in rows]
+    bent = [robot.measured(row["q"], row["v"], tab.simulation.parameters) for row in rows]
     return max(float(np.abs(each["deflection"]).max()) for each in bent)
 
 
 def tip(tab: Tab) -> np.ndarray:
     """Position of the follower's end-point in the robot's frame for drawing, (3,), [m]."""
     lab = tab.lab
-    return lab.session.robot.place(lab.session.runs[FOLLOWER].shown()["y"])
+    return lab.simulation.robot.position(lab.simulation.runs[FOLLOWER].shown()["y"])
 
 
 @pytest.mark.parametrize("plane", [IN_PATH_PLANE, HORIZONTAL])
@@ -68,16 +68,16 @@ def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) ->
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
 
     def pulled() -> np.ndarray:
-        return lab.session.robot.place(lab.session.forces.hands[FOLLOWER])
+        return lab.simulation.robot.position(lab.simulation.forces.hands[FOLLOWER])
 
     with tab.dragging(start, (start[0] + 45, start[1] + 25)):
-        wait_for(lambda: lab.session.forces.hands and np.linalg.norm(pulled() - before) > 0.01)
+        wait_for(lambda: lab.simulation.forces.hands and np.linalg.norm(pulled() - before) > 0.01)
         moved = pulled() - before
         flat = moved[2] if plane == HORIZONTAL else moved @ [0.1, 1.0, 0.0]
         assert abs(flat) < 1e-6
         tab.ask(c.SetRunning(True))
         wait_for(lambda: deflection(tab) > 1e-3)
-    wait_for(lambda: not lab.session.forces.hands)
+    wait_for(lambda: not lab.simulation.forces.hands)
     wait_for(lambda: deflection(tab) < 1e-3)
     wait_for(lambda: tab.said().startswith("Time is paused"))
 
@@ -86,15 +86,19 @@ def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
     lab = tab.lab
     tab.ask(c.ChoosePath("circle"), c.Reset(), c.SetRunning(False))
     tab.settle()
-    old = lab.session.editor.design.points[3].copy()
+    old = lab.simulation.editor.design.points[3].copy()
     start, end = tab.placed(FOLLOWER, old), tab.placed(FOLLOWER, old + [0.015, 0.012])
     with tab.dragging(start, end):
-        wait_for(lambda: lab.session.editor.design.name == "edited" or lab.session.editor.proposed)
-    wait_for(lambda: lab.session.editor.design.name == "edited")
-    np.testing.assert_allclose(lab.session.editor.design.points[3], old + [0.015, 0.012], atol=2e-3)
+        wait_for(
+            lambda: lab.simulation.editor.design.name == "edited" or lab.simulation.editor.proposed
+        )
+    wait_for(lambda: lab.simulation.editor.design.name == "edited")
+    np.testing.assert_allclose(
+        lab.simulation.editor.design.points[3], old + [0.015, 0.012], atol=2e-3
+    )
     tab.ask(c.SetRunning(True))
-    wait_for(lambda: lab.session.time > 1.5)
-    assert lab.session.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
+    wait_for(lambda: lab.simulation.time > 1.5)
+    assert lab.simulation.runs[FOLLOWER].distance < 2e-3 and tab.said() == ""
     tab.ask(c.ChoosePath("circle"), c.Reset())
 
 
@@ -102,9 +106,9 @@ def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     lab = tab.lab
     tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
     tab.enter("Drawn larger", "5")
-    wait_for(lambda: lab.session.exaggeration == 5.0)
+    wait_for(lambda: lab.simulation.exaggeration == 5.0)
     tab.enter("α", "0.95")
-    wait_for(lambda: lab.session.parameters.output == "redefined")  # type: ignore[attr-defined]
+    wait_for(lambda: lab.simulation.parameters.output == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: str(UNSTABLE) in tab.said())
     assert deflection(tab) > 0.01  # the last instant before: seen at a glance
     bar = tab.page.get_by_text("zero dynamics unstable")
@@ -112,16 +116,16 @@ def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     tab.enter("α", "0.5")
     wait_for(lambda: bar.count() == 0)
     tab.press("Reset")
-    wait_for(lambda: tab.said() == "" and lab.session.time > 1.5)
-    assert lab.session.runs[FOLLOWER].distance < 5e-3
+    wait_for(lambda: tab.said() == "" and lab.simulation.time > 1.5)
+    assert lab.simulation.runs[FOLLOWER].distance < 5e-3
 
 
 def test_the_other_robot_is_unchanged(tab: Tab) -> None:
     tab.press("Robot…")
     tab.press(FIVE_BAR.label)
-    wait_for(lambda: tab.session.entry is FIVE_BAR and tab.session.time > 0.3)
+    wait_for(lambda: tab.simulation.entry is FIVE_BAR and tab.simulation.time > 0.3)
     tab.page.get_by_text("Flexible link", exact=True).wait_for(state="detached")
-    assert tab.session.parameters == replace(FIVE_BAR.parameters(), **NEWCOMER)
+    assert tab.simulation.parameters == replace(FIVE_BAR.parameters(), **NEWCOMER)
 
 
 def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
@@ -131,8 +135,8 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     tab.ask(c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
     wait_for(tab.is_built)
     tab.ask(c.SetRunning(True))
-    time = tab.session.time
-    wait_for(lambda: tab.session.time > time + 1.5)
+    time = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > time + 1.5)
     tab.ask(c.SetParameter("alpha", 1.0))
     message = tab.page.locator("#op-message")
     wait_for(lambda: tab.lab.breakdown.replaying)  # by itself
@@ -149,7 +153,7 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     tab.settle()
     assert not tab.lab.breakdown.replaying  # by itself once only
     message.get_by_role("button", name="Reset with α = 0.5").click()
-    wait_for(lambda: asdict(tab.session.parameters)["alpha"] == 0.5)
+    wait_for(lambda: asdict(tab.simulation.parameters)["alpha"] == 0.5)
     assert tab.errors == []
     tab.page.context.close()
 

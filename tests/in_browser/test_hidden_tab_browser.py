@@ -91,7 +91,7 @@ class Meter:
 
     def __init__(self, server: LabServer) -> None:
         (connection,) = server.server._websock_server._live_connections.values()
-        self._clock = FrameClock(server.simulation)
+        self._clock = FrameClock(server.thread)
         self._write, self._sent = connection.transport.write, 0
         connection.transport.write = self._count
 
@@ -109,30 +109,32 @@ class Meter:
 def test_a_covered_tab_costs_nothing_and_then_shows_the_current_state(
     server: LabServer, window: Window
 ) -> None:
-    view = wait_for(lambda: [lab.view for lab in server.simulation.labs if lab.view is not None])[0]
-    (lab,), meter = server.simulation.labs, Meter(server)
-    wait_for(lambda: lab.session.time > 1.0)
+    view = wait_for(lambda: [lab.display for lab in server.thread.labs if lab.display is not None])[
+        0
+    ]
+    (lab,), meter = server.thread.labs, Meter(server)
+    wait_for(lambda: lab.simulation.time > 1.0)
 
     def seen_throughout() -> float:
         rate = meter.rate(QUESTION_INTERVAL + PATIENCE + TICK)
-        return rate if lab.view is view else 0.0
+        return rate if lab.display is view else 0.0
 
     visible = wait_for(seen_throughout)  # drawn in software, but seen, once the page has settled
     (client,) = server.server.get_clients().values()
     camera = client.camera.position
     window.cover()
-    wait_for(lambda: lab.view is None)
+    wait_for(lambda: lab.display is None)
     wait_for(lambda: meter.rate(TICK) < HIDDEN)  # what was on its way to a busy browser
-    simulated = lab.session.time
+    simulated = lab.simulation.time
     hidden = meter.rate(3.0)
     assert hidden < min(HIDDEN, 0.02 * visible)
-    assert lab.view is None and lab.session.time == simulated
+    assert lab.display is None and lab.simulation.time == simulated
     lab.lab.post(c.ChoosePath("clover"))
     window.uncover()
-    wait_for(lambda: lab.view is view)
+    wait_for(lambda: lab.display is view)
     wait_for(lambda: window.evaluate(f"{VALUES}.includes('clover')"))
-    assert meter.rate(1.0) > 0.3 * visible and lab.session.time > simulated
+    assert meter.rate(1.0) > 0.3 * visible and lab.simulation.time > simulated
     assert np.allclose(client.camera.position, camera, atol=1e-9)  # for all that it was asked
     lab.lab.post(c.SetRunning(False))
     meter.rate(QUESTION_INTERVAL + TICK)  # the last question
-    assert meter.rate(2.0) < PAUSED and lab.view is view
+    assert meter.rate(2.0) < PAUSED and lab.display is view

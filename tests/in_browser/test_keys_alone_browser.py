@@ -64,8 +64,8 @@ class Pupil(Keyboard):
 
     def wait(self, seconds: float) -> None:
         """Wait while simulated time passes."""
-        until = self.tab.session.time + seconds
-        wait_for(lambda: self.tab.session.time > until)
+        until = self.tab.simulation.time + seconds
+        wait_for(lambda: self.tab.simulation.time > until)
 
     def passes(self, task: str) -> None:
         """Return when a task is passed."""
@@ -86,7 +86,7 @@ def test_lesson_1_is_done_by_keys_alone(browser: Browser, server: LabServer, sch
     pupil.act("Open lesson 1: Path or timetable?")
     pupil.arrive(0)
     pupil.press("h")
-    wait_for(lambda: len(tab.session.forces.held) == 2)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
     pupil.press("h")
     pupil.act("Next")
 

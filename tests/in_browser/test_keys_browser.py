@@ -70,7 +70,7 @@ def asked_since(tab: Tab, before: int) -> int:
     tab.blur()
     tab.ask(c.SelectPoint(None))
     tab.page.keyboard.press("n")
-    wait_for(lambda: tab.session.editor.selected == 0)
+    wait_for(lambda: tab.simulation.editor.selected == 0)
     return tab.lab.asked - before - 2
 
 
@@ -88,7 +88,7 @@ def camera(tab: Tab) -> np.ndarray:
 
 def settled_camera(tab: Tab) -> np.ndarray:
     """Position and target of the camera once neither the lab nor the page places it anew."""
-    wait_for(lambda: not tab.view.page._settling)  # type: ignore[attr-defined]
+    wait_for(lambda: not tab.display.page._settling)  # type: ignore[attr-defined]
     placed = camera(tab)
     for _ in range(20):
         tab.settle()
@@ -167,31 +167,31 @@ def test_the_view_is_reset_on_a_phone(browser: Browser, server: LabServer, place
 
 def test_arrows_on_a_slider_move_that_alone(tab: Tab) -> None:
     lab, before = tab.lab, tab.lab.asked
-    value, spec = lab.session.parameters.K1, specs(lab.session.parameters)["K1"]
+    value, spec = lab.simulation.parameters.K1, specs(lab.simulation.parameters)["K1"]
     steps = [("ArrowRight", value + spec.step), ("ArrowLeft", value), ("Home", spec.low)]
     tab.focus(tab.slider("K1"))
     for key, wanted in steps:
         tab.page.keyboard.press(key)
-        wait_for(lambda wanted=wanted: wanted == lab.session.parameters.K1)
-    assert asked_since(tab, before) == 3 and tab.session.running
+        wait_for(lambda wanted=wanted: wanted == lab.simulation.parameters.K1)
+    assert asked_since(tab, before) == 3 and tab.simulation.running
 
 
 def test_keys_move_the_handle_that_looks_back(tab: Tab) -> None:
     lab = tab.lab
-    wait_for(lambda: lab.session.time > 2.5)
+    wait_for(lambda: lab.simulation.time > 2.5)
     tab.ask(c.SetRunning(False))
-    handle, time = tab.page.get_by_role("slider", name="Look back"), lab.session.time
+    handle, time = tab.page.get_by_role("slider", name="Look back"), lab.simulation.time
     tab.focus(handle)
     for key, ago in {"PageDown": 1.0, "ArrowLeft": 1.1, "ArrowRight": 1.0}.items():
         tab.page.keyboard.press(key)
         wait_for(
             lambda ago=ago: (
-                ago - 0.01 < time - (lab.session.viewing or time) < ago + 0.1  # at a sample
+                ago - 0.01 < time - (lab.simulation.viewing or time) < ago + 0.1  # at a sample
             )
         )
-    assert lab.session.time == time and not lab.session.running
+    assert lab.simulation.time == time and not lab.simulation.running
     tab.page.keyboard.press("End")
-    wait_for(lambda: lab.session.viewing is None)
+    wait_for(lambda: lab.simulation.viewing is None)
 
 
 @pytest.mark.parametrize("key", ["Space", "Enter"])
@@ -199,24 +199,24 @@ def test_a_focused_button_is_pressed_and_nothing_else(tab: Tab, key: str) -> Non
     before = tab.lab.asked
     tab.focus(tab.button("Hold both back").first)
     tab.page.keyboard.press(key)
-    wait_for(lambda: len(tab.session.forces.held) == 2)
-    assert asked_since(tab, before) == 1 and tab.session.running
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
+    assert asked_since(tab, before) == 1 and tab.simulation.running
 
 
 def test_letters_still_work_on_buttons_sliders_and_boxes_to_tick(tab: Tab) -> None:
     lab = tab.lab
     tab.button("Hold both back").first.click()
-    wait_for(lambda: lab.session.forces.held)
+    wait_for(lambda: lab.simulation.forces.held)
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
             tab.focus(control)
-        held = bool(lab.session.forces.held)
+        held = bool(lab.simulation.forces.held)
         tab.page.keyboard.press("h")
-        wait_for(lambda held=held: bool(lab.session.forces.held) is not held)
+        wait_for(lambda held=held: bool(lab.simulation.forces.held) is not held)
         tab.page.keyboard.press("d")
-        wait_for(lambda: lab.session.forces.hands)
+        wait_for(lambda: lab.simulation.forces.hands)
         tab.page.keyboard.press("x")
-        wait_for(lambda: not lab.session.forces.hands)
+        wait_for(lambda: not lab.simulation.forces.hands)
 
 
 @pytest.mark.parametrize("hold", ["р", "η", "ي", "ㅗ"])
@@ -225,10 +225,10 @@ def test_letters_work_on_keyboards_with_another_alphabet(tab: Tab, hold: str) ->
     for control in (None, tab.slider("K1"), tab.page.get_by_label("Copy to both")):
         if control is not None:
             tab.focus(control)
-        held = bool(tab.session.forces.held)
+        held = bool(tab.simulation.forces.held)
         for kind in ("keyDown", "keyUp"):
             typist.send("Input.dispatchKeyEvent", {"type": kind, "key": hold, "code": "KeyH"})
-        wait_for(lambda held=held: bool(tab.session.forces.held) is not held)
+        wait_for(lambda held=held: bool(tab.simulation.forces.held) is not held)
 
 
 def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
@@ -240,28 +240,28 @@ def test_what_is_typed_into_a_field_does_nothing_else(tab: Tab) -> None:
         for key in ("d", "x", "h", "w", "r", "g", "u", "PageDown", "PageUp", "Home"):
             tab.page.keyboard.press(key)
     assert tab.field("Share code").input_value() == "dxhwrgu"
-    assert asked_since(tab, before) == 0 and lab.session.running and lab.lessons.index == step
+    assert asked_since(tab, before) == 0 and lab.simulation.running and lab.lessons.index == step
     tab.field("Share code").fill("")
 
 
 def test_going_on_is_reported_and_undone_by_key_and_button(tab: Tab) -> None:
     lab = tab.lab
-    wait_for(lambda: lab.session.time > 1.5)
+    wait_for(lambda: lab.simulation.time > 1.5)
     tab.page.keyboard.press("b")
-    wait_for(lambda: lab.session.viewing is not None)
-    time = lab.session.time
+    wait_for(lambda: lab.simulation.viewing is not None)
+    time = lab.simulation.time
     wait_for(lambda: "This is the past" in tab.said())
     tab.page.keyboard.press("Space")
-    wait_for(lambda: lab.session.running and lab.session.time > time)  # back at the present
+    wait_for(lambda: lab.simulation.running and lab.simulation.time > time)  # back at the present
     tab.page.keyboard.press("b")
-    wait_for(lambda: lab.session.viewing is not None)
-    end = lab.session.time
+    wait_for(lambda: lab.simulation.viewing is not None)
+    end = lab.simulation.time
     tab.press("Go on from here")
     wait_for(lambda: "are discarded" in tab.said())
     tab.press("Restore what was discarded")
-    wait_for(lambda: lab.session.time == end and not lab.session.running)
+    wait_for(lambda: lab.simulation.time == end and not lab.simulation.running)
     tab.settle()  # the button that was pressed may be drawn anew
     tab.page.keyboard.press("u")
-    wait_for(lambda: lab.session.time != end)
+    wait_for(lambda: lab.simulation.time != end)
     tab.page.keyboard.press("u")
-    wait_for(lambda: lab.session.time == end)
+    wait_for(lambda: lab.simulation.time == end)

@@ -98,14 +98,14 @@ def number(tab: Tab, title: str) -> float:
 
 def test_numbers_titles_and_captions_are_the_labs(tab: Tab) -> None:
     lab, page = tab.lab, tab.page
-    wait_for(lambda: lab.session.time > 1.0)
+    wait_for(lambda: lab.simulation.time > 1.0)
     tab.press("Hold both back")
-    wait_for(lambda: lab.session.runs[LEFT].distance > 0.02)
+    wait_for(lambda: lab.simulation.runs[LEFT].distance > 0.02)
     tab.press("Pause")
-    wait_for(lambda: not lab.session.running)
+    wait_for(lambda: not lab.simulation.running)
     for title, side in {"Trajectory tracking": LEFT, "Path following": RIGHT}.items():
         expect(page.get_by_role("heading", name=title)).to_be_visible()
-        distance = 1e3 * lab.session.runs[side].distance
+        distance = 1e3 * lab.simulation.runs[side].distance
         wait_for(lambda title=title, mm=distance: abs(number(tab, title) - mm) < 0.06)
     expect(page.locator("#op-stage").get_by_text("torn off")).to_be_visible()
     expect(tab.button("Let both go")).to_have_attribute("aria-pressed", "true")
@@ -115,17 +115,19 @@ def test_numbers_titles_and_captions_are_the_labs(tab: Tab) -> None:
 
 def test_the_mouse_looks_back_and_the_lab_goes_along(tab: Tab) -> None:
     lab, page = tab.lab, tab.page
-    wait_for(lambda: lab.session.time > 3.0)
+    wait_for(lambda: lab.simulation.time > 3.0)
     tab.press("Pause")
-    wait_for(lambda: not lab.session.running)
+    wait_for(lambda: not lab.simulation.running)
     plot = page.locator("#op-strip .plot").bounding_box()
     assert plot is not None
     page.mouse.click(plot["x"] + 0.15 * plot["width"], plot["y"] + plot["height"] / 2)
-    wait_for(lambda: lab.session.viewing is not None)
-    assert lab.session.viewing is not None and 0 <= lab.session.viewing < lab.session.time - 1
+    wait_for(lambda: lab.simulation.viewing is not None)
+    assert (
+        lab.simulation.viewing is not None and 0 <= lab.simulation.viewing < lab.simulation.time - 1
+    )
     expect(tab.button("Go on from here")).to_be_visible()
     tab.press("Back to now")
-    wait_for(lambda: lab.session.viewing is None)
+    wait_for(lambda: lab.simulation.viewing is None)
     tab.button("Go on from here").wait_for(state="hidden")
 
 
@@ -156,13 +158,13 @@ def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> Non
 
 
 def test_a_lost_connection_is_said_and_comes_back(tab: Tab) -> None:
-    stream: Any = tab.view._data._stream  # type: ignore[union-attr]
+    stream: Any = tab.display._data._stream  # type: ignore[union-attr]
     opened, loop = stream.opened, tab.server.server.get_event_loop()
     asyncio.run_coroutine_threadsafe(stream._connection.close(1012), loop).result(10.0)
     wait_for(lambda: stream.opened == opened + 1)
     expect(tab.page.get_by_text("No connection to the lab")).to_have_count(0)
     tab.press("Hold both back")
-    wait_for(lambda: tab.session.forces.held)
+    wait_for(lambda: tab.simulation.forces.held)
 
 
 @pytest.fixture(params=WINDOWS, ids=lambda size: f"{size[0]}x{size[1]}")

@@ -34,22 +34,22 @@ def tab(browser: Browser, server: LabServer) -> Iterator[Tab]:
 
 
 def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
-    session, page = tab.session, tab.page
-    wait_for(lambda: session.time > 0.5)
-    run = session.run_number
+    simulation, page = tab.simulation, tab.page
+    wait_for(lambda: simulation.time > 0.5)
+    run = simulation.run_number
     tab.choose("Law, left", "Waiting clock")
-    wait_for(lambda: session.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"})
-    assert session.run_number == run and session.time > 0.5 and session.running
+    wait_for(lambda: simulation.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"})
+    assert simulation.run_number == run and simulation.time > 0.5 and simulation.running
     expect(page.get_by_text(LAWS["waiting_clock"].text)).to_be_visible()
     expect(page.get_by_role("heading", name="Waiting clock")).to_be_visible()
     expect(page.locator("#op-strip").get_by_text("Waiting clock", exact=True)).to_be_visible()
     tab.choose("Law, right", "Waiting clock")
-    wait_for(lambda: session.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"})
+    wait_for(lambda: simulation.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"})
     for side in ("left", "right"):
         name = f"Waiting clock, {side}"
         expect(page.locator("#op-strip").get_by_text(name, exact=True)).to_be_visible()
     tab.ask(c.Reset())
-    assert session.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"}
+    assert simulation.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"}
 
 
 AXES = """() => Object.values(window.__viserTestpoints.uplots).map(({chart: {scales, data}}) =>
@@ -60,11 +60,11 @@ def test_the_time_axis_of_a_plot_ends_with_its_data(tab: Tab) -> None:
     """Also if laws and time begin anew at once, as in a step of a lesson."""
     tab.open("More plots")
     tab.choose("Show", "torques")
-    wait_for(lambda: tab.session.time > 2.0)
+    wait_for(lambda: tab.simulation.time > 2.0)
     for law in ("set_point", "waiting_clock", "trajectory_tracking"):
         tab.ask(c.ChooseLaw(LEFT, law))
         tab.ask(c.Reset())
-        wait_for(lambda: tab.session.time > 0.5)
+        wait_for(lambda: tab.simulation.time > 0.5)
         expect(tab.page.locator(".u-legend").first).to_contain_text(LAWS[law].label)
         axes = tab.page.evaluate(AXES)
         assert axes and all(end == pytest.approx(last, rel=0.05) for end, last in axes)
@@ -86,12 +86,12 @@ def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> No
 
 
 def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
-    page, session = tab.page, tab.session
+    page, simulation = tab.page, tab.simulation
     box = page.get_by_label("Own law, right", exact=True).filter(visible=True)
     expect(box).to_have_count(0)
     tab.choose("Law, right", "Own law…")
     expect(box).to_have_value(PATH_FOLLOWING.replace("; ", "\n"))
-    assert session.laws == DEFAULT_LAWS  # nothing has been typed yet
+    assert simulation.laws == DEFAULT_LAWS  # nothing has been typed yet
     box.press("Control+A")
     box.press_sequentially("across = -K1*xii - K2*dxi")
     box.press("Shift+Enter")
@@ -99,19 +99,19 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     box.press("Enter")
     said = "line 1, column 14: there is no 'xii': did you mean xi?"
     expect(page.get_by_role("alert").get_by_text(said)).to_be_visible()
-    assert session.laws == DEFAULT_LAWS and session.running
+    assert simulation.laws == DEFAULT_LAWS and simulation.running
     box.press("ArrowUp")
     box.press("Home")
     for _ in "across = -K1*xi":
         box.press("ArrowRight")
     box.press("Delete")
-    time, run, speed = session.time, session.run_number, session.parameters.speed
+    time, run, speed = simulation.time, simulation.run_number, simulation.parameters.speed
     box.press("Enter")
     law = "across = -K1*xi - K2*dxi; along = -K5*(dtheta + speed)"
-    wait_for(lambda: session.laws[RIGHT] == law)
-    assert session.run_number == run and session.time > time
-    wait_for(lambda: session.runs[RIGHT].shown()["theta_rate"][0] < -0.9 * speed)
-    assert session.runs[RIGHT].max_distance < 1e-3
+    wait_for(lambda: simulation.laws[RIGHT] == law)
+    assert simulation.run_number == run and simulation.time > time
+    wait_for(lambda: simulation.runs[RIGHT].shown()["theta_rate"][0] < -0.9 * speed)
+    assert simulation.runs[RIGHT].max_distance < 1e-3
     expect(page.get_by_text(said)).to_have_count(0)
     expect(page.locator("#op-strip").get_by_text("Own law", exact=True)).to_be_visible()
     expect(page.get_by_text(law)).to_be_visible()
@@ -122,7 +122,7 @@ def test_an_own_law_is_typed_and_a_typo_changes_nothing(tab: Tab) -> None:
     tab.button("Close").click()
     tab.choose("Law, right", "Path following")
     expect(box).to_have_count(0)
-    wait_for(lambda: session.laws == DEFAULT_LAWS)
+    wait_for(lambda: simulation.laws == DEFAULT_LAWS)
 
 
 def test_a_law_that_is_typed_elsewhere_is_shown_in_its_box(tab: Tab) -> None:
@@ -134,5 +134,5 @@ def test_a_law_that_is_typed_elsewhere_is_shown_in_its_box(tab: Tab) -> None:
         "Own law…"
     )
     tab.press("Use this law")
-    wait_for(lambda: tab.session.laws[LEFT] == law)
+    wait_for(lambda: tab.simulation.laws[LEFT] == law)
     assert tab.lab.law_refusals == {}

@@ -130,8 +130,9 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with figures and a site of lessons."""
     folder = tmp_path_factory.mktemp("pages")
     exported_site(folder, ("en", "de"), LESSONS)
+    figure = onpath.figure(title="A robot")
     for name, language in (("figure", "en"), ("figure.de", "de")):
-        onpath.figure(folder / "site" / f"{name}.html", language=language, title="A robot")
+        figure.save(folder / "site" / f"{name}.html", language=language)
     return folder / "site"
 
 

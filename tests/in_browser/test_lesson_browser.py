@@ -74,7 +74,7 @@ def test_a_prediction_is_sketched_before_anything_happens(tab: Tab) -> None:
     tab.wait_until_built()
     tab.page.keyboard.press("Space")
     wait_for(lambda: "commit" in tab.lab.message)
-    assert not tab.session.running and tab.session.time == 0.0
+    assert not tab.simulation.running and tab.simulation.time == 0.0
     way = board(tab, (0.1, 0.8), (0.35, 0.8), (0.45, 0.3), (0.6, 0.3), (0.7, 0.8))
     with tab.dragging(*way, in_scene=False):
         pass
@@ -126,9 +126,9 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
     tab.page.get_by_text("Which of the gains is the spring").wait_for()
     tab.enter("K1", "600")
     tab.enter("K2", "50")
-    wait_for(lambda: (tab.session.parameters.K1, tab.session.parameters.K2) == (600, 50))
-    again = tab.session.time + 3.0
-    wait_for(lambda: tab.session.time > again)
+    wait_for(lambda: (tab.simulation.parameters.K1, tab.simulation.parameters.K2) == (600, 50))
+    again = tab.simulation.time + 3.0
+    wait_for(lambda: tab.simulation.time > again)
     hold_for(tab, 2.6)
     wait_for(lambda: "hold-two-seconds" in tab.lab.lessons.notes.tasks)
     tab.page.get_by_text("✓ Passed").first.wait_for()
@@ -141,12 +141,12 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
 def hold_for(tab: Tab, seconds: float) -> None:
     """Hold both robots back by the button, for some simulated seconds."""
     tab.button("Hold both back").first.click()
-    wait_for(lambda: tab.session.forces.held)
+    wait_for(lambda: tab.simulation.forces.held)
     tab.ask(c.SetRunning(True))
-    begin = tab.session.time
-    wait_for(lambda: tab.session.time > begin + seconds)
+    begin = tab.simulation.time
+    wait_for(lambda: tab.simulation.time > begin + seconds)
     tab.button("Let both go").first.click()
-    wait_for(lambda: not tab.session.forces.held)
+    wait_for(lambda: not tab.simulation.forces.held)
 
 
 def test_finish_shows_own_curves_what_to_take_away_and_the_next_lesson(tab: Tab) -> None:
@@ -169,8 +169,8 @@ def test_the_free_lab_is_unchanged(tab: Tab) -> None:
     tab.page.get_by_role("button", name="Free lab").click()
     tab.page.get_by_role("heading", name="Thirty times").wait_for(state="detached")
     wait_for(lambda: tab.lab.lessons.lesson is None)
-    usual = tab.session.entry.parameters()
-    wait_for(lambda: tab.session.parameters == replace(usual, **NEWCOMER))
+    usual = tab.simulation.entry.parameters()
+    wait_for(lambda: tab.simulation.parameters == replace(usual, **NEWCOMER))
     tab.press("Lessons")
     tab.page.get_by_role("button", name="Go on with lesson 1: ").wait_for()
     tab.page.get_by_text(re.compile("[12] of 2 tasks")).wait_for()

@@ -19,7 +19,7 @@ WAIT = 60.0
 
 
 def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
-    page, session = tab.page, tab.session
+    page, simulation = tab.page, tab.simulation
     page.get_by_text("Path editor", exact=True).click()
     page.get_by_text("From a file", exact=True).click()
 
@@ -30,10 +30,10 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
         chooser.value.set_files(file)  # type: ignore[arg-type]
 
     choose("leaf.svg", LEAF)
-    wait_for(lambda: session.editor.design.name == "drawn", WAIT)
-    width = 1e3 * session.editor.design.curve.at(session.editor.design.curve.sample(200))
+    wait_for(lambda: simulation.editor.design.name == "drawn", WAIT)
+    width = 1e3 * simulation.editor.design.curve.at(simulation.editor.design.curve.sample(200))
     assert (width.max(0) - width.min(0)).max() == pytest.approx(100, abs=2)
-    design = session.editor.design
+    design = simulation.editor.design
     for name, content, words in (
         ("bomb.svg", BOMB, "line 1: a DOCTYPE"),
         ("tool.nc", b"G0 X0 Y0\nG41 X3\n", "line 2, column 1: 'G41'"),
@@ -43,7 +43,7 @@ def test_a_file_becomes_the_path_and_a_hostile_one_is_refused(tab: Tab) -> None:
     ):
         choose(name, content)
         page.get_by_text(words).wait_for(timeout=1e3 * WAIT)
-        assert session.editor.design is design
+        assert simulation.editor.design is design
     choose("points.csv", b"0;0\n4;0\n4;3\n0;3\n")
-    wait_for(lambda: session.editor.design is not design, WAIT)
+    wait_for(lambda: simulation.editor.design is not design, WAIT)
     assert tab.errors == []

@@ -56,7 +56,7 @@ def test_a_miss_does_not_tilt_the_view(tab: Tab, how: str) -> None:
     with drag(*beside(tab), in_scene=False):
         tab.answer()
     assert np.allclose(view(tab), before)
-    assert not tab.session.forces.hands
+    assert not tab.simulation.forces.hands
 
 
 def test_the_right_button_turns_the_view(tab: Tab) -> None:
@@ -90,7 +90,7 @@ def test_two_fingers_move_the_view(tab: Tab) -> None:
 def test_a_pull_still_pulls_and_shows_no_arrow_of_viser(tab: Tab) -> None:
     x, y = tab.placed("right", tab.tip("right"))
     with tab.dragging((x, y), (x - 40, y - 30)):
-        wait_for(lambda: tab.session.forces.hands)
+        wait_for(lambda: tab.simulation.forces.hands)
         tab.settle()
         assert tab.page.evaluate(ARROWS) == [False]
-    wait_for(lambda: not tab.session.forces.hands)
+    wait_for(lambda: not tab.simulation.forces.hands)

@@ -25,11 +25,11 @@ def test_a_profile_is_chosen_and_the_poles_tell_their_place(
     tab = Tab(server, context, draws=False)
     tab.open("Advanced")
     tab.choose("Speed profile", "stop and go")
-    wait_for(lambda: tab.session.parameters.speed_profile == "stop_and_go")
+    wait_for(lambda: tab.simulation.parameters.speed_profile == "stop_and_go")
     speeds = set[bool]()
 
     def has_stopped_and_gone() -> bool:
-        speeds.add(abs(tab.session.runs[RIGHT].shown()["speed_ref"][0]) < 1e-9)
+        speeds.add(abs(tab.simulation.runs[RIGHT].shown()["speed_ref"][0]) < 1e-9)
         return len(speeds) == 2
 
     wait_for(has_stopped_and_gone)

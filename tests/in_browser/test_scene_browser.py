@@ -20,11 +20,11 @@ TRACKER, FOLLOWER = LEFT, RIGHT
 def stop_between_control_points(tab: Tab) -> None:
     """Stop the end-point between control points; near one, the mouse would take that instead."""
     tab.ask(c.SetRunning(False))
-    points = tab.session.editor.points()
+    points = tab.simulation.editor.points()
 
     def clear() -> bool:
         tab.ask(*[c.StepOnce()] * 5)
-        tips = [tab.tip(name) for name in tab.session.runs]
+        tips = [tab.tip(name) for name in tab.simulation.runs]
         return min(np.linalg.norm(points - tip, axis=1).min() for tip in tips) > 0.012
 
     wait_for(clear)
@@ -34,45 +34,47 @@ def stop_between_control_points(tab: Tab) -> None:
 def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
     lab = tab.lab
     stop_between_control_points(tab)
-    before = {each: tab.tip(each) for each in lab.session.runs}
+    before = {each: tab.tip(each) for each in lab.simulation.runs}
     start = tab.placed(name, before[name])
     goal = start[0] - 40, start[1] + 30
     with tab.dragging(start, goal):
-        wait_for(lambda: lab.session.forces.grabbed == name and len(lab.session.forces.hands) == 2)
+        wait_for(
+            lambda: lab.simulation.forces.grabbed == name and len(lab.simulation.forces.hands) == 2
+        )
         wait_for(lambda: math.dist(tab.placed(name, hand_targets(lab)[name]), goal) < 12)
         pulled = hand_targets(lab)
         moved = {each: pulled[each] - before[each] for each in pulled}
         np.testing.assert_allclose(moved[TRACKER], moved[FOLLOWER], atol=1e-9)
         tab.ask(c.SetParameter("speed", 0.0), c.SetRunning(True))
-        wait_for(lambda: lab.session.time > 0.8)
-        for each, run in lab.session.runs.items():
+        wait_for(lambda: lab.simulation.time > 0.8)
+        for each, run in lab.simulation.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
             assert np.linalg.norm(run.shown()["force"]) > 0.1
-    wait_for(lambda: lab.session.forces.grabbed is None and not lab.session.forces.hands)
+    wait_for(lambda: lab.simulation.forces.grabbed is None and not lab.simulation.forces.hands)
 
 
 def hand_targets(lab: Lab) -> dict[str, np.ndarray]:
     """Positions of the pulling hands, in the path's plane, shape (2,) each, [m]."""
     return {
-        name: lab.session.robot.frame.planar(hand)
-        for name, hand in lab.session.forces.hands.items()
+        name: lab.simulation.robot.frame.planar(hand)
+        for name, hand in lab.simulation.forces.hands.items()
     }
 
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
     tab.page.get_by_label("Copy to both").uncheck()
-    wait_for(lambda: not tab.session.copy)
+    wait_for(lambda: not tab.simulation.copy)
     stop_between_control_points(tab)
     start = tab.placed(TRACKER, tab.tip(TRACKER))
     with tab.dragging(start, (start[0] - 30, start[1])):
-        wait_for(lambda: tab.session.forces.hands)
-        assert list(tab.session.forces.hands) == [TRACKER]
+        wait_for(lambda: tab.simulation.forces.hands)
+        assert list(tab.simulation.forces.hands) == [TRACKER]
     tab.page.get_by_label("Copy to both").check()
-    wait_for(lambda: tab.session.copy)
+    wait_for(lambda: tab.simulation.copy)
 
 
 def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None:
-    editor = tab.session.editor
+    editor = tab.simulation.editor
     stop_between_control_points(tab)
     old = editor.points().copy()
     index = int(np.argmax(old[:, 1]))
@@ -83,9 +85,9 @@ def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None
         wait_for(lambda: editor.proposed is not None)
         wait_for(lambda: np.linalg.norm(editor.points()[index] - old[index] - [0, 0.02]) < 3e-3)
         assert editor.selected == index
-        times = [tab.session.time]
+        times = [tab.simulation.time]
         wait_for(lambda: editor.proposed is not None and editor.curve is editor.proposed.curve)
-        times.append(tab.session.time)
+        times.append(tab.simulation.time)
     assert times[1] - times[0] < 1.0
     wait_for(lambda: editor.proposed is None)
     assert editor.design.name == "edited"
@@ -93,8 +95,8 @@ def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None
     tab.page.keyboard.press("Control+z")
     wait_for(lambda: editor.design.name == "circle")
     wait_for(lambda: editor.curve is editor.design.curve)
-    assert tab.session.running
-    wait_for(lambda: tab.session.runs[FOLLOWER].distance < 1e-3)
+    assert tab.simulation.running
+    wait_for(lambda: tab.simulation.runs[FOLLOWER].distance < 1e-3)
 
 
 def test_drawing_a_path_freehand(tab: Tab) -> None:
@@ -105,8 +107,8 @@ def test_drawing_a_path_freehand(tab: Tab) -> None:
     stroke = 0.045 * np.column_stack([np.cos(angle), 0.8 * np.sin(angle)])
     with tab.dragging(*(tab.placed(FOLLOWER, z) for z in stroke)):
         pass
-    wait_for(lambda: tab.session.editor.design.name == "drawn")
-    drawn = tab.session.editor.design.curve
+    wait_for(lambda: tab.simulation.editor.design.name == "drawn")
+    drawn = tab.simulation.editor.design.curve
     distances = np.linalg.norm(drawn.at(drawn.nearest(stroke)[0]) - stroke, axis=1)
     assert distances.max() < 5e-3
     assert tab.said() == ""

@@ -82,8 +82,8 @@ def test_each_switch_draws_and_removes(tab: Tab) -> None:
 
     end = tab.placed(RIGHT, tab.tip(RIGHT))
     with tab.dragging(end, (end[0] + 40, end[1] - 20)):  # nothing of it is in the mouse's way
-        wait_for(lambda: tab.session.forces.grabbed == RIGHT)
-    wait_for(lambda: tab.session.forces.grabbed is None)
+        wait_for(lambda: tab.simulation.forces.grabbed == RIGHT)
+    wait_for(lambda: tab.simulation.forces.grabbed is None)
 
     tab.ask(c.SetLanguage("de"))  # the page is built anew, and shows the same
     wait_for(tab.is_built)

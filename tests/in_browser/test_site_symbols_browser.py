@@ -80,7 +80,7 @@ def test_what_is_drawn_is_to_scale(browser: Browser, address: str) -> None:
             "joints": {},
         }
         drawn = {
-            name: [np.array(each["way"]) for each in reader.page.evaluate(SHAPES, [name, seen])]
+            name: [np.array(each["points"]) for each in reader.page.evaluate(SHAPES, [name, seen])]
             for name in ("lambda", "e", "N", "T", "theta", "K_1", "q_1")
         }
         np.testing.assert_allclose(drawn["lambda"], [[closest, tip]])

@@ -97,13 +97,13 @@ def test_a_fold_is_opened_by_mouse_and_by_keys_and_the_lab_does_not_hear_them(ta
     assert not inside.is_visible()
     title.click()
     inside.wait_for()
-    running = tab.session.running
+    running = tab.simulation.running
     for key, opens in (("Enter", False), (" ", True)):
         title.focus()
         tab.page.keyboard.press(key)
         inside.wait_for(state="visible" if opens else "hidden")
     tab.settle()
-    assert tab.session.running == running
+    assert tab.simulation.running == running
 
 
 @pytest.mark.parametrize("size", [(1280, 800), (1366, 768), (390, 844)])

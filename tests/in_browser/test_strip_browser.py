@@ -62,7 +62,7 @@ HELD_AND_PULLED = """() => {
 def opened(browser: Browser, folder: Path, **more: Any) -> Page:
     """A figure that stands still until it is told something."""
     page = browser.new_page(viewport={"width": 900, "height": 900}, reduced_motion="reduce")
-    page.goto(onpath.figure(folder / "a.html", **more).as_uri())
+    page.goto(onpath.figure(**more).save(folder / "a.html").as_uri())
     wait_for(lambda: page.evaluate("'onpath' in window"), WAIT)
     return page
 
@@ -389,7 +389,7 @@ def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> 
 
 
 def test_a_page_around_is_told_the_height(browser: Browser, tmp_path: Path) -> None:
-    onpath.figure(tmp_path / "held.html")
+    onpath.figure().save(tmp_path / "held.html")
     (snippet,) = re.findall(r"```html\n(.*?)```", README.read_text("utf-8"), re.DOTALL)
     sandboxed = snippet.replace("<iframe", '<iframe sandbox="allow-scripts"')
     (tmp_path / "blog.html").write_text(f"<!doctype html>{sandboxed}", encoding="utf-8")

@@ -18,7 +18,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.snapshots.take_snapshot import take_motion
 from onpath.app.scene.stage_catalogue import stage_of
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
+from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import read_course
 from onpath.lessons.symbols import SYMBOLS
@@ -102,11 +102,11 @@ class Recent:
     """Where everything on one robot was lately, as lines in the window."""
 
     def __init__(self, tab: Tab, side: str) -> None:
-        session = tab.session
-        self.tab, self.side, self.robot = tab, side, session.robot
-        self.curve = session.editor.curve
-        layout, i = sample_layout(session.robot), list(session.runs).index(side)
-        _, samples = session.history.samples(session.time - 3, session.time, 1000)
+        simulation = tab.simulation
+        self.tab, self.side, self.robot = tab, side, simulation.robot
+        self.curve = simulation.editor.curve
+        layout, i = sample_layout(simulation.robot), list(simulation.runs).index(side)
+        _, samples = simulation.history.samples(simulation.time - 3, simulation.time, 1000)
         self.y, force = (samples[:, i, layout.slices[name]] for name in ("y", "force"))
         self.theta, self.reference = (
             samples[:, i, layout.slices[name].start] for name in ("theta", "theta_ref")
@@ -121,7 +121,7 @@ class Recent:
     def joint(self, length: float | np.floating, angle: Array, at: Array | None = None) -> Array:
         """Points at the end of a link, in the path's plane."""
         rays = length * np.column_stack([np.cos(angle), np.sin(angle)])
-        base = self.robot.frame.planar(self.robot.unplace(np.zeros(3)))
+        base = self.robot.frame.planar(self.robot.output_at(np.zeros(3)))
         return rays + (base if at is None else at)
 
     def direction(self, turned: bool) -> Array:
@@ -197,13 +197,13 @@ def test_what_a_symbol_means_is_drawn_where_it_is_while_the_robots_move(tab: Tab
         if symbol in ("y", "K_3"):
             continue  # a ring around the end-point; nothing but a slider
         light(tab, symbol)
-        since, ahead = tab.session.time, random.uniform(0.1, 0.2)
-        target = tab.session.runs["left"].shown()["y"] + random.uniform(-0.04, 0.04, 2)
+        since, ahead = tab.simulation.time, random.uniform(0.1, 0.2)
+        target = tab.simulation.runs["left"].shown()["y"] + random.uniform(-0.04, 0.04, 2)
         tab.ask(c.SetCopy(True), c.Grab("left", target), c.SetRunning(True))
-        wait_for(lambda since=since, ahead=ahead: tab.session.time > since + ahead)
-        ways = list(map(undotted, drawn_ways(tab)))
+        wait_for(lambda since=since, ahead=ahead: tab.simulation.time > since + ahead)
+        ways = list(map(undotted, drawn_lines(tab)))
         tab.ask(c.SetRunning(False), c.Release("left"))
-        for side, run in tab.session.runs.items():
+        for side, run in tab.simulation.runs.items():
             recent = Recent(tab, side)
             ends = ends_of(symbol, recent, law_named(run.law).by_clock)
             if ends is None:
@@ -217,9 +217,9 @@ def test_what_a_symbol_means_is_drawn_where_it_is_while_the_robots_move(tab: Tab
 def test_symbols_of_joints_mean_the_same_on_every_robot_that_has_them(tab: Tab) -> None:
     for name, entry in ROBOTS.items():
         tab.ask(c.ChooseRobot(name), c.SetRunning(False))
-        wait_for(lambda entry=entry: tab.session.entry is entry)
+        wait_for(lambda entry=entry: tab.simulation.entry is entry)
         tab.wait_until_built()
-        robot = tab.session.robot
+        robot = tab.simulation.robot
         for symbol in AT_JOINTS:
             sign = tab.page.locator(f":is([data-symbol={symbol}], [data-lights={symbol}])")
             if not has_meaning(symbol, robot):
@@ -227,16 +227,16 @@ def test_symbols_of_joints_mean_the_same_on_every_robot_that_has_them(tab: Tab) 
                 continue
             light(tab, symbol)
             tab.ask(c.StepOnce())
-            truth = symbol_ways(symbol, robot, take_motion(tab.lab))
+            truth = symbol_lines(symbol, robot, take_motion(tab.lab))
             pixels = [
-                np.array([tab.pixel(side, robot.place(each)) for each in points])
-                for side, points in zip(tab.session.runs, truth, strict=True)
+                np.array([tab.pixel(side, robot.position(each)) for each in points])
+                for side, points in zip(tab.simulation.runs, truth, strict=True)
             ]
-            wait_for(lambda pixels=pixels: all(map(is_drawn, drawn_ways(tab), pixels)))
-            assert len(drawn_ways(tab)) == 2
+            wait_for(lambda pixels=pixels: all(map(is_drawn, drawn_lines(tab), pixels)))
+            assert len(drawn_lines(tab)) == 2
 
 
-def drawn_ways(tab: Tab) -> list[Array]:
+def drawn_lines(tab: Tab) -> list[Array]:
     return [np.array(way) for way in wait_for(lambda: tab.page.evaluate(DRAWN))]
 
 
@@ -262,7 +262,7 @@ def test_a_symbol_is_lit_by_pointing_and_by_keys(tab: Tab) -> None:
     before = page.evaluate(IN_LENSES)
     sign.hover()
     seen = np.concatenate(wait_for(lambda: page.evaluate(DRAWN)))
-    for side in tab.session.runs:
+    for side in tab.simulation.runs:
         tip = tab.placed(side, tab.tip(side))
         assert np.linalg.norm(seen - tip, axis=1).min() < 25, side
     wait_for(lambda: all(a != b for a, b in zip(before, page.evaluate(IN_LENSES), strict=True)))

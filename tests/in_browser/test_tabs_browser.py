@@ -34,7 +34,7 @@ def download(tab: Tab, button: str) -> Download:
 
 
 def test_exports(tab: Tab) -> None:
-    wait_for(lambda: tab.session.time > 1.0)
+    wait_for(lambda: tab.simulation.time > 1.0)
     table = download(tab, "CSV, last 60 s")
     assert table.suggested_filename == "onpath.csv"
     records = read_csv(io.StringIO(Path(table.path()).read_text(encoding="utf-8")))
@@ -49,7 +49,7 @@ def test_exports(tab: Tab) -> None:
 
 @pytest.mark.thorough
 def test_a_recording_plays_from_a_file(tab: Tab, browser: Browser, tmp_path: Path) -> None:
-    wait_for(lambda: tab.session.time > 3.0)  # more than is played below
+    wait_for(lambda: tab.simulation.time > 3.0)  # more than is played below
     film = tmp_path / "film.html"
     download(tab, "Recording (HTML), last 10 s").save_as(film)
     context = fresh(browser)
@@ -73,18 +73,20 @@ def plays_without_complaint(page: Page, film: Path) -> None:
 
 def test_a_reload_comes_back_to_the_same_lab(other: Tab) -> None:
     lab = other.lab
-    old = weakref.ref(other.view)
+    old = weakref.ref(other.display)
     other.enter("K1", "150")
     other.choose("Path", "clover")
     wait_for(
-        lambda: lab.session.parameters.K1 == 150.0 and lab.session.editor.design.name == "clover"
+        lambda: (
+            lab.simulation.parameters.K1 == 150.0 and lab.simulation.editor.design.name == "clover"
+        )
     )
-    wait_for(lambda: lab.session.time > 0.5)
-    before = lab.session.time
+    wait_for(lambda: lab.simulation.time > 0.5)
+    before = lab.simulation.time
     other.reload()
     assert other.lab is lab
-    assert (lab.session.parameters.K1, lab.session.editor.design.name) == (150.0, "clover")
-    wait_for(lambda: lab.session.time > before)
+    assert (lab.simulation.parameters.K1, lab.simulation.editor.design.name) == (150.0, "clover")
+    wait_for(lambda: lab.simulation.time > before)
     assert other.number("K1").input_value() == "150"
     assert other.page.get_by_label("Path", exact=True).input_value() == "clover"
     assert len(other.server.server.get_clients()) == len(other._looked_at())
@@ -93,24 +95,24 @@ def test_a_reload_comes_back_to_the_same_lab(other: Tab) -> None:
 
 def test_another_tab_is_another_lab_that_ends_with_it(tab: Tab) -> None:
     tab.press("Pause")
-    wait_for(lambda: not tab.session.running)
+    wait_for(lambda: not tab.simulation.running)
     clients = len(tab.server.server.get_clients())
     second = Tab(tab.server, tab.page.context, draws=False)
     assert second.lab is not tab.lab
-    assert second.session.running and not tab.session.running
+    assert second.simulation.running and not tab.simulation.running
     second.press("Help and keys")
     second.page.get_by_role("dialog").wait_for()
     second.page.keyboard.press("Escape")
     second.page.get_by_role("dialog").wait_for(state="hidden")
     download(second, "CSV, last 60 s")
-    left: list[weakref.ref[object]] = [weakref.ref(second.view), weakref.ref(second.client)]
+    left: list[weakref.ref[object]] = [weakref.ref(second.display), weakref.ref(second.client)]
     second.close()
     tab.ask()  # the frame in which it closed has ended
-    stopped = second.session.time
+    stopped = second.simulation.time
     for _ in range(20):  # frames
         tab.ask()
-    assert second.session.time == stopped
-    del second.view, second.client
+    assert second.simulation.time == stopped
+    del second.display, second.client
     wait_for(lambda: gc.collect() >= 0 and not [ref for ref in left if ref() is not None])
     assert len(tab.server.server.get_clients()) == clients
 
@@ -121,12 +123,12 @@ def test_a_narrow_screen_shows_both_robots_and_the_buttons(
     context = fresh(browser, viewport={"width": 390, "height": 844}, has_touch=True)
     tab = Tab(server, context, draws=False)
     for name in (TRACKER, FOLLOWER):
-        for point in tab.session.editor.points():
+        for point in tab.simulation.editor.points():
             x, y = tab.placed(name, point)
             assert 0 < x < 390 and 0 < y < 0.5 * 844
     tab.button("Hold both back").scroll_into_view_if_needed()
     tab.press("Hold both back")
-    wait_for(lambda: len(tab.session.forces.held) == 2)
+    wait_for(lambda: len(tab.simulation.forces.held) == 2)
     assert tab.page.evaluate("document.documentElement.scrollWidth") <= 390
     context.close()
 
@@ -143,7 +145,7 @@ def test_an_upright_tablet_has_the_robots_across_its_width_above_the_panel(
 
     wait_for(lambda: apart() > 0.4 * 820)
     for name in (TRACKER, FOLLOWER):
-        for point in tab.session.editor.points():
+        for point in tab.simulation.editor.points():
             x, y = tab.placed(name, point)
             assert 0 < x < 820 and 0 < y < 0.4 * 1180
     context.close()

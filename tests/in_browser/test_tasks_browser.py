@@ -87,7 +87,7 @@ def do(hands: Hands, lesson: str, task: str, gestures: tuple[Gesture, ...]) -> N
             gesture(hands)
         wait_for(lambda: passed(hands.tab, wanted), seconds=10.0)
     except Exception as error:
-        points = np.round(hands.session.editor.design.points * 1e3).tolist()
+        points = np.round(hands.simulation.editor.design.points * 1e3).tolist()
         found = [*verdicts(hands.tab, wanted), hands.lab.message, f"{points}"]
         hands.tab.ask(c.BeginStepAnew())
         raise AssertionError("\n".join(found)) from error
@@ -115,7 +115,7 @@ def test_the_ball_under_the_end_point_is_dragged(by: str, request: pytest.Fixtur
     tab, lab = hands.tab, hands.lab
     go_to(tab, "03-the-five-bar", 0)
     tab.elapse(2)  # both come to rest there
-    end = lab.session.editor.design.points[-1] * 1e3
+    end = lab.simulation.editor.design.points[-1] * 1e3
     assert np.linalg.norm(tab.tip(ROBOT) * 1e3 - end) < 1
     DragBall((end[0], end[1]), (end[0] - 10, end[1] + 25))(hands)
 

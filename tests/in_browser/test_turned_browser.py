@@ -49,7 +49,7 @@ IN_SIGHT = """box => {
 
 def seen(tab: Tab) -> tuple[np.ndarray, dict[str, float]]:
     """Pixels of the corners of the robots' boxes, and the part of the scene that is in sight."""
-    stage = stage_of(tab.session.robot)
+    stage = stage_of(tab.simulation.robot)
     left = next(iter(stage.bases))
     corners = [tab.pixel(left, corner - stage.bases[left]) for corner in stage.corners]
     box = tab._canvas()
@@ -78,7 +78,7 @@ def test_the_robots_stay_in_sight(tab: Tab, sizes: list[tuple[int, int]], lesson
     for width, height in sizes:
         tab.page.set_viewport_size({"width": width, "height": height})
         upright = width <= 0.8 * height
-        view = tab.view
+        view = tab.display
         assert isinstance(view, LabFeed)
         wait_for(lambda v=view, u=upright: v.page.is_ready and v.page._narrow == u)
         wait_for(lambda u=upright: bool(tab.page.locator(SHEET).count()) == u)

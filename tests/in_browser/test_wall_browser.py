@@ -39,16 +39,16 @@ AWAY = np.array([-0.01, -0.05])  # [m], so that the wall's end is not where the 
 
 
 def wall_of(tab: Tab) -> Wall:
-    wall = tab.session.wall
+    wall = tab.simulation.wall
     assert wall is not None
     return wall
 
 
 def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
-    session, keyboard = tab.session, tab.page.keyboard
+    simulation, keyboard = tab.simulation, tab.page.keyboard
     tab.page.mouse.move(1, 1)
     keyboard.press("m")
-    wait_for(lambda: session.wall is not None)
+    wait_for(lambda: simulation.wall is not None)
     wall = wall_of(tab)
     inside = wall.place - 0.025 * wall.normal + [0.03, 0.0]  # on its solid side
     with tab.dragging(tab.placed(LEFT, inside), tab.placed(LEFT, inside + AWAY)):
@@ -60,59 +60,61 @@ def test_a_wall_is_placed_moved_turned_and_taken_away(tab: Tab) -> None:
     with tab.dragging(tab.placed(RIGHT, end), tab.placed(RIGHT, goal)):
         wait_for(lambda: abs(wall_of(tab).angle - (0.5 - math.pi / 2)) < 0.05)
     assert wall_of(tab).place == pytest.approx(now.place)
-    assert not session.forces.hands and session.editor.design.name == "circle"
+    assert not simulation.forces.hands and simulation.editor.design.name == "circle"
     for key, moved in (("l", [0.002, 0.0]), ("k", [0.0, -0.002])):
         before = wall_of(tab)
         keyboard.press(key)
-        wait_for(lambda before=before: session.wall is not before)
+        wait_for(lambda before=before: simulation.wall is not before)
         assert wall_of(tab).place - before.place == pytest.approx(moved, abs=1e-9)
     for key, turn in (("t", c.TURN), ("v", -c.TURN)):
         before = wall_of(tab)
         keyboard.press(key)
-        wait_for(lambda before=before: session.wall is not before)
+        wait_for(lambda before=before: simulation.wall is not before)
         assert wall_of(tab).angle - before.angle == pytest.approx(turn)
     tab.open("Wall")
     tab.enter("Wall y2", "35")
     wait_for(lambda: wall_of(tab).z2 == pytest.approx(0.035))
     tab.page.get_by_label("A wall in the way").uncheck()
-    wait_for(lambda: session.wall is None)
+    wait_for(lambda: simulation.wall is None)
     expect(tab.number("Wall y2")).to_be_hidden()
 
 
 def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
     tab.open("Wall")
     tab.page.get_by_label("A wall in the way").check()
-    wait_for(lambda: tab.session.wall is not None)
+    wait_for(lambda: tab.simulation.wall is not None)
     tab.elapse(3.0)
     shown = tab.page.get_by_role("note").filter(has_text="Force on the wall")
     expect(shown).to_contain_text("Path following: 1.0 N")
 
 
 def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
-    session, page = tab.session, tab.page
+    simulation, page = tab.simulation, tab.page
     tab.ask(c.SetParameter("speed", 0.0))
     tab.elapse(0.2)
     tab.open("Start")
     page.get_by_label("Show it, to drag it").check()
     tab.settle()
-    start = session.start.place(session.editor.curve)
+    start = simulation.start.place(simulation.editor.curve)
     goal = np.array([0.03, 0.07])
     with tab.dragging(tab.placed(RIGHT, start), tab.placed(RIGHT, goal)):
-        wait_for(lambda: np.linalg.norm(session.start.place(session.editor.curve) - goal) < NEAR)
-    assert not session.forces.hands and session.editor.design.name == "circle"
+        wait_for(
+            lambda: np.linalg.norm(simulation.start.place(simulation.editor.curve) - goal) < NEAR
+        )
+    assert not simulation.forces.hands and simulation.editor.design.name == "circle"
     expect(tab.number("Beside the path")).not_to_have_value("0")
     tab.enter("Speed along", "150")
-    wait_for(lambda: session.start.along == pytest.approx(0.15))
+    wait_for(lambda: simulation.start.along == pytest.approx(0.15))
     tab.enter("Clock ahead", "20")
-    wait_for(lambda: session.start.clock_offset == pytest.approx(math.radians(20)))
-    before, run = session.start, session.run_number
+    wait_for(lambda: simulation.start.clock_offset == pytest.approx(math.radians(20)))
+    before, run = simulation.start, simulation.run_number
     tab.enter("Beside the path", "-190")
     wait_for(lambda: "cannot start there" in tab.lab.message)
-    assert session.start == before
+    assert simulation.start == before
     expect(tab.number("Beside the path")).not_to_have_value("-190")
     tab.press("Reset to it")
-    wait_for(lambda: session.run_number > run)
+    wait_for(lambda: simulation.run_number > run)
     tab.ask()  # until it is at the start
-    assert tab.tip(LEFT) == pytest.approx(before.place(session.editor.curve), abs=1e-9)
+    assert tab.tip(LEFT) == pytest.approx(before.place(simulation.editor.curve), abs=1e-9)
     tab.press("On the path")
-    wait_for(lambda: session.start.beside == 0.0 == session.start.along)
+    wait_for(lambda: simulation.start.beside == 0.0 == simulation.start.along)

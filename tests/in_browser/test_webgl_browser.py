@@ -49,17 +49,17 @@ def test_a_lost_picture_is_reported_and_comes_back_with_the_lab(
     context = fresh(browser)
     tab = Tab(server, context, draws=False)
     tab.ask(c.SetParameter("K1", 640.0))
-    lab, time = tab.lab, tab.session.time
+    lab, time = tab.lab, tab.simulation.time
     told = tab.page.get_by_role("alert").filter(has_text="picture of the robots was lost")
     assert told.count() == 0
     tab.page.evaluate(LOSE)
     told.wait_for(timeout=WAIT * 1e3)
-    wait_for(lambda: tab.session.time > time + 0.5)  # the lab goes on
+    wait_for(lambda: tab.simulation.time > time + 0.5)  # the lab goes on
     tab.page.evaluate("setTimeout(() => window.lose.restoreContext())")
     tab.page.wait_for_function("window.isFirst === undefined", timeout=WAIT * 1e3)
     tab.button("Pause").wait_for()
-    wait_for(lambda: tab.scheduled.view is not None and tab.scheduled.view is not tab.view)
-    assert tab.scheduled.lab is lab and lab.session.parameters.K1 == 640.0
+    wait_for(lambda: tab.scheduled.display is not None and tab.scheduled.display is not tab.display)
+    assert tab.scheduled.lab is lab and lab.simulation.parameters.K1 == 640.0
     assert told.count() == 0
     context.close()
 

@@ -124,7 +124,7 @@ def test_the_lab_is_held_from_beside_the_text(tab: Tab) -> None:
     tab.ask(TakeStep(LESSON, 6))
     tab.page.get_by_role("heading", name="Hold it yourself").wait_for()
     tab.button("Hold both back").click()
-    wait_for(lambda: tab.session.forces.held)
+    wait_for(lambda: tab.simulation.forces.held)
     expect(tab.page.get_by_role("heading", name="Hold it yourself")).to_be_in_viewport()
     expect(tab.button("Next")).to_be_in_viewport(ratio=0.99)
     assert tab._canvas()["width"] > 0.5 * 640

@@ -31,7 +31,7 @@ from onpath.lessons.progress import Answer, Notes, Progress
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import record
 
@@ -46,7 +46,7 @@ OLDER = """{"lesson": "01-a", "language": "en", "presenting": false, "route": ""
              "1": {"option": null, "times": [0.0, 1.0], "values": [1.0, 2.0]}},
  "truths": {"3": {"quantity": "distance", "times": [0.0, 1.0], "tracker": [0.0, 1.0],
                   "follower": [0.0, 0.0]}}, "quiz": {"7.0": 1}}}}"""
-"""Lessons as session 18 stored them: a choice is the place of an option at that time."""
+"""Lessons as simulation 18 stored them: a choice is the place of an option at that time."""
 
 
 def course_of(folder: Path, text: str = LESSON, **others: str) -> Course:
@@ -66,14 +66,14 @@ def changed(old: str, new: str) -> str:
 
 def returned(course: Course, lessons: object) -> Lab:
     """A lab with stored lessons."""
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     put_back(lab, {"setup": to_data(Setup()), "lessons": lessons, "before": None})
     return lab
 
 
 def chosen(course: Course) -> dict[str, Any]:
     """What a lab of a course stores in which the second option was chosen twice."""
-    lab, states = Lab(store(), FIVE_BAR, course), list[dict[str, Any]]()
+    lab, states = Lab(loop_cache(), FIVE_BAR, course), list[dict[str, Any]]()
     do(lab, TakeStep(NAME, 3), c.Predict(option=1), TakeStep(NAME, 7), c.AnswerQuiz(0, 1))
     do(lab, TakeStep(NAME, 3))
     keep(lab, lambda state: states.append(json.loads(msgspec.json.encode(state()))))
@@ -83,7 +83,7 @@ def chosen(course: Course) -> dict[str, Any]:
 def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
     """The HTML of the open step, and the answers that the page is told."""
     run, lesson = lab.lessons, take_page_snapshot(lab, 1.0).lesson
-    message = lesson_message(LessonView(run.course, run.words, lesson), lab.session.robot)
+    message = lesson_message(LessonView(run.course, run.words, lesson), lab.simulation.robot)
     return "".join(message["sections"].values()), message["notes"]["answers"]
 
 
@@ -177,7 +177,7 @@ def test_a_step_that_asks_for_a_curve_now_shows_no_choice(tmp_path: Path) -> Non
 
 def test_a_curve_of_other_axes_is_not_shown(tmp_path: Path) -> None:
     course = course_of(tmp_path / "before")
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, TakeStep(NAME, 1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)))
     stored = msgspec.to_builtins(lab.lessons.progress)
     same = returned(course, stored)
@@ -189,7 +189,7 @@ def test_a_curve_of_other_axes_is_not_shown(tmp_path: Path) -> None:
 
 def test_the_answer_after_a_discussion_and_the_reason_are_found_again(tmp_path: Path) -> None:
     reasons = changed('kind = "choice"\n', 'kind = "choice"\nreasons = ["late", "early"]\n')
-    lab = Lab(store(), FIVE_BAR, course_of(tmp_path / "before", reasons))
+    lab = Lab(loop_cache(), FIVE_BAR, course_of(tmp_path / "before", reasons))
     do(lab, TakeStep(NAME, 3), c.Predict(option=1, reason=0), TakeStep(NAME, 3, again=True))
     do(lab, c.Predict(option=0, reason=1))
     other = reasons.replace(THIS + THAT, THAT + THIS).replace('"late", "early"', '"early", "late"')

@@ -20,7 +20,7 @@ from onpath.lessons.schema import Choice, Lesson, Quiz, Step
 from onpath.lessons.task_schema import Once, Order, Setting, Task
 from onpath.lessons.words import Words, languages
 from tests.support.built_in import built_in_course
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.lesson_texts import REFERENCE as EXAMPLE
 
@@ -67,18 +67,18 @@ def test_no_rule_of_thumb_finds_the_right_options() -> None:
 @pytest.mark.parametrize(("lesson", "step", "task"), TASKS, ids=label)
 def test_solution_passes_and_failure_does_not(lesson: Lesson, step: Step, task: Task) -> None:
     reference = read_references(lesson, BUILT_IN / lesson.name / REFERENCE)[0][task.id]
-    passed, last = solved(lab_at(lesson, step, store()), reference.solution, task)
+    passed, last = solved(lab_at(lesson, step, loop_cache()), reference.solution, task)
     assert passed, [verdict.words for verdict in last]
-    passed, last = solved(lab_at(lesson, step, store()), reference.failure, task)
+    passed, last = solved(lab_at(lesson, step, loop_cache()), reference.failure, task)
     assert not passed, [verdict.words for verdict in last]
 
 
 @pytest.mark.parametrize(("lesson", "step"), SCRIPTS, ids=label)
 def test_every_script_of_a_step_plays_to_its_end(lesson: Lesson, step: Step) -> None:
     assert step.script is not None
-    lab = lab_at(lesson, step, store())
+    lab = lab_at(lesson, step, loop_cache())
     assert not any(play(lab, step.script))  # there is no task to judge
-    assert lab.session.time > 0
+    assert lab.simulation.time > 0
 
 
 @pytest.mark.parametrize("language", languages())
@@ -86,8 +86,8 @@ def test_checks_speak_of_parameters_by_their_labels(language: str) -> None:
     """A line such as "encoder_counts is 500" names nothing that the page shows."""
     words, seen = Words(language), Counter[str]()
     for lesson, step, task in TASKS:
-        lab = lab_at(lesson, step, store())
-        record = record_of(lab.session, Beginning.now(lab.session))
+        lab = lab_at(lesson, step, loop_cache())
+        record = record_of(lab.simulation, Beginning.now(lab.simulation))
         for check in task.check:
             said = verdict(check, record, words).words
             if isinstance(check, Setting | Once):
@@ -160,6 +160,6 @@ def test_a_script_that_the_lab_refuses_is_found(tmp_path: Path) -> None:
     file = write_lesson(tmp_path, own)
     course, problems = read_course([tmp_path])
     assert problems == []
-    (problem,) = play_course(course, tmp_path, store())
+    (problem,) = play_course(course, tmp_path, loop_cache())
     assert problem.path == str(file) and "no level set" in problem.text
     assert own.split("\n")[problem.line - 1].startswith("# run")

@@ -12,7 +12,7 @@ from onpath.app.lab.lesson_state import LessonState
 from onpath.app.page.lesson_html import entry
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Notes, Progress
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 
 OPTIONAL = "```step\noptional = true\n```\n"
@@ -31,7 +31,7 @@ def course_with_optional_steps(folder: Path) -> Course:
 
 
 def test_one_press_leads_past_all_optional_steps(tmp_path: Path) -> None:
-    lab = Lab(store(), course=course_with_optional_steps(tmp_path))
+    lab = Lab(loop_cache(), course=course_with_optional_steps(tmp_path))
     do(lab, OpenLesson("01-a"))
     past = list[int | None]()
     for index in range(8):

@@ -28,7 +28,7 @@ from onpath.lessons.schema import Choice, NumberQuestion, Quiz
 from onpath.lessons.words import ENGLISH
 from onpath.models.errors import CodedError
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.record import record
 
@@ -65,7 +65,7 @@ def course_of(folder: Path) -> Course:
 
 
 def lab_at(folder: Path, index: int) -> Lab:
-    lab = Lab(store(), course=course_of(folder))
+    lab = Lab(loop_cache(), course=course_of(folder))
     do(lab, c.TakeStep("01-a", index))
     return lab
 
@@ -147,7 +147,7 @@ def test_how_sure_and_why_are_kept_with_a_prediction(tmp_path: Path) -> None:
     lab = lab_at(tmp_path, 3)
     for reason in (2, -1):
         with pytest.raises(CodedError):
-            lab.lessons.predict(Answer(option=1, reason=reason), lab.session)
+            lab.lessons.predict(Answer(option=1, reason=reason), lab.simulation)
     do(lab, c.Predict(option=1, sure="certain", reason=1))
     assert lab.lessons.notes.answers["3"] == Answer(option=1, sure="certain", reason=1)
     do(lab, c.TakeStep("01-a", 1), c.Predict(None, (0.0, 2.0), (0.0, 9.0), "fairly", None, "So."))

@@ -20,7 +20,7 @@ from onpath.lessons.measures.responses import latest_stretch, overshoot, settlin
 from onpath.lessons.task_schema import Bound, Setting
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import LESSON, write_lesson
 
 STEP = 1 / 60
@@ -73,7 +73,7 @@ def test_the_latest_stretch_is_the_last_run_of_chosen_instants(chosen: list[bool
 
 def let_go(k2: float) -> Lab:
     """A lab at rest that has been pulled across, and let go for three seconds."""
-    lab = Lab(store(), FIVE_BAR)
+    lab = Lab(loop_cache(), FIVE_BAR)
     for name, value in {"K1": 400, "K2": k2, "K3": 0, "speed": 0}.items():
         do(lab, c.SetParameter(name, value))
     do(lab, c.Reset(), c.SetRunning(True))
@@ -85,7 +85,7 @@ def let_go(k2: float) -> Lab:
 
 @pytest.mark.parametrize("k2", [8.0, 20.0])
 def test_a_task_measures_them_in_the_lab(k2: float) -> None:
-    record = record_of(let_go(k2).session, Beginning(0, 0.0))
+    record = record_of(let_go(k2).simulation, Beginning(0, 0.0))
     ratio = k2 / (2 * 20)
     ideal = 100 * np.exp(-np.pi * ratio / np.sqrt(1 - ratio**2))
     near = Bound("free", quantity="across", stat="overshoot", below=ideal + 4, above=ideal - 4)
@@ -98,12 +98,12 @@ def test_a_task_measures_them_in_the_lab(k2: float) -> None:
 
 
 def test_the_length_of_the_path_is_a_setting() -> None:
-    lab = Lab(store(), FIVE_BAR)
+    lab = Lab(loop_cache(), FIVE_BAR)
     circle = 100 * np.pi
     for path, holds in (("circle", True), ("clover", False)):
         do(lab, c.ChoosePath(path))
         run(lab, 1.0)
-        record = record_of(lab.session, Beginning(0, 0.0))
+        record = record_of(lab.simulation, Beginning(0, 0.0))
         check = Setting("length", above=circle - 1, below=circle + 1)
         said = verdict(check, record, ENGLISH)
         assert said.passed == holds and "mm" in said.words

@@ -25,7 +25,7 @@ from onpath.lessons.progress import Progress, read_progress
 from onpath.lessons.routes import FOLDER
 from tests.support.built_in import built_in_course
 from tests.support.catalogues import COMPLETE
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import write_lesson
 
 ROUTE = """
@@ -73,7 +73,7 @@ def turn(lab: Lab, by: int) -> None:
 
 
 def test_a_route_is_followed_from_stop_to_stop_and_back(tmp_path: Path) -> None:
-    lab = Lab(store(), course=written(tmp_path))
+    lab = Lab(loop_cache(), course=written(tmp_path))
     do(lab, FollowRoute("short"))
     seen = [place(lab)]
     for _ in range(len(STOPS) - 1):
@@ -90,7 +90,7 @@ def test_a_route_is_followed_from_stop_to_stop_and_back(tmp_path: Path) -> None:
 
 
 def test_opening_a_lesson_leaves_the_route(tmp_path: Path) -> None:
-    lab = Lab(store(), course=written(tmp_path))
+    lab = Lab(loop_cache(), course=written(tmp_path))
     do(lab, FollowRoute("short"), OpenLesson("02-b"))
     assert lab.lessons.route is None
     turn(lab, 1)
@@ -98,7 +98,7 @@ def test_opening_a_lesson_leaves_the_route(tmp_path: Path) -> None:
 
 
 def test_the_teacher_opens_a_route_and_a_step_beside_it(tmp_path: Path) -> None:
-    lab = Lab(store(), course=written(tmp_path))
+    lab = Lab(loop_cache(), course=written(tmp_path))
     do(lab, TakeStep("01-a", 1, "short"))
     assert lab.lessons.progress.route == "short" and place(lab) == STOPS[0]
     do(lab, TakeStep("02-b", 0))  # it is not on the route, and goes on in its lesson
@@ -110,7 +110,7 @@ def test_the_teacher_opens_a_route_and_a_step_beside_it(tmp_path: Path) -> None:
 
 
 def test_an_unknown_route_is_refused(tmp_path: Path) -> None:
-    lab = Lab(store(), course=written(tmp_path))
+    lab = Lab(loop_cache(), course=written(tmp_path))
     do(lab, FollowRoute("shorts"))
     assert lab.message_level == "warning" and "short" in lab.message
     assert lab.lessons.lesson is None
@@ -164,7 +164,7 @@ def test_the_built_in_routes_have_time_for_what_they_name() -> None:
 def test_a_route_begins_and_ends_with_the_concept_test() -> None:
     course, _ = built_in_course()
     (name,) = [name for name, route in course.routes.items() if route.test]
-    lab = Lab(store(), course=course)
+    lab = Lab(loop_cache(), course=course)
     do(lab, FollowRoute(name))
     assert place(lab) == (BEFORE, 0) and lab.lessons.progress.route == name
     do(lab, FinishLesson(), FollowRoute(name))

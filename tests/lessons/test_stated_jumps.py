@@ -9,7 +9,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.course import BUILT_IN, read_course
 from onpath.lessons.task_schema import Bound
-from tests.support.lab import FRAME, RIGHT, do, store
+from tests.support.lab import FRAME, RIGHT, do, loop_cache
 
 pytestmark = pytest.mark.thorough
 
@@ -19,7 +19,7 @@ WAIT, WINDOW = 8.0, 6.0  # [s], as the task says
 
 def opened() -> tuple[Lab, float]:
     """The step with the task, and the bound that the task asks for, [m]."""
-    lab = Lab(store(), course=read_course([BUILT_IN])[0])
+    lab = Lab(loop_cache(), course=read_course([BUILT_IN])[0])
     do(lab, c.OpenLesson(LESSON))
     assert lab.lessons.lesson is not None
     for place, step in enumerate(lab.lessons.lesson.steps):
@@ -34,7 +34,7 @@ def opened() -> tuple[Lab, float]:
 
 def distances(lab: Lab, seconds: float) -> np.ndarray:
     """Distance of the follower from the circle in each frame, [m]."""
-    run = lab.session.runs[RIGHT]
+    run = lab.simulation.runs[RIGHT]
     found = list[float]()
     for _ in range(round(seconds / FRAME)):
         lab.drain()

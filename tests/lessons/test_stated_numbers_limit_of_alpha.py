@@ -17,7 +17,7 @@ from onpath.models.systems.flexible_five_bar import HOME
 from onpath.models.systems.flexible_links import load_links
 from onpath.models.systems.flexible_robot import FlexibleParameters, robot_for
 from onpath.models.systems.zero_dynamics import flexible_zero_dynamics
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.stated_numbers import agrees, assert_stated, said, stated_in_readme
 
 pytestmark = pytest.mark.thorough
@@ -132,7 +132,7 @@ def test_the_limit_is_one_of_the_pose_and_of_the_modes() -> None:
 def test_the_rank_is_full_on_the_path_of_the_lesson_for_mark_and_tip(alpha: float) -> None:
     """Theorem 2.1 holds for the output whose zero dynamics are unstable as well."""
     own = replace(ROBOTS["flexible"].parameters(), alpha=alpha)
-    robot, path = robot_for(own), Lab(store(), ROBOTS["flexible"]).session.editor.curve
+    robot, path = robot_for(own), Lab(loop_cache(), ROBOTS["flexible"]).simulation.editor.curve
     places = path.at(np.linspace(0, 2 * np.pi, 120, endpoint=False))
     q = np.stack([robot.rest(robot.frame.lift(z)) for z in places])
     matrices = decoupling_matrices(robot, own, q)

@@ -15,7 +15,7 @@ from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Step, Te
 from onpath.lessons.task_schema import Event, Order, Setting, Task
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 
 COURSE, _ = built_in_course()
 VERSIONS = [lesson for versions in COURSE.lessons.values() for lesson in versions.values()]
@@ -77,7 +77,7 @@ def test_whoever_misses_the_border_is_led_to_the_arm() -> None:
         text, asked = (lesson.steps[index].blocks[at] for at in (place, place - 1))
         assert isinstance(text, Text) and isinstance(asked, NumberQuestion)
         assert len(text.links) == 3
-        lab = Lab(store(), FIVE_BAR, COURSE)
+        lab = Lab(loop_cache(), FIVE_BAR, COURSE)
         do(lab, c.SetLanguage(lesson.language), c.TakeStep(lesson.name, index))
         assert not is_told(lab, place, text)
         for given, told in ((asked.number / 2, True), (asked.number, False)):

@@ -17,11 +17,11 @@ from viser import _messages as wire
 
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.take_snapshot import page_key
 from onpath.app.page.first_minute import INVITATIONS, KEPT_AS
-from onpath.app.page.teacher_view import TeacherView
+from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
@@ -74,21 +74,28 @@ class Note(Command):
 
 
 class Elapse(Command):
-    """A command that advances simulated time, frame by frame, as fast as it can be computed."""
+    """A command that advances simulated time, frame by frame, as fast as it can be computed.
+
+    Attributes:
+        left: simulated time that is left because loops are being made, [s].
+    """
 
     def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
+        self.left = seconds
 
     def apply(self, lab: Lab) -> None:
-        dt = time_step(lab.session.parameters)
-        left, each = round(self.seconds / dt), round(FRAME / dt)
+        dt = time_step(lab.simulation.parameters)
+        left, each = round(self.left / dt), round(FRAME / dt)
         while left > 0:
-            lab.session.simulate(min(each, left))
+            lab.simulation.simulate(min(each, left))
+            if lab.simulation.lacks_loops:
+                break
             left -= each
+        self.left = max(left, 0) * dt
 
 
 class Tab:
-    """A tab with its session, client and view in the lab.
+    """A tab with its simulation, client and display in the lab.
 
     Args:
         context: a new context stands for another browser, a shared one for another tab.
@@ -133,21 +140,25 @@ class Tab:
         """Close the tab; return when the lab has noticed."""
         self.page.close()
         wait_for(lambda: self.client.client_id not in self.server.server.get_clients())
-        wait_for(lambda: self.scheduled.view is not self.view)
+        wait_for(lambda: self.scheduled.display is not self.display)
 
     def _join(self, load: Callable[[], Any]) -> None:
-        clients, views = self._clients(), {id(scheduled.view) for scheduled in self._looked_at()}
+        clients, views = self._clients(), {id(scheduled.display) for scheduled in self._looked_at()}
         load()
         self.client: ClientHandle = wait_for(
             lambda: next((c for i, c in self._clients().items() if i not in clients), None)
         )
         self.scheduled: ScheduledLab = wait_for(
             lambda: next(
-                (scheduled for scheduled in self._looked_at() if id(scheduled.view) not in views),
+                (
+                    scheduled
+                    for scheduled in self._looked_at()
+                    if id(scheduled.display) not in views
+                ),
                 None,
             )
         )
-        self.view = self.scheduled.view
+        self.display = self.scheduled.display
         self._listen()
         self.page.get_by_role("button", name="Pause").or_(
             self.page.get_by_role("button", name="Run", exact=True)
@@ -173,9 +184,7 @@ class Tab:
         return self.server.server.get_clients()
 
     def _looked_at(self) -> list[ScheduledLab]:
-        return [
-            scheduled for scheduled in self.server.simulation.labs if scheduled.view is not None
-        ]
+        return [scheduled for scheduled in self.server.thread.labs if scheduled.display is not None]
 
     def _framed(self) -> bool:
         """Whether the browser has applied the camera that the lab chose for its size."""
@@ -184,7 +193,7 @@ class Tab:
         shape = camera.image_width / camera.image_height
         off = camera.image_width * box["height"] - camera.image_height * box["width"]
         same = abs(off) <= max(box["width"], box["height"])  # the browser rounds to whole pixels
-        feed = self.view
+        feed = self.display
         return same and isinstance(feed, LabFeed) and abs(feed.page._framed - shape) < 0.02 * shape
 
     @property
@@ -193,9 +202,9 @@ class Tab:
         return self.scheduled.lab
 
     @property
-    def session(self) -> Session:
-        """Session of the lab."""
-        return self.lab.session
+    def simulation(self) -> Simulation:
+        """Simulation of the lab."""
+        return self.lab.simulation
 
     def ask(self, *commands: Command) -> None:
         """Post commands directly to the lab; return when they have been applied."""
@@ -207,7 +216,13 @@ class Tab:
 
     def elapse(self, seconds: float) -> None:
         """Advance the simulated time of a paused lab by an exact number of ticks."""
-        self.ask(Elapse(seconds))
+        elapse = Elapse(seconds)
+
+        def has_elapsed() -> bool:
+            self.ask(elapse)
+            return elapse.left == 0
+
+        wait_for(has_elapsed)
 
     # Positions.
 
@@ -218,7 +233,7 @@ class Tab:
         forward = forward / np.linalg.norm(forward)
         right = np.cross(forward, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
-        seen = point + stage_of(self.session.robot).bases[name] - camera.position
+        seen = point + stage_of(self.simulation.robot).bases[name] - camera.position
         depth, scale = seen @ forward, box["height"] / 2 / np.tan(camera.fov / 2)
         x = box["width"] / 2 + scale * (seen @ right) / depth
         y = box["height"] / 2 - scale * (seen @ np.cross(right, forward)) / depth
@@ -232,12 +247,12 @@ class Tab:
 
     def placed(self, name: str, z: np.ndarray) -> tuple[float, float]:
         """Position in the window of a point of the path's plane, shape (2,), [m]."""
-        robot = self.session.robot
-        return self.pixel(name, robot.place(robot.frame.lift(np.asarray(z, dtype=float))))
+        robot = self.simulation.robot
+        return self.pixel(name, robot.position(robot.frame.lift(np.asarray(z, dtype=float))))
 
     def tip(self, name: str) -> np.ndarray:
         """Position of the end-point in the path's plane, shape (2,), [m]."""
-        return self.session.robot.frame.planar(self.session.runs[name].shown()["y"]).copy()
+        return self.simulation.robot.frame.planar(self.simulation.runs[name].shown()["y"]).copy()
 
     # User actions.
 
@@ -287,7 +302,7 @@ class Tab:
     def settle(self) -> None:
         """Return when the page has drawn the lab as it is now."""
         self.ask()
-        feed = self.view
+        feed = self.display
         assert isinstance(feed, LabFeed)
         shown = feed._last
         wait_for(lambda: feed._last is not shown and isinstance(feed._last, PageSnapshot))
@@ -305,10 +320,10 @@ class Tab:
 
     def is_built(self) -> bool:
         """Whether the page is that of the current robot, and is not about to be rebuilt."""
-        feed = self.scheduled.view  # a teacher's page is another view than the first one
+        feed = self.scheduled.display  # a teacher's page is another display than the first one
         if not isinstance(feed, LabFeed) or not feed.page.is_ready:
             return False
-        if isinstance(feed.page, TeacherView):
+        if isinstance(feed.page, TeacherPage):
             return True
         column, version = feed.page.column, self.lab.lessons.version
         told = column is not None and column.version == version and bool(column.message)
@@ -323,8 +338,8 @@ class Tab:
             self.page.locator(f'#op-column[data-version="{version}"]').wait_for()
 
     def _is_teachers(self) -> bool:
-        feed = self.scheduled.view
-        return isinstance(feed, LabFeed) and isinstance(feed.page, TeacherView)
+        feed = self.scheduled.display
+        return isinstance(feed, LabFeed) and isinstance(feed.page, TeacherPage)
 
     def press(self, name: str) -> None:
         """Press a button once the page is built."""

@@ -1,11 +1,20 @@
-"""Cases of a law that are divided between `make test` and `make thorough`."""
+"""Cases of a law of which not every run of the tests has all."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable
-from typing import Any
+import random
+from collections.abc import Container, Iterable, Sequence
+from datetime import date
+from typing import Any, TypeVar
 
 import pytest
+
+T = TypeVar("T")
+
+
+def drawn(cases: Sequence[T], count: int) -> list[T]:
+    """Some cases, others every day. A test that is repeated has the same again."""
+    return random.Random(date.today().isoformat()).sample(cases, count)
 
 
 def some(cases: Iterable[Any], quick: Container[Any]) -> list[Any]:

@@ -28,4 +28,4 @@ def begin_anew(tab: Tab) -> None:
     tab.blur()
     tab.ask(c.ResetParameters(), c.ChoosePath("circle"), c.SelectPoint(None), c.Reset())
     tab.ask(c.SetCopy(True), c.SetRate(1.0), c.SetRunning(True))
-    wait_for(lambda: tab.session.time > 0.1)
+    wait_for(lambda: tab.simulation.time > 0.1)

@@ -14,7 +14,7 @@ import numpy as np
 from playwright.sync_api import Locator
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.labels import parameter_label
 from onpath.lessons.words import ENGLISH
 from onpath.models.control.settable import specs, value_of
@@ -44,9 +44,9 @@ class Hands:
         return self.tab.lab
 
     @property
-    def session(self) -> Session:
-        """Session of the lab."""
-        return self.lab.session
+    def simulation(self) -> Simulation:
+        """Simulation of the lab."""
+        return self.lab.simulation
 
     def press(self, what: Locator) -> None:
         """Press a button or a link."""
@@ -68,14 +68,14 @@ class Hands:
 
     def has(self, label: str, value: float, near: float = 0.0) -> bool:
         """Whether the lab's parameter with a label is near a value."""
-        own = self.session.parameters
+        own = self.simulation.parameters
         known = {parameter_label(name, spec, ENGLISH): name for name, spec in specs(own).items()}
         name = known[min((full for full in known if full.startswith(label)), key=len)]
         return abs(value_of(own, name) - value) <= near + 1e-9
 
     def is_near(self, output: np.ndarray, z: np.ndarray) -> bool:
         """Whether an output is near a point of the path's plane, shape (2,), [m]."""
-        return bool(np.linalg.norm(self.session.robot.frame.planar(output) - z) < NEAR)
+        return bool(np.linalg.norm(self.simulation.robot.frame.planar(output) - z) < NEAR)
 
     @staticmethod
     def box(what: Locator) -> dict[str, float]:
@@ -177,7 +177,7 @@ class Pull:
     seconds: float
 
     def __call__(self, hands: Hands) -> None:
-        tab, forces = hands.tab, hands.session.forces
+        tab, forces = hands.tab, hands.simulation.forces
         tip = tab.tip(ROBOT)
         hand = tip + np.array([self.right, self.up]) / 1e3
         with hands.dragging(tab.placed(ROBOT, tip), tab.placed(ROBOT, hand)):
@@ -195,14 +195,14 @@ class DragBall:
     end: Place
 
     def __call__(self, hands: Hands) -> None:
-        tab, editor = hands.tab, hands.session.editor
+        tab, editor = hands.tab, hands.simulation.editor
         points = editor.design.points
         index = int(np.linalg.norm(points - np.array(self.start) / 1e3, axis=1).argmin())
         end = np.array(self.end) / 1e3
         with hands.dragging(tab.placed(ROBOT, points[index]), tab.placed(ROBOT, end)):
             wait_for(lambda: np.linalg.norm(editor.points()[index] - end) < NEAR)
         wait_for(lambda: editor.design.points is not points)
-        assert not hands.session.forces.hands
+        assert not hands.simulation.forces.hands
 
 
 Gesture = Wait | Press | Key | Enter | Slide | Choose | Pull | DragBall

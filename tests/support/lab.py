@@ -12,7 +12,7 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab.commands import Command
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.trajectory import Trajectory, join
@@ -26,21 +26,21 @@ FOLLOWER, TRACKER = RIGHT, LEFT
 
 
 @lru_cache(maxsize=1)
-def store() -> LoopCache:
+def loop_cache() -> LoopCache:
     """The loops, built once for all tests in this process."""
     return LoopCache(at_once=True)
 
 
 def new_lab(seconds: float = 0.0) -> Lab:
     """Make a lab that has run for some seconds."""
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     run(lab, seconds)
     return lab
 
 
-def finish(store: LoopCache) -> None:
+def finish(loop_cache: LoopCache) -> None:
     """Wait until all loops that were asked for are compiled, or given up."""
-    pool = store._pool
+    pool = loop_cache._pool
     if pool is not None:
         with suppress(CancelledError):
             pool.submit(lambda: None).result(60.0)  # it does one thing after the other
@@ -50,7 +50,7 @@ def run(lab: Lab, seconds: float) -> None:
     """Run frame by frame, as the simulation thread does."""
     for _ in range(round(seconds / FRAME)):
         lab.drain()
-        lab.advance(lab.session.rate * FRAME)
+        lab.advance(lab.simulation.rate * FRAME)
 
 
 def do(lab: Lab, *commands: Command) -> None:
@@ -60,38 +60,40 @@ def do(lab: Lab, *commands: Command) -> None:
     lab.drain()
 
 
-def replayed(session: Session) -> dict[str, Trajectory]:
+def replayed(simulation: Simulation) -> dict[str, Trajectory]:
     """What both robots did in the last minute, millisecond by millisecond, by side."""
-    runs = replay(session.robot, session.history.all())
+    runs = replay(simulation.robot, simulation.history.all())
     return {side: join("", parts) for side, parts in runs.items()}
 
 
-def states(session: Session) -> dict[str, np.ndarray]:
+def states(simulation: Simulation) -> dict[str, np.ndarray]:
     """Copies of both robots' states."""
-    return {name: run.state.copy() for name, run in session.runs.items()}
+    return {name: run.state.copy() for name, run in simulation.runs.items()}
 
 
-def y(session: Session, name: str) -> np.ndarray:
+def y(simulation: Simulation, name: str) -> np.ndarray:
     """Position of an end-point, (p,), [m]."""
-    return session.robot.endpoint(session.runs[name].fields()["q"])
+    return simulation.robot.endpoint(simulation.runs[name].fields()["q"])
 
 
 def assert_sound(lab: Lab) -> None:
     """Assert that all numbers are finite, settings are in range and the path is valid."""
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert np.isfinite(run_.state).all()
         assert np.isfinite(run_.row).all()
         assert run_.diverged is None or run_.diverged.reason
-    for name, spec in specs(lab.session.parameters).items():
-        value = value_of(lab.session.parameters, name)
+    for name, spec in specs(lab.simulation.parameters).items():
+        value = value_of(lab.simulation.parameters, name)
         assert checked(spec, name, value) == value
-    editor = lab.session.editor
-    assert curve_faults(lab.session.robot.margin, editor.design.curve) == []
+    editor = lab.simulation.editor
+    assert curve_faults(lab.simulation.robot.margin, editor.design.curve) == []
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
-    assert 0.125 <= lab.session.rate <= 4
-    assert lab.session.forces.held <= set(SIDES) and set(lab.session.forces.hands) <= set(SIDES)
-    assert lab.session.viewing is None or not lab.session.running
+    assert 0.125 <= lab.simulation.rate <= 4
+    assert lab.simulation.forces.held <= set(SIDES) and set(lab.simulation.forces.hands) <= set(
+        SIDES
+    )
+    assert lab.simulation.viewing is None or not lab.simulation.running
     assert_drawable(take_snapshot(lab, 1.0))
 
 

@@ -74,7 +74,7 @@ class Pupil:
     def hurry(self) -> None:
         """Let time run as fast as a student can."""
         self.tab.page.locator("#op-strip .transport select").select_option(index=5)
-        wait_for(lambda: self.tab.session.rate == 4.0)
+        wait_for(lambda: self.tab.simulation.rate == 4.0)
 
     def open(self, label: str, name: str) -> None:
         """Open a lesson from the list of lessons."""
@@ -123,9 +123,9 @@ class Pupil:
 
     def pause(self) -> None:
         """Pause the lab, so that nothing but the gestures of a task happens."""
-        if self.tab.session.running:
+        if self.tab.simulation.running:
             self.tab.button("Pause").filter(visible=True).first.click()
-            wait_for(lambda: not self.tab.session.running)
+            wait_for(lambda: not self.tab.simulation.running)
 
     def press(self, name: str) -> None:
         """Press a button of the page."""

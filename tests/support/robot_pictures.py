@@ -23,7 +23,7 @@ SHOWN = 2.6  # [s], simulated time in the picture
 
 def take_picture(tab: Tab, name: str) -> None:
     """Save the scene with a robot as the picture that its entry names."""
-    if name != tab.session.entry.name:
+    if name != tab.simulation.entry.name:
         tab.ask(c.ChooseRobot(name))
         wait_for(lambda: tab.is_built() and tab._framed())
     tab.ask(c.SetRunning(False))

@@ -42,9 +42,9 @@ class Site:
         connection.request("GET", path, headers={"Host": host, **headers})
         return connection.getresponse()
 
-    def student(self, place: str, origin: str = ORIGIN) -> Student:
-        """A browser at a place, "c/CODE" or "l/NAME"."""
-        return Student(f"ws://{HOST}/{place}", self.port, channel=True, Origin=origin)
+    def student(self, prefix: str, origin: str = ORIGIN) -> Student:
+        """A browser under a prefix, "c/CODE" or "l/NAME"."""
+        return Student(f"ws://{HOST}/{prefix}", self.port, channel=True, Origin=origin)
 
     def serving(self) -> LabProcess:
         """The process that has connections; there must be one only."""

@@ -42,12 +42,12 @@ def quiet(running: Running) -> None:
     wait_for(lambda: not any(p.connections() for p in running.site.processes), 60.0)
 
 
-def return_to(process: LabProcess, running: Running, place: str) -> None:
-    """Wait until the process of a place serves it again."""
+def return_to(process: LabProcess, running: Running, prefix: str) -> None:
+    """Wait until the process of a prefix serves it again."""
 
     def is_back() -> bool:
         served = False
-        with suppress(ConnectionClosed), running.site.student(place) as student:
+        with suppress(ConnectionClosed), running.site.student(prefix) as student:
             student.open()  # a page that is sent on to the other process asks again
             student.read(lambda: student.code)
             served = running.site.serving() is process
@@ -68,8 +68,8 @@ class Class:
 
     def __init__(self, running: Running, stack: ExitStack, key: str = KEYS[0]) -> None:
         self.running, self._key = running, key
-        self.place = f"c/{class_code_of(key)}"
-        self.all = [stack.enter_context(running.site.student(self.place)) for _ in range(3)]
+        self.prefix = f"c/{class_code_of(key)}"
+        self.all = [stack.enter_context(running.site.student(self.prefix)) for _ in range(3)]
         self.teacher, self.ada, self.bob = self.all
         self.names = {self.ada: "Ada", self.bob: "Bob"}
         self.open: list[Student] = []

@@ -27,7 +27,7 @@ from onpath.lessons.sides import ROLES
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.trajectory import Trajectory
 from tests.support.checkout import ROOT
-from tests.support.lab import replayed, run, store
+from tests.support.lab import loop_cache, replayed, run
 
 READMES = (ROOT / "README.md", ROOT / "models" / "studies" / "README.md")
 NUMBER = r"([−-]?\d+(?:[.,]\d+)?)"
@@ -122,7 +122,7 @@ WORST = 3 + 25 / 36  # [s], the brake then catches the follower at 214 degrees
 
 def play(until: float, do: list[Action], path: str = "", left: str = "", **settings: Value) -> Run:
     """Simulate both robots with the lab's defaults except for some settings, and a law."""
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     own = RobotSetup(settings, Path(path or Path().name))
     lab.set_up(Setup("five_bar", {"five_bar": own}, laws={"left": left} if left else {}))
     return _played(lab, Script(tuple(do), until))
@@ -145,17 +145,17 @@ def shown(lesson: str, title: str) -> Run:
     parsed: Lesson = read_lesson(home / "en.md")
     for index, step in enumerate(parsed.steps):
         if step.title == title and step.script is not None:
-            lab = Lab(store())
+            lab = Lab(loop_cache())
             lab.set_up(setup_of(parsed, index))
             return _played(lab, step.script)
     raise AssertionError(f"lesson {lesson} shows no {title!r}")
 
 
 def _played(lab: Lab, script: Script) -> Run:
-    lab.script, lab.session.running = player_of(script), True
+    lab.script, lab.simulation.running = player_of(script), True
     while lab.script is not None:
         run(lab, 0.1)
-    return {ROLES[side]: _motion(each) for side, each in replayed(lab.session).items()}
+    return {ROLES[side]: _motion(each) for side, each in replayed(lab.simulation).items()}
 
 
 def _motion(run: Trajectory) -> Motion:

@@ -17,7 +17,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
-from onpath.app.viser_adapter.addresses import place_of, storage_key
+from onpath.app.viser_adapter.addresses import prefix_of, storage_key
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.simulated_browser import MOVING
@@ -70,8 +70,8 @@ class Student:
 
     @property
     def code(self) -> str:
-        """Session code of the lab."""
-        key = storage_key("onpath_sessions", place_of(urlsplit(self.address).path))
+        """Lab code of the lab."""
+        key = storage_key("onpath_sessions", prefix_of(urlsplit(self.address).path))
         return self.kept.get(key, "").partition(",")[0]
 
     def open(self) -> None:

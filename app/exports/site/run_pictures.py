@@ -41,15 +41,15 @@ def shown_sketch(lesson: Lesson, index: int) -> Sketch | None:
     return None
 
 
-def run_truth(lesson: Lesson, index: int, store: LoopCache) -> Truth | None:
+def run_truth(lesson: Lesson, index: int, loop_cache: LoopCache) -> Truth | None:
     """The result of a step's script; None if it has none."""
     step, sketch = lesson.steps[index], shown_sketch(lesson, index)
     if step.script is None:
         return None
-    lab = lab_at(lesson, step, store)
-    trace = Trace(sketch.quantity if sketch else "distance", Beginning.now(lab.session))
+    lab = lab_at(lesson, step, loop_cache)
+    trace = Trace(sketch.quantity if sketch else "distance", Beginning.now(lab.simulation))
     for _ in play(lab, step.script):
-        trace.follow(lab.session)
+        trace.follow(lab.simulation)
     return trace.truth()
 
 

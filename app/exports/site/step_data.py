@@ -47,12 +47,12 @@ def site_step(
         part_of(
             lesson,
             index,
-            place,
+            block_index,
             words,
             here=not isinstance(block, Task)
             or figure.can_pass(block, references[block.id], actions),
         )
-        for place, block in enumerate(step.blocks)
+        for block_index, block in enumerate(step.blocks)
     ]
     script = figure.script(step.script)
     data = {
@@ -106,7 +106,7 @@ def _block(
     if isinstance(block, Text):
         data["links"] = [figure.link(link.actions) for link in block.links]
         if block.when:
-            data["when"] = answers_meant(block.when, lesson.steps, index, part.place)
+            data["when"] = answers_meant(block.when, lesson.steps, index, part.block_index)
     elif isinstance(block, Task) and part.here:
         data |= task_data(block, figure.choice.parameters, lesson.scene_at(index).laws.named, words)
     return data

@@ -206,12 +206,12 @@ class _Writer:
 
 def _truths(course: Course, names: Iterable[str]) -> dict[tuple[str, int], Truth]:
     """The results of all steps with a script, by lesson and index of the step."""
-    store = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
+    loop_cache = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
     found = dict[tuple[str, int], Truth]()
     for name in names:
         lesson = course.lesson(name, DEFAULT)
         for index in range(len(lesson.steps)):
-            truth = run_truth(lesson, index, store)
+            truth = run_truth(lesson, index, loop_cache)
             if truth is not None:
                 found[name, index] = truth
     return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gzip
 import math
 from base64 import b64encode
+from collections.abc import Mapping
 from typing import Any
 
 import casadi as ca
@@ -47,8 +48,31 @@ from onpath.models.systems.parameters import time_step
 from onpath.models.systems.robots import Robot
 
 
-def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
-    """The data of a figure for JSON: numbers, texts, and the module as Base64."""
+def figure_numbers(figure: FigureChoice) -> dict[str, Any]:
+    """What takes long to compute, and is the same in all languages."""
+    return {
+        "paths": [_path(figure, name, curve) for name, curve in figure.paths.items()],
+        "box": _box(figure),
+        "poles": {
+            "interval": 1 / figure.parameters.control_rate,
+            "steps": STEPS,
+            "size": roots_scan(figure.parameters).step.numel_in(0),
+            "slow": SLOW,
+            "behaviours": BEHAVIOURS,
+        },
+        "module": b64encode(gzip.compress(figure_module(figure), mtime=0)).decode(),
+    }
+
+
+def figure_data(
+    figure: FigureChoice, words: Words, numbers: Mapping[str, Any] | None = None
+) -> dict[str, Any]:
+    """The data of a figure for JSON: numbers, texts, and the module as Base64.
+
+    Args:
+        numbers: what `figure_numbers` gives, if it has been called before.
+    """
+    numbers = numbers or figure_numbers(figure)
     robot, curves = figure.machine, figure.paths
     first = next(iter(curves.values()))
     kernel = figure.kernel(figure.laws[0], first)
@@ -65,25 +89,22 @@ def figure_data(figure: FigureChoice, words: Words) -> dict[str, Any]:
         "sides": _sides(figure),
         "laws": _laws(figure, words),
         "choices": [figure.every_law.index(law) for law in _choices(figure)],
-        "paths": [_path(figure, name, curve, words) for name, curve in curves.items()],
+        "paths": [
+            {"label": path_label(name, words), **path}
+            for name, path in zip(curves, numbers["paths"], strict=True)
+        ],
         "sliders": [slider_data(figure, name, words) for name in figure.sliders],
         "controls": figure.controls,
         "front": front_of(robot).tolist(),
-        "box": _box(figure),
+        "box": numbers["box"],
         "off": OFF,
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
         "efforts": _efforts(robot),
-        "poles": {
-            "interval": 1 / figure.parameters.control_rate,
-            "steps": STEPS,
-            "size": roots_scan(figure.parameters).step.numel_in(0),
-            "slow": SLOW,
-            "behaviours": BEHAVIOURS,
-        },
+        "poles": numbers["poles"],
         "edit": _EDIT,
-        "module": b64encode(gzip.compress(figure_module(figure), mtime=0)).decode(),
+        "module": numbers["module"],
     }
 
 
@@ -184,14 +205,13 @@ def stop_texts(
     return [*map(words.sentence, stop_reasons(figure.machine, figure.parameters, q, law))]
 
 
-def _path(figure: FigureChoice, name: str, curve: Curve, words: Words) -> dict[str, Any]:
+def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
     robot, path = figure.machine, raised(curve, figure.parameters)
     design = design_of(name, curve)
     theta = np.linspace(-np.pi, np.pi, OUTLINE)
     place = page_functions(robot, figure.kind(figure.laws[0], curve))["place"]
     outline = place(robot.frame.lift(path.at(theta)).T).full()
     return {
-        "label": path_label(name, words),
         "kind": kind_name(figure, curve),
         "closed": curve.closed,
         "doubts": [each.reason.code for each in ambiguities(path)],

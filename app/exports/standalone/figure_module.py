@@ -53,7 +53,7 @@ def figure_module(figure: FigureChoice) -> bytes:
     for curve in _kinds(figure).values():
         name, kind = kind_name(figure, curve), figure.kind(figure.laws[0], curve)
         kernels = [figure.kernel(law, curve) for law in figure.every_law]
-        shown = page_functions(figure.machine, kind) | _changes(figure, kernels)
+        shown = {**page_functions(figure.machine, kind), **_changes(figure, kernels)}
         shown |= measurements(figure.machine, figure.parameters)
         edited, steps = _editing(figure, kind, kernels)
         loops |= {f"loop{number}.{name}": kernel for number, kernel in enumerate(kernels)}

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from base64 import b64encode
+from collections.abc import Mapping
 from hashlib import sha256
+from typing import Any
 
 from onpath.app.common.templates import inlined, json_block, render
 from onpath.app.exports.standalone.figure_choice import FigureChoice
@@ -13,32 +15,74 @@ from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
 
 POLICY = (
-    "default-src 'none'; script-src '{script}' 'wasm-unsafe-eval'; style-src '{style}'; "
+    "default-src 'none'; script-src {script}; style-src '{style}'; img-src {picture}; "
     "base-uri 'none'; form-action 'none'"
 )
 """The page's Content-Security-Policy, with the hashes of its script and style: no requests, no
-other scripts, and no eval except WebAssembly."""
+other scripts, no eval except WebAssembly, and no pictures except one in the page."""
 
 
-def figure_page(figure: FigureChoice, words: Words, title: str = "") -> str:
+def figure_page(
+    figure: FigureChoice,
+    words: Words,
+    title: str = "",
+    numbers: Mapping[str, Any] | None = None,
+    picture: bytes = b"",
+) -> str:
     """The page of a figure; the same choice gives the same page.
 
     Args:
         title: heading above the figure; may be empty.
+        numbers: see `figure_data`.
+        picture: what is shown where no script runs, as a PNG file.
     """
-    script, style = inlined("web/onpath.js"), page_style("standalone/figure.css")
-    names = " / ".join(law_label(law, words) for law in figure.laws)
+    names, script = " / ".join(law_label(law, words) for law in figure.laws), "web/onpath.js"
+    data = json_block(figure_data(figure, words, numbers))
+    text, hint = words("standalone.no_script"), _hint(figure, words)
+    return _page(names, words, title, picture, text, hint=hint, data=data, script=inlined(script))
+
+
+def picture_page(laws: str, words: Words, title: str, picture: bytes, reason: str) -> str:
+    """The page of a figure that is only a picture.
+
+    Args:
+        laws: names of its laws.
+        title, picture: as for `figure_page`.
+        reason: why it is only a picture.
+    """
+    text = words("standalone.only_picture", reason=reason)
+    return _page(laws, words, title, picture, text)
+
+
+def _page(
+    names: str,
+    words: Words,
+    title: str,
+    picture: bytes,
+    text: str,
+    *,
+    hint: str = "",
+    data: str = "",
+    script: str = "",
+) -> str:
+    style = page_style("standalone/figure.css")
     return render(
         "standalone/figure.html",
         language=words.language,
         heading=title or f"OnPath: {names}",
         titled=bool(title),
         description=words("standalone.description", laws=names),
-        policy=POLICY.format(script=_hash(script), style=_hash(style)),
+        policy=POLICY.format(
+            script=f"'{_hash(script)}' 'wasm-unsafe-eval'" if script else "'none'",
+            style=_hash(style),
+            picture="data:" if picture else "'none'",
+        ),
         style=style,
-        hint=_hint(figure, words),
-        no_script=words("standalone.no_script"),
-        data=json_block(figure_data(figure, words)),
+        hint=hint,
+        picture=b64encode(picture).decode(),
+        described=words("standalone.still", laws=names),
+        text=text,
+        data=data,
         script=script,
     )
 

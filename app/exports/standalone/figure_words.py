@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
+from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.trajectory import Trajectory
+from onpath.models.control.laws.own import is_text
+from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.sides import SIDES
 from onpath.models.paths.curve_fit import SHORTEST
 from onpath.models.paths.path_checks import TUBE
@@ -50,6 +56,12 @@ _FILLED = {
     "behaviour.settles": ("seconds", "kind"),
     **{key: ("damping", "seconds") for key in _BEHAVIOURS},
 }
+
+
+def run_titles(runs: Sequence[Trajectory], words: Words) -> list[str]:
+    """Displayed names of the runs' laws; one that is not known here has that of its record."""
+    known = law_titles([run.law for run in runs if is_text(run.law) or run.law in LAWS], words)
+    return [known.get(run.law, run.label) for run in runs]
 
 
 def figure_words(words: Words) -> dict[str, str]:

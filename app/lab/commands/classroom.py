@@ -28,8 +28,8 @@ class Freeze(Command):
         if self.on == lab.frozen:
             return
         if self.on:
-            lab.session.forces.release()
-            if lab.session.editor.proposed is not None:  # a point is being dragged
+            lab.simulation.forces.release()
+            if lab.simulation.editor.proposed is not None:  # a point is being dragged
                 finish(lab)
         lab.frozen = self.on
         lab.clear_message()
@@ -94,7 +94,7 @@ class DemonstrateStep(Command):
         run = lab.lessons
         run.open_at(self.lesson, self.step, lab)
         if run.waits:
-            run.predict(Answer(), lab.session)
+            run.predict(Answer(), lab.simulation)
         PlayStep().apply(lab)
 
 

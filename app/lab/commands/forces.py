@@ -29,11 +29,11 @@ class Hold(Command):
     @override
     def apply(self, lab: Lab) -> None:
         lab.return_to_present()
-        session, names = lab.session, list[str](SIDES)
+        simulation, names = lab.simulation, list[str](SIDES)
         if self.side is not None:
-            names = session.targets(checks.side(self.side))
-        on = not session.forces.held.intersection(names) if self.on is None else self.on
-        session.forces.hold(names, on, session.editor.curve, session.hold_direction)
+            names = simulation.targets(checks.side(self.side))
+        on = not simulation.forces.held.intersection(names) if self.on is None else self.on
+        simulation.forces.hold(names, on, simulation.editor.curve, simulation.hold_direction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +50,10 @@ class SetHoldDirection(Command):
     def apply(self, lab: Lab) -> None:
         direction = check_direction(self.direction)
         lab.return_to_present()
-        session = lab.session
-        session.hold_direction, held = direction, sorted(session.forces.held)
-        session.forces.hold(held, False, session.editor.curve)
-        session.forces.hold(held, True, session.editor.curve, direction)
+        simulation = lab.simulation
+        simulation.hold_direction, held = direction, sorted(simulation.forces.held)
+        simulation.forces.hold(held, False, simulation.editor.curve)
+        simulation.forces.hold(held, True, simulation.editor.curve, direction)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +71,7 @@ class Grab(Command):
     @override
     def apply(self, lab: Lab) -> None:
         name = checks.side(self.side)
-        target = checks.point(self.target, lab.session.robot.system.p)
+        target = checks.point(self.target, lab.simulation.robot.system.p)
         lab.return_to_present()
         _grab(lab, name, target)
 
@@ -84,8 +84,8 @@ class Release(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        if self.side is None or checks.side(self.side) == lab.session.forces.grabbed:
-            lab.session.forces.release()
+        if self.side is None or checks.side(self.side) == lab.simulation.forces.grabbed:
+            lab.simulation.forces.release()
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,10 +99,10 @@ class MoveHand(Command):
     def apply(self, lab: Lab) -> None:
         by = np.array([checks.finite(self.right), checks.finite(self.up)])
         lab.return_to_present()
-        session, forces = lab.session, lab.session.forces
+        simulation, forces = lab.simulation, lab.simulation.forces
         name = forces.grabbed or RIGHT
-        target = forces.hands.get(name, session.runs[name].shown()["y"])
-        _grab(lab, name, displaced(session.robot.frame, target, by))
+        target = forces.hands.get(name, simulation.runs[name].shown()["y"])
+        _grab(lab, name, displaced(simulation.robot.frame, target, by))
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +113,12 @@ class SetCopy(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.copy = bool(self.on)
+        lab.simulation.copy = bool(self.on)
 
 
 def _grab(lab: Lab, name: str, target: Array) -> None:
-    session = lab.session
-    session.forces.grab(name, target, session.targets(name))
-    if not session.running:
+    simulation = lab.simulation
+    simulation.forces.grab(name, target, simulation.targets(name))
+    if not simulation.running:
         locked = lab.locked
         lab.show_message(lab.words.sentence(locked) if locked else lab.words("say.pull_paused"))

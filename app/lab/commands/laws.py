@@ -28,11 +28,11 @@ class ChooseLaw(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session = lab.session
-        law = checked_laws({self.side: self.law}, session.entry)[self.side]
-        if not session.suits(law):
+        simulation = lab.simulation
+        law = checked_laws({self.side: self.law}, simulation.entry)[self.side]
+        if not simulation.suits(law):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
-        session.choose_law(self.side, law)
+        simulation.choose_law(self.side, law)
         if lab.law_refusals.pop(self.side, ""):
             lab.clear_message()
 

@@ -94,7 +94,7 @@ class Predict(Command):
             reason=self.reason,
             why=self.why,
         )
-        lab.lessons.predict(answer, lab.session)
+        lab.lessons.predict(answer, lab.simulation)
         lab.show_message("")  # clear the reminder that a prediction is missing
 
 

@@ -8,7 +8,7 @@ from typing import Any
 from typing_extensions import override
 
 from onpath.app.lab.lab import Command, Lab
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.sides import law_label
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.simulation import check_level_set, raised
@@ -36,45 +36,45 @@ class SetParameter(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session, before = lab.session, lab.session.parameters
+        simulation, before = lab.simulation, lab.simulation.parameters
         wanted = changed(before, self.name, self.value)
         if self.name in PATH_MATTERS:
-            check_level_set(wanted, raised(session.editor.blend.target.plan, wanted))
-        _check_plane(session, wanted)
+            check_level_set(wanted, raised(simulation.editor.blend.target.plan, wanted))
+        _check_plane(simulation, wanted)
         _set(lab, wanted)
-        if session.parameters != before:
-            session.note("set", self.name)
-            if self.name == "speed_profile" and self._begins_later(session):
+        if simulation.parameters != before:
+            simulation.note("set", self.name)
+            if self.name == "speed_profile" and self._begins_later(simulation):
                 lab.remark(lab.words("say.ramps_at_start"))
 
     @staticmethod
-    def _begins_later(session: Session) -> bool:
+    def _begins_later(simulation: Simulation) -> bool:
         """Whether the speed profile varies only at the start of a run, which has passed."""
-        profile = profile_of(session.parameters)
-        return profile is not None and not profile.period and session.time >= profile.times[-1]
+        profile = profile_of(simulation.parameters)
+        return profile is not None and not profile.period and simulation.time >= profile.times[-1]
 
 
 def _set(lab: Lab, wanted: Parameters) -> None:
     """Set the parameters, and tell the user if that has restarted the run."""
-    session, run = lab.session, lab.session.run_number
-    session.set_parameters(wanted)
-    if session.run_number != run:
+    simulation, run = lab.simulation, lab.simulation.run_number
+    simulation.set_parameters(wanted)
+    if simulation.run_number != run:
         lab.remark(lab.words("say.begun_anew"))
 
 
-def _check_plane(session: Session, wanted: Parameters) -> None:
+def _check_plane(simulation: Simulation, wanted: Parameters) -> None:
     """Refuse another plane of the path if the path would be out of the robot's reach there.
 
     Raises:
         CodedError: it would.
     """
-    robot, editor = session.entry.make(wanted), session.editor
-    if robot.frame == session.robot.frame:
+    robot, editor = simulation.entry.make(wanted), simulation.editor
+    if robot.frame == simulation.robot.frame:
         return
     for curve in (editor.blend.target, editor.curve):
         if faults := curve_faults(robot.margin, curve):
             reasons = tuple(fault.reason for fault in faults)
-            raise CodedError("error.cannot_follow", robot=session.entry.label, reasons=reasons)
+            raise CodedError("error.cannot_follow", robot=simulation.entry.label, reasons=reasons)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +83,8 @@ class ResetParameters(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        _check_plane(lab.session, lab.session.entry.parameters())
-        _set(lab, lab.session.entry.parameters())
+        _check_plane(lab.simulation, lab.simulation.entry.parameters())
+        _set(lab, lab.simulation.entry.parameters())
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +93,7 @@ class Identify(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.identification.begin(lab.session.robot, lab.session.history.copy())
+        lab.identification.begin(lab.simulation.robot, lab.simulation.history.copy())
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,11 +106,11 @@ class ChooseRobot(Command):
     def apply(self, lab: Lab) -> None:
         if self.name not in ROBOTS:
             raise unknown_name(self.name, list(ROBOTS), "robot")
-        if ROBOTS[self.name] is lab.session.entry:
+        if ROBOTS[self.name] is lab.simulation.entry:
             return
-        before = lab.session.laws
-        lab.session.choose_robot(ROBOTS[self.name])
-        unsuitable = [law for side, law in before.items() if law != lab.session.laws[side]]
+        before = lab.simulation.laws
+        lab.simulation.choose_robot(ROBOTS[self.name])
+        unsuitable = [law for side, law in before.items() if law != lab.simulation.laws[side]]
         lab.show_message("")
         if unsuitable:
             names = ", ".join(law_label(law, lab.words) for law in dict.fromkeys(unsuitable))

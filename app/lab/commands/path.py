@@ -33,9 +33,9 @@ class ChoosePath(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        if self.name not in lab.session.presets:
-            raise unknown_name(self.name, list(lab.session.presets), "path")
-        commit(lab, lab.session.presets[self.name])
+        if self.name not in lab.simulation.presets:
+            raise unknown_name(self.name, list(lab.simulation.presets), "path")
+        commit(lab, lab.simulation.presets[self.name])
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class SelectPoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor = lab.session.editor
+        editor = lab.simulation.editor
         if self.index is not None:
             editor.design.check_index(self.index)
         editor.select(self.index)
@@ -58,7 +58,7 @@ class SelectNext(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor = lab.session.editor
+        editor = lab.simulation.editor
         editor.select((-1 if editor.selected is None else editor.selected) + 1)
         if editor.selected is None:
             editor.select(0)
@@ -80,7 +80,7 @@ class MovePoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor, target = lab.session.editor, point(self.target, 2)
+        editor, target = lab.simulation.editor, point(self.target, 2)
         if editor.proposed is None or editor.selected != self.index:
             editor.finish()  # the drag of another point
             editor.select(self.index)
@@ -107,12 +107,12 @@ class NudgePoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        index = lab.session.editor.selected
+        index = lab.simulation.editor.selected
         if index is None:
             if self.right > 0:
                 StepOnce().apply(lab)
             return
-        design = lab.session.editor.design
+        design = lab.simulation.editor.design
         step = np.array([finite(self.right), finite(self.up)])
         MovePoint(index, design.points[index] + step).apply(lab)
 
@@ -126,7 +126,7 @@ class PlacePoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        index, design = _selected(lab), lab.session.editor.design
+        index, design = _selected(lab), lab.simulation.editor.design
         old = design.points[index]
         wanted = zip(old, (self.first, self.second), strict=True)
         new = [o if n is None else finite(n) for o, n in wanted]
@@ -140,7 +140,7 @@ class AddPoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor = lab.session.editor
+        editor = lab.simulation.editor
         index = 0 if editor.selected is None else editor.selected
         commit(lab, editor.design.added(index))
         editor.select(min(index + 1, len(editor.design.points) - 1))
@@ -152,7 +152,7 @@ class RemovePoint(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        commit(lab, lab.session.editor.design.removed(_selected(lab)))
+        commit(lab, lab.simulation.editor.design.removed(_selected(lab)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -170,10 +170,10 @@ class DrawPath(Command):
         stroke = np.asarray(self.stroke, dtype=float)
         if stroke.ndim != 2 or stroke.shape[1] != 2 or len(stroke) > MOST_STROKE_POINTS:
             raise CodedError("error.stroke_without_points")
-        design = drawn(stroke, lab.session.editor.design.curve)
+        design = drawn(stroke, lab.simulation.editor.design.curve)
         commit(lab, design)
         remark = deviation_remark(design.curve)
-        if remark and lab.session.editor.design is design:
+        if remark and lab.simulation.editor.design is design:
             lab.show_message(lab.words.sentence(remark))
 
 
@@ -201,7 +201,7 @@ class FollowCurve(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        editor, words = lab.session.editor, lab.words
+        editor, words = lab.simulation.editor, lab.words
         curve = self._curve(self.terms)
         given = None if self.given is None else self._points(self.given)
         design = from_curve(replace(curve, given=given, deviation=finite(self.deviation)))
@@ -241,7 +241,7 @@ class Undo(Command):
     @override
     def apply(self, lab: Lab) -> None:
         words = lab.words
-        lab.show_message("" if lab.session.editor.undo() else words("say.nothing_to_undo"))
+        lab.show_message("" if lab.simulation.editor.undo() else words("say.nothing_to_undo"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,12 +251,12 @@ class Redo(Command):
     @override
     def apply(self, lab: Lab) -> None:
         words = lab.words
-        lab.show_message("" if lab.session.editor.redo() else words("say.nothing_to_redo"))
+        lab.show_message("" if lab.simulation.editor.redo() else words("say.nothing_to_redo"))
 
 
 def commit(lab: Lab, design: PathDesign) -> None:
     """Apply a complete edit; if it is refused, show why."""
-    lab.session.editor.propose(design)
+    lab.simulation.editor.propose(design)
     _end(lab, "say.refused")
 
 
@@ -266,16 +266,16 @@ def finish(lab: Lab) -> None:
     The invalid parts of the path are marked only during the drag.
     """
     _end(lab, "say.no_further")
-    lab.session.editor.clear_faults()
+    lab.simulation.editor.clear_faults()
 
 
 def _end(lab: Lab, key: str) -> None:
     """Keep an edit. If it has faults, show the message of a key; else warn of ambiguities."""
-    editor, words = lab.session.editor, lab.words
+    editor, words = lab.simulation.editor, lab.words
     before = editor.design
     editor.finish()
     if editor.design is not before:
-        lab.session.note("path", editor.design.name)
+        lab.simulation.note("path", editor.design.name)
     lab.clear_message()
     lab.return_to_present()
     if editor.faults:
@@ -289,6 +289,6 @@ def _reasons(words: Words, faults: Iterable[Fault]) -> str:
 
 
 def _selected(lab: Lab) -> int:
-    if lab.session.editor.selected is None:
+    if lab.simulation.editor.selected is None:
         raise CodedError("say.select_first")
-    return lab.session.editor.selected
+    return lab.simulation.editor.selected

@@ -12,7 +12,7 @@ from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.models.arrays import Array
 
 ASIDE = 0.008  # [m], from the end-point to the hand, which pulls with 2.4 N on the rigid robots
@@ -25,15 +25,15 @@ class _PullAcross(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session = lab.session
-        rows = {name: run.shown() for name, run in session.runs.items()}
-        session.forces.pull({name: self._hand(session, row) for name, row in rows.items()})
+        simulation = lab.simulation
+        rows = {name: run.shown() for name, run in simulation.runs.items()}
+        simulation.forces.pull({name: self._hand(simulation, row) for name, row in rows.items()})
 
     @staticmethod
-    def _hand(session: Session, row: dict[str, Array]) -> Array:
-        right, up = session.editor.curve.at(row["theta"][0], 1)
+    def _hand(simulation: Simulation, row: dict[str, Array]) -> Array:
+        right, up = simulation.editor.curve.at(row["theta"][0], 1)
         outwards = np.array([up, -right]) / np.hypot(right, up)  # of a path that turns to the left
-        return displaced(session.robot.frame, row["y"], ASIDE * outwards)
+        return displaced(simulation.robot.frame, row["y"], ASIDE * outwards)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,10 +45,10 @@ class Pulse(Command):
     @override
     def apply(self, lab: Lab) -> None:
         lab.return_to_present()
-        session = lab.session
-        if lab.script is not None or session.forces.grabbed is not None:
+        simulation = lab.simulation
+        if lab.script is not None or simulation.forces.grabbed is not None:
             return
-        session.running = True
-        begin, end = session.time, session.time + FRAMES * FRAME
+        simulation.running = True
+        begin, end = simulation.time, simulation.time + FRAMES * FRAME
         pulls = [(begin + i * FRAME, _PullAcross()) for i in range(FRAMES)]
         lab.script = ScriptPlayer[Command]([*pulls, (end, Release())], end, stop=False)

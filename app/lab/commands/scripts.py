@@ -39,7 +39,7 @@ class ScriptHold(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.forces.hold(_sides(self.only), self.on, lab.session.editor.curve)
+        lab.simulation.forces.hold(_sides(self.only), self.on, lab.simulation.editor.curve)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,10 +56,10 @@ class ScriptPull(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session, name = lab.session, SIDE_OF[self.only or "follower"]
+        simulation, name = lab.simulation, SIDE_OF[self.only or "follower"]
         by = point(np.array(self.by), 2) / 1e3
-        target = displaced(session.robot.frame, session.runs[name].shown()["y"], by)
-        session.forces.grab(name, target, _sides(self.only))
+        target = displaced(simulation.robot.frame, simulation.runs[name].shown()["y"], by)
+        simulation.forces.grab(name, target, _sides(self.only))
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,8 @@ class ScriptLaws(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        for side, law in checked_laws(self.laws.named, lab.session.entry).items():
-            lab.session.change_law(side, law)
+        for side, law in checked_laws(self.laws.named, lab.simulation.entry).items():
+            lab.simulation.change_law(side, law)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ class ScriptRate(Command):
     @override
     def apply(self, lab: Lab) -> None:
         wanted = self.rate * lab.lessons.rate_before
-        lab.session.rate = min(max(wanted, RATES[0]), RATES[-1])
+        lab.simulation.rate = min(max(wanted, RATES[0]), RATES[-1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +95,9 @@ class ScriptStart(Command):
     @override
     def apply(self, lab: Lab) -> None:
         start = Start(**self.start.numbers)
-        lab.session.check_start(start)
-        lab.session.start = start
-        lab.session.reset()
+        lab.simulation.check_start(start)
+        lab.simulation.start = start
+        lab.simulation.reset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ class ScriptMove(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        points = lab.session.editor.design.points
+        points = lab.simulation.editor.design.points
         if not 0 <= self.index < len(points):
             raise CodedError("error.no_point", index=self.index, count=len(points))
         by = np.array([self.right, self.up]) / 1e3

@@ -17,7 +17,7 @@ class Share(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.shared = encode(capture(lab.session))
+        lab.shared = encode(capture(lab.simulation))
 
 
 @dataclass(frozen=True, slots=True)

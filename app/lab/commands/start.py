@@ -29,7 +29,7 @@ class SetStart(Command):
     def apply(self, lab: Lab) -> None:
         if self.name not in BOUNDS:
             raise unknown_name(self.name, list(BOUNDS), "start")
-        _take(lab, replace(lab.session.start, **{self.name: finite(self.value)}))
+        _take(lab, replace(lab.simulation.start, **{self.name: finite(self.value)}))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -44,9 +44,9 @@ class MoveStart(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session = lab.session
+        simulation = lab.simulation
         target = point(self.target, 2)
-        _take(lab, nearest_start(session.editor.curve, target, session.start))
+        _take(lab, nearest_start(simulation.editor.curve, target, simulation.start))
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +64,6 @@ def _take(lab: Lab, start: Start) -> None:
     Raises:
         ValueError: the start is not possible; nothing has changed.
     """
-    lab.session.check_start(start)
-    lab.session.start = start
+    lab.simulation.check_start(start)
+    lab.simulation.start = start
     lab.clear_message()

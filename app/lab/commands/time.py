@@ -22,10 +22,10 @@ class SetRunning(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        running = not lab.session.running if self.running is None else self.running
+        running = not lab.simulation.running if self.running is None else self.running
         if running:
             lab.return_to_present()
-        lab.session.running = running
+        lab.simulation.running = running
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class StepOnce(Command):
     def apply(self, lab: Lab) -> None:
         lab.return_to_present()
         lab.lessons.check_unlocked()
-        lab.session.step_once()
+        lab.simulation.step_once()
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class Reset(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.reset()
+        lab.simulation.reset()
         lab.show_message("")
 
 
@@ -61,10 +61,10 @@ class ReplayBreakdown(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session = lab.session
-        if lab.breakdown.begin(session):
-            bends = session.entry.flexible_link is not None
-            larger = {"larger": f"{session.exaggeration:g}"} if bends else {}
+        simulation = lab.simulation
+        if lab.breakdown.begin(simulation):
+            bends = simulation.entry.flexible_link is not None
+            larger = {"larger": f"{simulation.exaggeration:g}"} if bends else {}
             key = "say.slowly_larger" if bends else "say.slowly"
             lab.show_message(lab.fault_words(key, **larger), "replay")
 
@@ -77,7 +77,7 @@ class UseEarlierSettings(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.breakdown.use_earlier_settings(lab.session)
+        lab.breakdown.use_earlier_settings(lab.simulation)
         lab.show_message("")
 
 
@@ -89,7 +89,7 @@ class SetRate(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.rate = within("speed", self.rate, RATES)
+        lab.simulation.rate = within("speed", self.rate, RATES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ class LookBack(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        now, viewing = lab.session.time, lab.session.viewing
+        now, viewing = lab.simulation.time, lab.simulation.viewing
         _look_back(lab, now - (now if viewing is None else viewing) + finite(self.by))
 
 
@@ -134,7 +134,7 @@ class GoOn(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        discarded = go_on(lab.session)
+        discarded = go_on(lab.simulation)
         if discarded is None:
             lab.clear_message()
             return
@@ -149,8 +149,8 @@ class UndoGoOn(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        if undo_going_on(lab.session):
-            lab.remark(lab.words("say.brought_back", time=f"{lab.session.time:.1f}"))
+        if undo_going_on(lab.simulation):
+            lab.remark(lab.words("say.brought_back", time=f"{lab.simulation.time:.1f}"))
         else:
             lab.show_message(lab.words("say.nothing_discarded"))
 
@@ -163,16 +163,16 @@ class SetExaggeration(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        lab.session.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
+        lab.simulation.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
 
 
 def _look_back(lab: Lab, ago: float) -> None:
-    session, words = lab.session, lab.words
-    if ago <= 0 or not len(session.history):
+    simulation, words = lab.simulation, lab.words
+    if ago <= 0 or not len(simulation.history):
         lab.return_to_present()
         return
-    if session.viewing is None:
+    if simulation.viewing is None:
         lab.show_message(words("say.looking_back"))
-    if session.forces.hands:
+    if simulation.forces.hands:
         lab.show_message(words("say.looking_back") + " " + words("say.let_go"))
-    look_back(session, ago)
+    look_back(simulation, ago)

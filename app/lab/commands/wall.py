@@ -34,11 +34,11 @@ class SetWall(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        session = lab.session
-        on = session.wall is None if self.on is None else bool(self.on)
-        if on != (session.wall is not None):
+        simulation = lab.simulation
+        on = simulation.wall is None if self.on is None else bool(self.on)
+        if on != (simulation.wall is not None):
             lab.return_to_present()
-            session.set_wall(first_wall(session.editor.curve) if on else None)
+            simulation.set_wall(first_wall(simulation.editor.curve) if on else None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,10 +53,10 @@ class MoveWall(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        target, now = point(self.target, 2), lab.session.wall
+        target, now = point(self.target, 2), lab.simulation.wall
         if now is not None:
             lab.return_to_present()
-            lab.session.set_wall(_wall(target, now.angle))
+            lab.simulation.set_wall(_wall(target, now.angle))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,14 +73,14 @@ class SwingWall(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        target, now = point(self.target, 2), lab.session.wall
+        target, now = point(self.target, 2), lab.simulation.wall
         if now is None:
             return
         ahead = (target - now.place) * (1 if self.end > 0 else -1)
         if np.linalg.norm(ahead) > 1e-3:
             lab.return_to_present()
             angle = math.atan2(ahead[1], ahead[0]) - math.pi / 2
-            lab.session.set_wall(_wall(now.place, angle))
+            lab.simulation.set_wall(_wall(now.place, angle))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,12 +99,12 @@ class NudgeWall(Command):
     @override
     def apply(self, lab: Lab) -> None:
         by, turn = np.array([finite(self.right), finite(self.up)]), finite(self.turn)
-        now = lab.session.wall
+        now = lab.simulation.wall
         if now is None:
             SetWall(True).apply(lab)
             return
         lab.return_to_present()
-        lab.session.set_wall(_wall(now.place + by, now.angle + turn))
+        lab.simulation.set_wall(_wall(now.place + by, now.angle + turn))
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,13 +117,13 @@ class PlaceWall(Command):
 
     @override
     def apply(self, lab: Lab) -> None:
-        now = lab.session.wall
+        now = lab.simulation.wall
         if now is None:
             return
         old, new = (now.z1, now.z2, now.angle), (self.first, self.second, self.angle)
         values = [o if n is None else finite(n) for o, n in zip(old, new, strict=True)]
         lab.return_to_present()
-        lab.session.set_wall(_wall(np.array(values[:2]), values[2]))
+        lab.simulation.set_wall(_wall(np.array(values[:2]), values[2]))
 
 
 def _wall(place: Array, angle: float) -> Wall:

@@ -108,29 +108,29 @@ class Played:
     path: str = ""
 
 
-def played(setup: Setup, script: Script, store: LoopCache) -> Played:
+def played(setup: Setup, script: Script, loop_cache: LoopCache) -> Played:
     """Play a script in a lab set up like this, also if the lab refuses some of it."""
-    lab, words = Lab(store), _Listening()
+    lab, words = Lab(loop_cache), _Listening()
     lab.lessons.words = words
     lab.set_up(setup)
-    session, player = lab.session, player_of(script)
-    samples = Samples(session)
+    simulation, player = lab.simulation, player_of(script)
+    samples = Samples(simulation)
     said, refused = set[str](), set[str]()
-    lab.script, session.running = player, True
+    lab.script, simulation.running = player, True
     while lab.script is not None:
         lab.drain()
-        lab.advance(session.rate * FRAME)
-        samples.follow(session)
+        lab.advance(simulation.rate * FRAME)
+        samples.follow(simulation)
         heard = words.said(lab.message)
         said |= heard
         if heard & REFUSALS or (lab.script is None and not player.finished):
             refused |= heard
-    record = samples.record(session)
-    return Played(record=record, said=said, refused=refused, path=session.editor.design.name)
+    record = samples.record(simulation)
+    return Played(record=record, said=said, refused=refused, path=simulation.editor.design.name)
 
 
 def behaviour_faults(
-    lesson: Lesson, plays: Mapping[str, Script], store: LoopCache
+    lesson: Lesson, plays: Mapping[str, Script], loop_cache: LoopCache
 ) -> Iterator[tuple[int, str]]:
     """Lines and faults of what a lesson's texts say of runs.
 
@@ -149,7 +149,7 @@ def behaviour_faults(
             yield said.line, f"{said.text!r}: {missing}"
             continue
         if (at, said.after) not in seen:
-            seen[at, said.after] = played(setup_of(lesson, at), script, store)
+            seen[at, said.after] = played(setup_of(lesson, at), script, loop_cache)
         if fault := played_fault(said, seen[at, said.after]):
             yield said.line, f"{said.text!r}: {fault}"
     for unused in plays.keys() - {said.after for _, said in _behaviours(lesson)}:

@@ -103,21 +103,26 @@ def asked_tasks(course: Course, folder: Path) -> Iterator[Asked]:
                 yield Asked(lesson, index, task, references[task.id], file)
 
 
-def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
-    """Find tasks that can be passed without doing what they ask.
-
-    Args:
-        course, folder, store: see `course_check.play_course`.
-    """
-    attempts = [
+def attempts(course: Course, folder: Path) -> list[tuple[Asked, Cheat]]:
+    """All cheats of all tasks; see `asked_tasks`."""
+    return [
         (asked, cheat)
         for asked in asked_tasks(course, folder)
         for cheat in cheats(asked.lesson, asked.index, asked.task, asked.reference)
     ]
-    attempts.sort(key=lambda each: each[1].words)  # those with the same loops are adjacent
-    trials = ((asked, cheat.script) for asked, cheat in attempts)
+
+
+def cheat_faults(tried: Iterable[tuple[Asked, Cheat]], loop_cache: LoopCache) -> Iterator[Problem]:
+    """Find tasks that can be passed without doing what they ask.
+
+    Args:
+        tried: the cheats to try; see `attempts`.
+        loop_cache: compiles and keeps the loops.
+    """
+    ordered = sorted(tried, key=lambda each: each[1].words)  # the same loops are adjacent
+    trials = ((asked, cheat.script) for asked, cheat in ordered)
     found = dict[tuple[Path, str, str], tuple[Asked, Cheat]]()  # the first with each control
-    for (asked, cheat), passed in zip(attempts, passes(trials, store), strict=True):
+    for (asked, cheat), passed in zip(ordered, passes(trials, loop_cache), strict=True):
         if passed:
             found.setdefault((asked.file, asked.task.id, cheat.control), (asked, cheat))
     for (_, _, control), (asked, cheat) in sorted(found.items(), key=lambda each: each[0]):
@@ -127,7 +132,7 @@ def cheat_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Pro
         )
 
 
-def passes_of(asked: Asked, store: LoopCache, count: int = STUDENTS) -> Passes:
+def passes_of(asked: Asked, loop_cache: LoopCache, count: int = STUDENTS) -> Passes:
     """Who passes a task without having understood it.
 
     Args:
@@ -136,16 +141,16 @@ def passes_of(asked: Asked, store: LoopCache, count: int = STUDENTS) -> Passes:
     about = asked.lesson, asked.index, asked.task, asked.reference.solution
     tried, drawn = dict(thoughtless(*about)), list(random_students(*about, count))
     scripts = [*tried.values(), *drawn]
-    passed = list(passes(((asked, script) for script in scripts), store))
+    passed = list(passes(((asked, script) for script in scripts), loop_cache))
     words = [what for what, did in zip(tried, passed, strict=False) if did]
     return Passes(asked, sum(passed[len(tried) :]), count, words)
 
 
-def passes(trials: Iterable[tuple[Asked, Script]], store: LoopCache) -> Iterator[bool]:
+def passes(trials: Iterable[tuple[Asked, Script]], loop_cache: LoopCache) -> Iterator[bool]:
     """Whether each script passes its task; many are played together."""
     waiting = list(trials)
     for begin in range(0, len(waiting), TOGETHER):
-        batch = [_Trial(*each, store) for each in waiting[begin : begin + TOGETHER]]
+        batch = [_Trial(*each, loop_cache) for each in waiting[begin : begin + TOGETHER]]
         playing = batch
         while playing:
             for _ in range(LOOK):
@@ -164,29 +169,29 @@ class _Trial:
         over: whether the attempt has ended.
     """
 
-    def __init__(self, asked: Asked, script: Script, store: LoopCache) -> None:
+    def __init__(self, asked: Asked, script: Script, loop_cache: LoopCache) -> None:
         self._task, self.passed, self.over = asked.task, False, False
-        self._lab: Lab = lab_at(asked.lesson, asked.step, store)
-        self._earlier, self._begin = EarlierRun(), Beginning.now(self._lab.session)
+        self._lab: Lab = lab_at(asked.lesson, asked.step, loop_cache)
+        self._earlier, self._begin = EarlierRun(), Beginning.now(self._lab.simulation)
         self._last = max((action.at for action in script.do), default=0.0)
         changes = [action.at for action in script.do if action.what not in ("hold", "pull")]
         self._settled = max(changes, default=0.0)
         windows = [check for check in asked.task.check if isinstance(check, Window)]
         self._least = max((check.least for check in windows), default=0.0)
-        self._player, self._lab.session.running = player_of(script), True
+        self._player, self._lab.simulation.running = player_of(script), True
 
     def frame(self) -> Frame:
         """A frame of the lab, after the commands that are due."""
         self._lab.drain()
-        self.over = self._player.play(self._lab.session, self._ask)
+        self.over = self._player.play(self._lab.simulation, self._ask)
         return self._lab.frame(FRAME)
 
     def look(self) -> None:
         """Judge the task; the attempt ends when it is passed, or cannot be any more."""
-        session, task = self._lab.session, self._task
-        if session.time < self._least and session.run_number == self._begin.run:
+        simulation, task = self._lab.simulation, self._task
+        if simulation.time < self._least and simulation.run_number == self._begin.run:
             return  # nothing has lasted long enough
-        record = record_of(session, self._begin)
+        record = record_of(simulation, self._begin)
         verdicts = judged(task, record, self._earlier, ENGLISH)
         self.passed = all(verdict.passed for verdict in verdicts)
         self.over = self.over or self.passed or self._is_lost(record)

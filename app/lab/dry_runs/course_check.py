@@ -31,34 +31,34 @@ FRAME = 1 / 60  # [s]
 LOOKS = 0.1  # [s] between evaluations of a task's checks
 
 
-def play_course(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
+def play_course(course: Course, folder: Path, loop_cache: LoopCache) -> Iterator[Problem]:
     """Find problems in the scripts, solutions and failures of a folder's lessons.
 
     Args:
         course: the lessons read from the folder.
         folder: contains the lessons' own folders.
-        store: provides the closed loops.
+        loop_cache: provides the closed loops.
     """
     for name in course.lessons:
         lesson = course.lesson(name, DEFAULT)
         home = folder / name
         file = home / f"{lesson.language}.md"
-        runs, faults = _measured_runs(lesson, store)
+        runs, faults = _measured_runs(lesson, loop_cache)
         if not faults:
             faults = [*stated_faults(lesson, runs), *sketch_faults(lesson, runs)]
-        faults += behaviour_faults(lesson, read_plays(home / REFERENCE), store)
+        faults += behaviour_faults(lesson, read_plays(home / REFERENCE), loop_cache)
         yield from (Problem(str(file), line, text) for line, text in faults)
         for other in course.lessons[name].values():
             file = home / f"{other.language}.md"
             shown = page_faults(other, read_text(file))
             yield from (Problem(str(file), line, text) for line, text in shown)
-        yield from _reference_faults(lesson, home / REFERENCE, store)
-    yield from sentence_faults(course, folder, store)
+        yield from _reference_faults(lesson, home / REFERENCE, loop_cache)
+    yield from sentence_faults(course, folder, loop_cache)
 
 
-def lab_at(lesson: Lesson, step: Step, store: LoopCache) -> Lab:
+def lab_at(lesson: Lesson, step: Step, loop_cache: LoopCache) -> Lab:
     """A lab set up for a step of a lesson."""
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     lab.set_up(setup_of(lesson, lesson.steps.index(step)))
     return lab
 
@@ -70,16 +70,16 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
         ValueError: the lab refuses a command of the script, or a path; the message says why. A
             note on what it does all the same is no refusal.
     """
-    session, words, earlier = lab.session, Words(), EarlierRun()
-    begin = Beginning.now(session)
-    lab.script, session.running = (player := player_of(script)), True
+    simulation, words, earlier = lab.simulation, Words(), EarlierRun()
+    begin = Beginning.now(simulation)
+    lab.script, simulation.running = (player := player_of(script)), True
     for _ in range(round(3 * script.seconds / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
             lab.drain()
-            lab.advance(session.rate * FRAME)
-        if session.editor.faults or (lab.script is None and not player.finished):
+            lab.advance(simulation.rate * FRAME)
+        if simulation.editor.faults or (lab.script is None and not player.finished):
             raise ValueError(lab.message)
-        yield [] if task is None else judged(task, record_of(session, begin), earlier, words)
+        yield [] if task is None else judged(task, record_of(simulation, begin), earlier, words)
         if lab.script is None:
             return
     raise ValueError(f"the script does not reach its end at {script.until:g} s")
@@ -104,7 +104,7 @@ def solved(lab: Lab, script: Script, task: Task) -> tuple[bool, list[Verdict]]:
     return passed, last
 
 
-def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
+def measured_run(lesson: Lesson, index: int, loop_cache: LoopCache) -> Record:
     """Everything measured while a step's script is played.
 
     Raises:
@@ -112,28 +112,28 @@ def measured_run(lesson: Lesson, index: int, store: LoopCache) -> Record:
     """
     step = lesson.steps[index]
     assert step.script is not None
-    lab = lab_at(lesson, step, store)
-    samples = Samples(lab.session)
+    lab = lab_at(lesson, step, loop_cache)
+    samples = Samples(lab.simulation)
     for _ in play(lab, step.script):
-        samples.follow(lab.session)
-    return samples.record(lab.session)
+        samples.follow(lab.simulation)
+    return samples.record(lab.simulation)
 
 
 def _measured_runs(
-    lesson: Lesson, store: LoopCache
+    lesson: Lesson, loop_cache: LoopCache
 ) -> tuple[dict[int, Record], list[tuple[int, str]]]:
     """Records of all scripts of a lesson, by the step's index, and faults with their lines."""
     runs, faults = dict[int, Record](), list[tuple[int, str]]()
     for index, step in enumerate(lesson.steps):
         try:
             if step.script is not None:
-                runs[index] = measured_run(lesson, index, store)
+                runs[index] = measured_run(lesson, index, loop_cache)
         except ValueError as error:
             faults.append((step.line, f"the script of step {step.title!r}: {error}"))
     return runs, faults
 
 
-def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[Problem]:
+def _reference_faults(lesson: Lesson, file: Path, loop_cache: LoopCache) -> Iterator[Problem]:
     references = read_references(lesson, file)[0]
     for step in lesson.steps:
         for task in step.tasks():
@@ -143,18 +143,18 @@ def _reference_faults(lesson: Lesson, file: Path, store: LoopCache) -> Iterator[
             variants = [("variant", script) for script in scripts.variant]
             others = ("solution", scripts.solution), ("failure", scripts.failure)
             for number, (what, script) in enumerate((*variants, *others), 1):
-                if fault := _fault(lesson, step, script, task, store, what != "failure"):
+                if fault := _fault(lesson, step, script, task, loop_cache, what != "failure"):
                     heading, count = f"{task.id}.{what}", f" {number}" * (what == "variant")
                     line = line_of_heading(heading, file)
                     yield Problem(str(file), line, f"{heading}{count} {fault}")
 
 
 def _fault(
-    lesson: Lesson, step: Step, script: Script, task: Task, store: LoopCache, right: bool
+    lesson: Lesson, step: Step, script: Script, task: Task, loop_cache: LoopCache, right: bool
 ) -> str:
     """Why a script is not a valid solution, or not a valid failure."""
     try:
-        passed, last = solved(lab_at(lesson, step, store), script, task)
+        passed, last = solved(lab_at(lesson, step, loop_cache), script, task)
     except ValueError as error:
         return f"cannot be played: {error}"
     if passed == right:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.lessons.action_schema import RobotName
 from onpath.lessons.record import ROBOTS, Record
 from onpath.models.arrays import Array
@@ -19,19 +19,19 @@ class Samples:
     Times continue across resets.
     """
 
-    def __init__(self, session: Session) -> None:
-        self._run, self._before, self._until = session.run_number, 0.0, session.time
+    def __init__(self, simulation: Simulation) -> None:
+        self._run, self._before, self._until = simulation.run_number, 0.0, simulation.time
         self._before_run = {self._run: 0.0}
         self._times = list[Array]()
         self._values = list[dict[RobotName, dict[str, Array]]]()
 
-    def follow(self, session: Session) -> None:
+    def follow(self, simulation: Simulation) -> None:
         """Add what has happened since the last call."""
-        if session.run_number != self._run:
+        if simulation.run_number != self._run:
             self._before += self._until
-            self._run, self._until = session.run_number, 0.0
+            self._run, self._until = simulation.run_number, 0.0
             self._before_run[self._run] = self._before
-        record = record_of(session, Beginning(self._run, self._until))
+        record = record_of(simulation, Beginning(self._run, self._until))
         new = slice(int(np.searchsorted(record.times, self._until - 1e-9)), None)
         if len(record.times[new]):
             self._times.append(record.times[new] + self._before)
@@ -41,7 +41,7 @@ class Samples:
                     for robot, columns in record.values.items()
                 }
             )
-        self._until = session.time
+        self._until = simulation.time
 
     def columns(self) -> tuple[Array, dict[RobotName, dict[str, Array]]]:
         """Times, shape (n,), and values by robot and quantity, NaN where there was none."""
@@ -57,9 +57,9 @@ class Samples:
                 values[robot][name] = np.concatenate(columns)
         return times, values
 
-    def record(self, session: Session) -> Record:
+    def record(self, simulation: Simulation) -> Record:
         """All samples, as the record of one run."""
-        last = record_of(session, Beginning(self._run, self._until))
+        last = record_of(simulation, Beginning(self._run, self._until))
         times, values = self.columns()
         happenings = tuple(
             replace(each, run=0, time=each.time + self._before_run[each.run])

@@ -37,7 +37,7 @@ GROUPS = ("help", "key", "guide", "laws")
 OF_LAW = ("text", "good", "limits", "objection")
 
 
-def sentence_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[Problem]:
+def sentence_faults(course: Course, folder: Path, loop_cache: LoopCache) -> Iterator[Problem]:
     """Problems of the sentences that no mark plays; none if the folder has no list of them.
 
     The built-in course's list includes README, help, the guide and the laws' texts.
@@ -56,7 +56,7 @@ def sentence_faults(course: Course, folder: Path, store: LoopCache) -> Iterator[
         if where not in (*course.lessons, FOLDER):
             yield from (Problem(file, *fault) for fault in name_faults(text, language))
     for each in listed:
-        if fault := _fault(each, store):
+        if fault := _fault(each, loop_cache):
             yield Problem(str(folder / FILE), 1, f"{each.where}: {each.en or each.de!r}: {fault}")
 
 
@@ -93,7 +93,7 @@ def _texts(course: Course, folder: Path) -> Iterator[tuple[tuple[str, str], tupl
                 yield (key, language), (key, words.get(key, getattr(law, part)))
 
 
-def _fault(each: Sentence, store: LoopCache) -> str:
+def _fault(each: Sentence, loop_cache: LoopCache) -> str:
     """Why an entry of the list is not as it should be; empty if it is."""
     if bool(each.plays) == bool(each.reason):
         return "an entry has either a reason or `plays`"
@@ -107,5 +107,5 @@ def _fault(each: Sentence, store: LoopCache) -> str:
         return page_fault(said, each.scene, Words("en"))
     if each.script is None:
         return "a play needs a script"
-    seen = played(setup_of_scene(each.scene, FIVE_BAR.name), each.script, store)
+    seen = played(setup_of_scene(each.scene, FIVE_BAR.name), each.script, loop_cache)
     return played_fault(said, seen)

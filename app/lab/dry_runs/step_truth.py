@@ -19,12 +19,12 @@ def computed_truth(lesson: Lesson, index: int) -> Truth | None:
     predictions, shown = lesson.steps[index].predictions(), _shown(lesson, index)
     if not predictions or shown is None or shown.script is None:
         return None
-    store = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
-    lab = lab_at(lesson, shown, store)
-    trace = Trace(quantity_of(predictions[0]), Beginning.now(lab.session))
+    loop_cache = LoopCache(at_once=True, translate=InterpretedLoop)  # compiling is not worth it
+    lab = lab_at(lesson, shown, loop_cache)
+    trace = Trace(quantity_of(predictions[0]), Beginning.now(lab.simulation))
     try:
         for _ in play(lab, shown.script):
-            trace.follow(lab.session)
+            trace.follow(lab.simulation)
     except ValueError:
         return None
     return trace.truth()

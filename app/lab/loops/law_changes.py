@@ -31,7 +31,7 @@ class LawChanges:
     """The pending changes of law, and the loops that they lack.
 
     Args:
-        store: provides the loops.
+        loop_cache: provides the loops.
         change: changes the law of a side now.
 
     Attributes:
@@ -39,8 +39,8 @@ class LawChanges:
         remarks: what the user has not been told yet, for instance why a law cannot be used.
     """
 
-    def __init__(self, store: LoopCache, change: Callable[[str, str], None]) -> None:
-        self._store, self._change = store, change
+    def __init__(self, loop_cache: LoopCache, change: Callable[[str, str], None]) -> None:
+        self._loop_cache, self._change = loop_cache, change
         self.coming: dict[str, str] = {}
         self.remarks: list[ValueError | Message] = []
         self._interpreted = set[str]()  # laws of which the user has been told
@@ -98,7 +98,7 @@ class LawChanges:
         for run, loop in moving:
             if isinstance(loop, CompiledLoop) or run.law in self._interpreted:
                 continue
-            if (reason := self._store.why_interpreted(run.robot, run.kind)) is not None:
+            if (reason := self._loop_cache.why_interpreted(run.robot, run.kind)) is not None:
                 self._interpreted.add(run.law)
                 self.remarks.append(CodedError("say.law_interpreted", reason=reason))
 
@@ -117,17 +117,17 @@ class LawChanges:
     def _ask(self, keys: list[Key], parameters: Parameters, curve: Curve) -> None:
         """Ask for these loops, and in advance for those with a hand on the robot, or without."""
         if keys or self._asked:
-            self._store.want(self, keys)
+            self._loop_cache.want(self, keys)
         self._asked = bool(keys)
         for robot, kind in keys:
             for push in (FREE, None):
-                self._store.prepare(robot, kind_of(kind.law, parameters, curve, push))
+                self._loop_cache.prepare(robot, kind_of(kind.law, parameters, curve, push))
 
     def _is_ready(self, key: Key) -> bool | None:
         """Whether a loop is ready; None if it cannot be made, of which the user is told."""
         robot, kind = key
         try:
-            return self._store.find(robot, kind) is not None
+            return self._loop_cache.find(robot, kind) is not None
         except ValueError as error:
             self.remarks.append(error)
             return None

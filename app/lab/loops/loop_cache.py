@@ -1,4 +1,4 @@
-"""Closed loops for sessions: compiled in the background, shared by all labs."""
+"""Closed loops for labs: compiled in the background, shared by all labs."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from onpath.models.closed_loop.simulation import kernel_of
 from onpath.models.closed_loop.translated_loop import translate_loop
 from onpath.models.control.laws.own import is_text
 from onpath.models.control.speed_limit import prepare_speed_limit
+from onpath.models.control.standing_torque import prepare_standing_torque
 from onpath.models.errors import CodedError, Message, message_of
 from onpath.models.systems.robots import Robot
 
@@ -178,6 +179,7 @@ class LoopCache:
             return without_frames(refused or CodedError("error.law_cannot_run")), None
         try:
             prepare_speed_limit(robot)
+            prepare_standing_torque(robot)
             return self._translate(kernel), None
         except Exception as error:  # labs use the interpreted loop
             log.warning("%s is not compiled, it is interpreted: %s", kind.law, error)

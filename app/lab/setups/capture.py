@@ -1,4 +1,4 @@
-"""Captures the set-up of a session as data."""
+"""Captures the set-up of a simulation as data."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from onpath.app.lab.robot_settings import RobotSettings
-from onpath.app.lab.session import Session
 from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
+from onpath.app.lab.simulation import Simulation
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS
@@ -23,22 +23,22 @@ from onpath.models.systems.parameters import Parameters
 DIGITS = 6
 
 
-def capture(session: Session) -> Setup:
-    """The current set-up of a session; a path being dragged counts only after the drag."""
-    robots = {**session.earlier, session.entry.name: session.robot_settings()}
+def capture(simulation: Simulation) -> Setup:
+    """The current set-up of a simulation; a path being dragged counts only after the drag."""
+    robots = {**simulation.earlier, simulation.entry.name: simulation.robot_settings()}
     captured = {
-        name: _captured(name, settings, session.presets)
+        name: _captured(name, settings, simulation.presets)
         for name, settings in sorted(robots.items())
     }
-    chosen = session.chosen_laws.items()
+    chosen = simulation.chosen_laws.items()
     return Setup(
-        robot=session.entry.name,
+        robot=simulation.entry.name,
         robots={name: robot for name, robot in captured.items() if robot != RobotSetup()},
-        rate=_rounded(session.rate),
-        copy=session.copy,
-        exaggeration=_rounded(session.exaggeration),
+        rate=_rounded(simulation.rate),
+        copy=simulation.copy,
+        exaggeration=_rounded(simulation.exaggeration),
         laws={side: law for side, law in chosen if law != DEFAULT_LAWS[side]},
-        hold=session.hold_direction,
+        hold=simulation.hold_direction,
     )
 
 

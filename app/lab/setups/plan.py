@@ -1,4 +1,5 @@
-"""The robots of a set-up in the form that a session uses, after all checks of names and numbers."""
+"""The robots of a set-up in the form that a simulation uses, after all checks of names and
+numbers."""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ DRAWN_POINTS = {True: 10, False: 6}  # control points of closed and open strokes
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Wanted:
-    """A robot's set-up in the form that a session uses."""
+    """A robot's set-up in the form that a simulation uses."""
 
     entry: RobotEntry
     parameters: Parameters

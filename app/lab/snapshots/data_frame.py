@@ -19,9 +19,9 @@ from onpath.app.lab.events import LabEvent
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import Slot
 from onpath.app.lab.plot_samples import sample_layout
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.robot_geometry import straight_tip
-from onpath.app.lab.snapshots.snapshot import PathView
+from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout
 from onpath.models.control.sides import SIDES
@@ -92,45 +92,49 @@ class FrameSource:
     def forget(self) -> None:
         """Tell the page everything anew."""
         self._latest.clear()
-        self._session: Session | None = None
+        self._simulation: Simulation | None = None
         self._run, self._history = 0, None
         self._anew, self._behind = True, False
         self._sent: tuple[bool, float | None] = False, None
 
-    def note(self, session: Session) -> None:
+    def note(self, simulation: Simulation) -> None:
         """Note the present sample, if it is new. Call it in every frame of the simulation."""
-        latest, slots = self._latest, tuple([run.slot for run in session.runs.values()])
+        latest, slots = self._latest, tuple([run.slot for run in simulation.runs.values()])
         if (
-            session is not self._session
-            or session.run_number != self._run
-            or session.history is not self._history
+            simulation is not self._simulation
+            or simulation.run_number != self._run
+            or simulation.history is not self._history
         ):
             self.forget()
-            self._session, self._run, self._history = session, session.run_number, session.history
-        flags = _flags(session)
+            self._simulation, self._run, self._history = (
+                simulation,
+                simulation.run_number,
+                simulation.history,
+            )
+        flags = _flags(simulation)
         if latest:
             last = latest[-1]
             if last.flags == flags and all(map(is_, slots, last.slots)):
                 return
-            if len(latest) > 1 and last.time == session.time:  # a path was bent in a pause
+            if len(latest) > 1 and last.time == simulation.time:  # a path was bent in a pause
                 latest.pop()
             elif len(latest) >= MOST:
                 del latest[1:]
                 self._behind = True
-        latest.append(Sample(session.time, flags, slots))
+        latest.append(Sample(simulation.time, flags, slots))
 
     def take(self, lab: Lab) -> DataFrame | None:
         """What has happened since the last frame, None if nothing; after `note`."""
-        session, latest = lab.session, self._latest
-        state = session.running and not lab.frozen, session.viewing
+        simulation, latest = lab.simulation, self._latest
+        state = simulation.running and not lab.frozen, simulation.viewing
         if not self._anew and len(latest) == 1 and state == self._sent:
             return None
         new, earlier = latest if len(latest) == 1 else latest[1:], None
         if self._anew or self._behind:
             since = -inf if self._anew else latest[0].time
-            earlier = _earlier(session, since)
+            earlier = _earlier(simulation, since)
         frame = DataFrame(
-            robot=session.robot,
+            robot=simulation.robot,
             anew=self._anew,
             earlier=earlier,
             latest=new if earlier is None else [latest[-1]],
@@ -171,7 +175,7 @@ def _whole(numbers: Array) -> list[list[int]]:
     return np.rint(finite).astype(np.int64).tolist()
 
 
-def path_message(robot: Robot, path: PathView) -> bytes:
+def path_message(robot: Robot, path: PathSnapshot) -> bytes:
     """The message of a path: its points in the output space, at evenly spaced θ from -π to π."""
     origin, first, second = robot.frame.lift(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
     right = (first - origin) / np.linalg.norm(first - origin)
@@ -180,7 +184,7 @@ def path_message(robot: Robot, path: PathView) -> bytes:
     return msgspec.json.encode(
         {
             "is": "path",
-            "points": _whole(LENGTH * robot.unplace(path.points)),
+            "points": _whole(LENGTH * robot.output_at(path.points)),
             "closed": path.closed,
             "right": right.tolist(),
             "up": (up / np.linalg.norm(up)).tolist(),
@@ -188,9 +192,9 @@ def path_message(robot: Robot, path: PathView) -> bytes:
     )
 
 
-def _flags(session: Session) -> int:
+def _flags(simulation: Simulation) -> int:
     """`Sample.flags` of the present."""
-    held, hands = session.forces.held, session.forces.hands
+    held, hands = simulation.forces.held, simulation.forces.hands
     if not held and not hands:
         return 0
     return sum(
@@ -198,12 +202,12 @@ def _flags(session: Session) -> int:
     )
 
 
-def _earlier(session: Session, since: float) -> Earlier | None:
-    times, values = session.history.samples(since, session.time, EARLIER)
+def _earlier(simulation: Simulation, since: float) -> Earlier | None:
+    times, values = simulation.history.samples(since, simulation.time, EARLIER)
     if not len(times):
         return None
-    run = session.run_number
-    return Earlier(times, values, [event for event in session.events if event.run == run])
+    run = simulation.run_number
+    return Earlier(times, values, [event for event in simulation.events if event.run == run])
 
 
 def _flags_at(times: Array, events: Sequence[LabEvent]) -> Array:

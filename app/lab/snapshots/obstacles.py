@@ -7,7 +7,7 @@ from functools import lru_cache
 import numpy as np
 
 from onpath.app.lab.segments import Segment
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.page_snapshot import StartState, WallState
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import settings_layout
@@ -20,26 +20,26 @@ from onpath.models.systems.robots import Robot
 NOWHERE = np.zeros((0, 3))
 
 
-def drawn_wall(session: Session) -> Array:
+def drawn_wall(simulation: Simulation) -> Array:
     """`Motion.wall`, at the instant that is shown."""
-    lifted = _lifted(session)
+    lifted = _lifted(simulation)
     if lifted is None:
         return NOWHERE
-    if session.viewing is None and session.wall is not None:
-        return _placed(session.robot, session.wall)
-    return _wall_rows(session.robot, lifted)
+    if simulation.viewing is None and simulation.wall is not None:
+        return _placed(simulation.robot, simulation.wall)
+    return _wall_rows(simulation.robot, lifted)
 
 
-def drawn_brakes(session: Session) -> dict[str, Array]:
+def drawn_brakes(simulation: Simulation) -> dict[str, Array]:
     """`Snapshot.brakes`."""
-    if session.viewing is not None:
+    if simulation.viewing is not None:
         return {}
-    pushes, rows = session.forces.pushes, dict[str, Array]()
+    pushes, rows = simulation.forces.pushes, dict[str, Array]()
     for side in SIDES:
-        if side in session.forces.held and (hold := pushes[side].hold) is not None:
+        if side in simulation.forces.held and (hold := pushes[side].hold) is not None:
             anchor, blocked = hold
             slides = pushes[side].hold_normal is None
-            rows[side] = _brake_rows(session.robot, anchor.tobytes(), blocked.tobytes(), slides)
+            rows[side] = _brake_rows(simulation.robot, anchor.tobytes(), blocked.tobytes(), slides)
     return rows
 
 
@@ -48,8 +48,8 @@ def _brake_rows(robot: Robot, anchor: bytes, blocked: bytes, slides: bool) -> Ar
     """One of `Snapshot.brakes`; the same array for the same arguments."""
     point, direction = np.frombuffer(anchor), np.frombuffer(blocked)
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
-    origin, right, up = robot.place(robot.frame.lift(corners))
-    at, ahead = robot.place(np.stack([point, point + direction]))
+    origin, right, up = robot.position(robot.frame.lift(corners))
+    at, ahead = robot.position(np.stack([point, point + direction]))
     free = np.cross(np.cross(right - origin, up - origin), ahead - at)
     return np.stack([at, ahead - at, slides * free / np.linalg.norm(free)])
 
@@ -60,25 +60,25 @@ def wall_then(robot: Robot, past: Segment) -> Array:
     return NOWHERE if lifted is None else _wall_rows(robot, lifted)
 
 
-def wall_state(session: Session) -> WallState | None:
+def wall_state(simulation: Simulation) -> WallState | None:
     """Numbers of the present wall, and the forces on the wall that is shown."""
-    wall, lifted = session.wall, _lifted(session)
+    wall, lifted = simulation.wall, _lifted(simulation)
     if wall is None:
         return None
     forces: dict[str, float] = {side: 0.0 for side in SIDES}
     if lifted is not None:
-        robot, n = session.robot, session.robot.system.n
-        past = None if session.viewing is None else session.history.at(session.viewing)
-        instant = past.instant() if past else session.instant()
-        plant = robot.plant(session.parameters)
+        robot, n = simulation.robot, simulation.robot.system.n
+        past = None if simulation.viewing is None else simulation.history.at(simulation.viewing)
+        instant = past.instant() if past else simulation.instant()
+        plant = robot.plant(simulation.parameters)
         for side, state in zip(SIDES, instant.states, strict=True):
             forces[side] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
     return WallState(wall.z1, wall.z2, wall.angle, forces)
 
 
-def start_state(session: Session) -> StartState:
+def start_state(simulation: Simulation) -> StartState:
     """Numbers of the start of the next run."""
-    start = session.start
+    start = simulation.start
     return StartState(
         theta=start.theta,
         beside=start.beside,
@@ -93,15 +93,15 @@ def drawn_start(robot: Robot, curve: Curve, start: Start) -> Array:
     """`Motion.start`; the same array for the same arguments."""
     z, first = start.place(curve), curve.at(np.array(start.theta), 1)
     rate = start.along * first / np.linalg.norm(first) + start.across * left_of(curve, start.theta)
-    return robot.place(robot.frame.lift(np.stack([z, z + rate])))
+    return robot.position(robot.frame.lift(np.stack([z, z + rate])))
 
 
-def _lifted(session: Session) -> tuple[Array, Array] | None:
+def _lifted(simulation: Simulation) -> tuple[Array, Array] | None:
     """Point and normal of the wall at the instant that is shown; None if there is none."""
-    past = None if session.viewing is None else session.history.at(session.viewing)
+    past = None if simulation.viewing is None else simulation.history.at(simulation.viewing)
     if past is None:
-        return None if session.wall is None else session.wall.lifted(session.robot.frame)
-    return _lifted_then(session.robot, past)
+        return None if simulation.wall is None else simulation.wall.lifted(simulation.robot.frame)
+    return _lifted_then(simulation.robot, past)
 
 
 def _lifted_then(robot: Robot, past: Segment) -> tuple[Array, Array] | None:
@@ -122,8 +122,8 @@ def _wall_rows(robot: Robot, lifted: tuple[Array, Array]) -> Array:
     """`Motion.wall` from a point and the normal of the wall."""
     place, normal = lifted
     corners = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)])
-    origin, right, up = robot.place(robot.frame.lift(corners))
-    middle, ahead = robot.place(np.stack([place, place + normal]))
+    origin, right, up = robot.position(robot.frame.lift(corners))
+    middle, ahead = robot.position(np.stack([place, place + normal]))
     outward = ahead - middle
     along = np.cross(np.cross(right - origin, up - origin), outward)
     return np.stack([middle, along / np.linalg.norm(along), outward / np.linalg.norm(outward)])

@@ -19,7 +19,7 @@ from onpath.app.lab.closed_loop_run import ClosedLoopRun
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.snapshots.part_poses import MARKER_DEPTHS, bar_quaternions, waist_angle
-from onpath.app.lab.snapshots.snapshot import END, Counts, RobotView
+from onpath.app.lab.snapshots.snapshot import END, Counts, RobotSnapshot
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.buffered import Buffered
 from onpath.models.closed_loop.loop_vectors import log_layout
@@ -33,14 +33,14 @@ from onpath.models.systems.robots import Robot
 UNTRACED = np.zeros((0, len(SIDES), 3))
 
 
-def robot_views(
+def robot_snapshots(
     robot: Robot,
     curve: Curve,
     instant: Instant,
     traces: Array | None = None,
     exaggeration: float = 1.0,
-) -> dict[str, RobotView]:
-    """The views of both robots at one instant.
+) -> dict[str, RobotSnapshot]:
+    """Both robots at one instant.
 
     Args:
         traces: recent positions of their end-points, shape (n, robots, p), [m].
@@ -51,13 +51,13 @@ def robot_views(
     points = drawn[:, :middle].reshape(len(SIDES), -1, 3)
     trails = UNTRACED
     if traces is not None:
-        trails = np.concatenate([robot.place(traces), points[None, :, END]])
+        trails = np.concatenate([robot.position(traces), points[None, :, END]])
     sample, slices = instant.sample, sample_layout(robot).slices
     names = ("speed", "distance", "far", "integral_used")
     speeds, distances, far, used = (sample[:, slices[name].start].tolist() for name in names)
     bent = slices.get("deflection")
     return {
-        side: RobotView(
+        side: RobotSnapshot(
             law=instant.laws[i],
             points=points[i],
             poses=drawn[i, middle:],
@@ -164,7 +164,7 @@ def _seen(robot: Robot, laws: tuple[str, ...]) -> np.ndarray:
 
 
 class _Points(NamedTuple):
-    """One robot's `RobotView.points` in their order, as columns of symbols.
+    """One robot's `RobotSnapshot.points` in their order, as columns of symbols.
 
     Attributes:
         bars: beginnings and ends of the bars, in turn.
@@ -188,13 +188,13 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
 
     Returns:
         (q, (n, 2); y, force and aim, (2 p + 1, 2); table of the curve; exaggeration; `path_place`)
-        -> one column per robot: `RobotView.points`, then `RobotView.poses`.
+        -> one column per robot: `RobotSnapshot.points`, then `RobotSnapshot.poses`.
     """
     p, both = robot.system.p, len(SIDES)
     q, seen = ca.SX.sym("q", robot.system.n, both), ca.SX.sym("seen", 2 * p + 1, both)
     table = ca.SX.sym("table", dimension * ORDERS, TERMS)
     exaggeration = ca.SX.sym("exaggeration")
-    placed, path = _affine(robot.place, p), ca.SX.sym("path", 3, dimension + 1)
+    placed, path = _affine(robot.position, p), ca.SX.sym("path", 3, dimension + 1)
 
     def drawn(q: ca.SX, seen: ca.SX) -> _Points:
         y, force, aim = seen[:p], seen[p : 2 * p], seen[2 * p]
@@ -234,7 +234,7 @@ def geometry_function(robot: Robot, closed: bool, dimension: int = 2) -> tuple[c
 @lru_cache(maxsize=64)
 def path_place(robot: Robot, dimension: int) -> Array:
     """How the plane of the path lies in the robot's frame: origin and axes, flat, by columns."""
-    origin, *ends = robot.place(robot.frame.lift(np.eye(dimension + 1, dimension, -1)))
+    origin, *ends = robot.position(robot.frame.lift(np.eye(dimension + 1, dimension, -1)))
     return np.concatenate([origin, *(end - origin for end in ends)])
 
 
@@ -259,7 +259,7 @@ def _straight_tip(robot: Robot) -> Callable[[Array], Array] | None:
 
 
 def _poses(robot: Robot, counts: Counts, points: _Points, q: ca.SX) -> tuple[ca.SX, ...]:
-    """One robot's `RobotView.poses`, as columns.
+    """One robot's `RobotSnapshot.poses`, as columns.
 
     Links alternate between the back and the front layer, pieces of a strip are in the front
     layer, so that no link intersects another; bearings span both.

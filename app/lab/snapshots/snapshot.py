@@ -16,7 +16,7 @@ def _nothing() -> np.ndarray:
 
 
 class PoseShapes(NamedTuple):
-    """Shapes of the fields of `RobotView.poses`, in their order.
+    """Shapes of the fields of `RobotSnapshot.poses`, in their order.
 
     Attributes:
         bars: beginnings of the link meshes, in their layers, [m]; then, for each mark, that of the
@@ -72,7 +72,7 @@ class Counts:
 
     @property
     def pose_shapes(self) -> PoseShapes:
-        """Shapes in `RobotView.poses`; parts are bearings, pen, two marker discs, and marks."""
+        """Shapes in `RobotSnapshot.poses`; parts are bearings, pen, two marker discs, and marks."""
         bars, parts = self.bars + self.marks, self.joints + 3 + self.marks
         return PoseShapes(
             bars=(bars, 3),
@@ -93,7 +93,7 @@ class Counts:
 
 
 @dataclass(frozen=True, slots=True)
-class RobotView:
+class RobotSnapshot:
     """One robot as it is drawn; positions in the robot's own frame (x right, y away, z up), [m].
 
     Attributes:
@@ -164,7 +164,7 @@ class RobotView:
 
 
 @dataclass(frozen=True, slots=True)
-class PathView:
+class PathSnapshot:
     """The drawn path, in the robot's own frame, [m]. The same for both robots.
 
     Attributes:
@@ -221,20 +221,20 @@ class Motion:
         key: see `PageKey`.
         path: followed by both robots.
         counts: numbers of parts of each robot.
-        drawn: `RobotView.points` and `RobotView.poses` of each robot, left first, shape
+        drawn: `RobotSnapshot.points` and `RobotSnapshot.poses` of each robot, left first, shape
             (robots, counts.size).
         wall, start: see `Snapshot`.
     """
 
     key: PageKey
-    path: PathView
+    path: PathSnapshot
     counts: Counts
     drawn: np.ndarray
     wall: np.ndarray = field(default_factory=_nothing)
     start: np.ndarray = field(default_factory=_nothing)
 
     def point(self, robot: int, index: int) -> np.ndarray:
-        """A point of one robot, shape (3,); see `RobotView.points`."""
+        """A point of one robot, shape (3,); see `RobotSnapshot.points`."""
         return self.drawn[robot, : 3 * self.counts.points].reshape(-1, 3)[index]
 
 
@@ -270,8 +270,8 @@ class Snapshot:
     time: float
     running: bool
     achieved_speed: float
-    robots: dict[str, RobotView]
-    path: PathView
+    robots: dict[str, RobotSnapshot]
+    path: PathSnapshot
     held: bool
     grabbed: str | None
     message: str
@@ -290,17 +290,17 @@ class Snapshot:
     @property
     def laws(self) -> dict[str, str]:
         """Control law of each side."""
-        return {side: view.law for side, view in self.robots.items()}
+        return {side: robot.law for side, robot in self.robots.items()}
 
     @property
     def motion(self) -> Motion:
         """The part of it that is shown most often."""
-        views = list(self.robots.values())
-        drawn = np.stack([np.concatenate([view.points.ravel(), view.poses]) for view in views])
+        robots = list(self.robots.values())
+        drawn = np.stack([np.concatenate([robot.points.ravel(), robot.poses]) for robot in robots])
         return Motion(
             key=self.key,
             path=self.path,
-            counts=views[0].counts,
+            counts=robots[0].counts,
             drawn=drawn,
             wall=self.wall,
             start=self.start,

@@ -11,7 +11,7 @@ from onpath.app.lab.lab import Lab
 from onpath.app.lab.path_editor import PathEditor
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.segments import Instant
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.law_places import law_places
 from onpath.app.lab.snapshots.obstacles import (
     drawn_brakes,
@@ -28,8 +28,8 @@ from onpath.app.lab.snapshots.page_snapshot import (
     PlotSamples,
     RunState,
 )
-from onpath.app.lab.snapshots.robot_geometry import drawn_now, drawn_robots, robot_views
-from onpath.app.lab.snapshots.snapshot import Motion, PageKey, PathView
+from onpath.app.lab.snapshots.robot_geometry import drawn_now, drawn_robots, robot_snapshots
+from onpath.app.lab.snapshots.snapshot import Motion, PageKey, PathSnapshot
 from onpath.lessons.progress import Truth
 from onpath.lessons.schema import Sketch
 from onpath.lessons.words import Words
@@ -60,21 +60,21 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
         before: the previous snapshot of the same lab; unchanged parts are shared with it.
         student: see `PageKey`.
     """
-    session, key = lab.session, page_key(lab, student)
-    robot, exaggeration = session.robot, session.exaggeration
-    if session.viewing is None and not lab.breakdown.replaying:
-        curve, table = session.editor.curve, session.editor.table
-        drawn, counts = drawn_now(robot, session.runs.values(), curve, table, exaggeration)
+    simulation, key = lab.simulation, page_key(lab, student)
+    robot, exaggeration = simulation.robot, simulation.exaggeration
+    if simulation.viewing is None and not lab.breakdown.replaying:
+        curve, table = simulation.editor.curve, simulation.editor.table
+        drawn, counts = drawn_now(robot, simulation.runs.values(), curve, table, exaggeration)
     else:
         instant, curve, _ = _shown(lab)
         drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
     return Motion(
         key=key,
-        path=_path_view(session, curve, key, before),
+        path=_path_snapshot(simulation, curve, key, before),
         counts=counts,
         drawn=drawn,
-        wall=drawn_wall(session),
-        start=_drawn_start(session),
+        wall=drawn_wall(simulation),
+        start=_drawn_start(simulation),
     )
 
 
@@ -90,102 +90,104 @@ def take_page_snapshot(
     Args:
         nickname: the student's nickname in the class, or empty.
     """
-    scene, session = _scene(lab, achieved_speed, before, student), lab.session
-    right = session.runs[RIGHT]
+    scene, simulation = _scene(lab, achieved_speed, before, student), lab.simulation
+    right = simulation.runs[RIGHT]
     return PageSnapshot(
         **scene,
-        parameters=_values(session.parameters),
+        parameters=_values(simulation.parameters),
         joints=right.row[right.log.slices["q"]].copy(),
         run=RunState(
-            now=session.time,
-            viewing=session.viewing,
+            now=simulation.time,
+            viewing=simulation.viewing,
             frozen=lab.frozen,
-            can_undo_going_on=session.undo_timeline is not None,
-            rate=session.rate,
-            copy=session.copy,
-            exaggeration=session.exaggeration,
-            laws=session.chosen_laws,
-            hold_direction=session.hold_direction,
+            can_undo_going_on=simulation.undo_timeline is not None,
+            rate=simulation.rate,
+            copy=simulation.copy,
+            exaggeration=simulation.exaggeration,
+            laws=simulation.chosen_laws,
+            hold_direction=simulation.hold_direction,
             law_refusals=dict(lab.law_refusals),
         ),
-        edit=_path_edit(session),
+        edit=_path_edit(simulation),
         lesson=_lesson(lab),
-        plots=_plots(session, scene["time"], scene["key"], before),
+        plots=_plots(simulation, scene["time"], scene["key"], before),
         shared=lab.shared,
         nickname=nickname,
-        obstacle=wall_state(session),
-        beginning=start_state(session),
-        places=law_places(session, scene["time"], before),
+        obstacle=wall_state(simulation),
+        beginning=start_state(simulation),
+        places=law_places(simulation, scene["time"], before),
         phase=_phase(lab, scene["time"]),
     )
 
 
 def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int) -> dict[str, Any]:
     """The fields of `Snapshot`."""
-    session, key = lab.session, page_key(lab, student)
+    simulation, key = lab.simulation, page_key(lab, student)
     instant, curve, time = _shown(lab)
-    traces = _traces(session, time)
+    traces = _traces(simulation, time)
     message, level = lab.notice
     return {
         "time": time,
-        "running": session.running,
+        "running": simulation.running,
         "achieved_speed": achieved,
-        "robots": robot_views(session.robot, curve, instant, traces, session.exaggeration),
-        "path": _path_view(session, curve, key, before),
-        "held": bool(session.forces.held),
-        "grabbed": session.forces.grabbed,
+        "robots": robot_snapshots(
+            simulation.robot, curve, instant, traces, simulation.exaggeration
+        ),
+        "path": _path_snapshot(simulation, curve, key, before),
+        "held": bool(simulation.forces.held),
+        "grabbed": simulation.forces.grabbed,
         "message": message,
         "message_level": level,
         "messages": lab.messages,
-        "note": scale_note(session, lab.words),
+        "note": scale_note(simulation, lab.words),
         "key": key,
-        "wall": drawn_wall(session),
-        "start": _drawn_start(session),
-        "held_back": tuple(side for side in session.runs if side in session.forces.held),
-        "pulled": _pulled(session),
-        "brakes": drawn_brakes(session),
-        "stopped": _stopped(session, time),
-        "remedy": lab.breakdown.remedy(session),
+        "wall": drawn_wall(simulation),
+        "start": _drawn_start(simulation),
+        "held_back": tuple(side for side in simulation.runs if side in simulation.forces.held),
+        "pulled": _pulled(simulation),
+        "brakes": drawn_brakes(simulation),
+        "stopped": _stopped(simulation, time),
+        "remedy": lab.breakdown.remedy(simulation),
     }
 
 
-def _drawn_start(session: Session) -> Array:
-    return drawn_start(session.robot, session.editor.curve, session.start)
+def _drawn_start(simulation: Simulation) -> Array:
+    return drawn_start(simulation.robot, simulation.editor.curve, simulation.start)
 
 
-def _pulled(session: Session) -> tuple[str, ...]:
+def _pulled(simulation: Simulation) -> tuple[str, ...]:
     """`Snapshot.pulled`."""
-    hands = session.forces.hands
-    if not hands or session.viewing is not None:
+    hands = simulation.forces.hands
+    if not hands or simulation.viewing is not None:
         return ()
-    return tuple(side for side in session.runs if side in hands)
+    return tuple(side for side in simulation.runs if side in hands)
 
 
-def _stopped(session: Session, time: float) -> tuple[str, ...]:
+def _stopped(simulation: Simulation, time: float) -> tuple[str, ...]:
     """Sides whose robots had diverged by a time, [s]."""
-    faults = {side: run.diverged for side, run in session.runs.items()}
+    faults = {side: run.diverged for side, run in simulation.runs.items()}
     return tuple(side for side, fault in faults.items() if fault and fault.time <= time)
 
 
 def _shown(lab: Lab) -> tuple[Instant, Curve, float]:
     """The instant that is shown, its path and its time, [s]."""
-    session = lab.session
-    if (slow := lab.breakdown.instant(session)) is not None:
+    simulation = lab.simulation
+    if (slow := lab.breakdown.instant(simulation)) is not None:
         instant, curve = slow
         return instant, curve, instant.time
-    past = None if session.viewing is None else session.history.at(session.viewing)
-    time = session.time if session.viewing is None else session.viewing
+    past = None if simulation.viewing is None else simulation.history.at(simulation.viewing)
+    time = simulation.time if simulation.viewing is None else simulation.viewing
     if past is None:
-        return session.instant(), session.editor.curve, time
+        return simulation.instant(), simulation.editor.curve, time
     return past.instant(), past.curve, time
 
 
 def page_key(lab: Lab, student: int = 0) -> PageKey:
     """Make the `PageKey` of a lab."""
-    run, session = lab.lessons, lab.session
+    run, simulation = lab.lessons, lab.simulation
     return _page_key(
-        name=session.entry.name,
-        robot=session.robot,
+        name=simulation.entry.name,
+        robot=simulation.robot,
         language=run.words.language,
         in_lesson=run.lesson is not None,
         presenting=run.progress.presenting,
@@ -209,36 +211,38 @@ def _page_key(
     )
 
 
-def scale_note(session: Session, words: Words) -> str:
+def scale_note(simulation: Simulation, words: Words) -> str:
     """A note if the drawing is not true to scale, else empty."""
-    if session.exaggeration == 1.0 or not session.robot.extras:
+    if simulation.exaggeration == 1.0 or not simulation.robot.extras:
         return ""
-    return words("scene.larger", factor=f"{session.exaggeration:g}")
+    return words("scene.larger", factor=f"{simulation.exaggeration:g}")
 
 
-def _traces(session: Session, time: float) -> Array:
+def _traces(simulation: Simulation, time: float) -> Array:
     """Recent positions of both end-points, shape (n, robots, p)."""
-    y = session.sample_layout.slices["y"]
-    _, samples = session.history.samples(time - TRACE, time, TRACE_POINTS, y)
-    return samples if samples.size else np.zeros((0, len(session.runs), session.robot.system.p))
+    y = simulation.sample_layout.slices["y"]
+    _, samples = simulation.history.samples(time - TRACE, time, TRACE_POINTS, y)
+    return (
+        samples if samples.size else np.zeros((0, len(simulation.runs), simulation.robot.system.p))
+    )
 
 
 def _phase(lab: Lab, time: float) -> Array:
     """`PageSnapshot.phase`."""
-    session = lab.session
+    simulation = lab.simulation
     if not lab.draws_phase:
         return NO_PHASE
-    xi, rate = (session.sample_layout.slices[name].start for name in ("xi", "xi_rate"))
-    since = max(time - PHASE_WINDOW, session.across_since, FIRST)  # at 0 nothing is measured yet
-    _, samples = session.history.samples(since, time, PHASE_POINTS, slice(xi, rate + 1))
+    xi, rate = (simulation.sample_layout.slices[name].start for name in ("xi", "xi_rate"))
+    since = max(time - PHASE_WINDOW, simulation.across_since, FIRST)  # at 0 nothing is measured yet
+    _, samples = simulation.history.samples(since, time, PHASE_POINTS, slice(xi, rate + 1))
     return samples[..., [0, rate - xi]] if samples.size else NO_PHASE
 
 
-def _path_view(
-    session: Session, curve: Curve, key: PageKey, before: PageSnapshot | Motion | None
-) -> PathView:
+def _path_snapshot(
+    simulation: Simulation, curve: Curve, key: PageKey, before: PageSnapshot | Motion | None
+) -> PathSnapshot:
     """The current path, or the past path `curve` without its control points."""
-    editor, robot = session.editor, session.robot
+    editor, robot = simulation.editor, simulation.robot
     is_present = curve is editor.curve
     version = editor.version if is_present else curve.series.tobytes()
     if (
@@ -249,14 +253,14 @@ def _path_view(
         return before.path
 
     def placed(z: Array) -> Array:
-        return robot.place(robot.frame.lift(z))
+        return robot.position(robot.frame.lift(z))
 
     refused = [fault.points for fault in editor.faults] if is_present else []
     points = editor.points() if is_present else np.zeros((0, 2))
     if len(points) and editor.rise:
         theta, _ = editor.blend.target.plan.nearest(points)
         points = np.column_stack([points, editor.blend.target.at(theta)[:, 2]])
-    return PathView(
+    return PathSnapshot(
         version=version,
         points=placed(curve.at(np.linspace(-np.pi, np.pi, CURVE_POINTS))),
         control_points=placed(points),
@@ -274,8 +278,8 @@ def _given(editor: PathEditor) -> np.ndarray:
     return curve.given
 
 
-def _path_edit(session: Session) -> PathEdit:
-    editor = session.editor
+def _path_edit(simulation: Simulation) -> PathEdit:
+    editor = simulation.editor
     return PathEdit(
         version=editor.version,
         name=editor.design.name,
@@ -313,11 +317,13 @@ def _truth(lab: Lab) -> Truth | None:
     run, found = lab.lessons, lab.lessons.prediction()
     if found is None or (run.playing and not isinstance(found[1], Sketch)):
         return None
-    return run.truth(lab.session)
+    return run.truth(lab.simulation)
 
 
-def _plots(session: Session, time: float, key: PageKey, before: PageSnapshot | None) -> PlotSamples:
+def _plots(
+    simulation: Simulation, time: float, key: PageKey, before: PageSnapshot | None
+) -> PlotSamples:
     if before is not None and before.time == time and before.key == key:
         return before.plots
-    times, values = session.history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
-    return PlotSamples(times, values, session.across_since)
+    times, values = simulation.history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
+    return PlotSamples(times, values, simulation.across_since)

@@ -169,8 +169,8 @@ def deflections(snapshot: PageSnapshot, words: Words) -> str:
     """Tip deflection of each robot as text."""
     titles = side_titles(snapshot.laws, words)
     robots = [
-        words("flexible.deflection", robot=titles[side], value=f"{view.deflection * 1e3:.1f}")
-        for side, view in snapshot.robots.items()
+        words("flexible.deflection", robot=titles[side], value=f"{robot.deflection * 1e3:.1f}")
+        for side, robot in snapshot.robots.items()
     ]
     factor = snapshot.run.exaggeration
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None

@@ -1,4 +1,4 @@
-"""Saving and sharing: the session code, share codes and the lesson report."""
+"""Saving and sharing: the lab code, share codes and the lesson report."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class KeepPanel:
             self._share.content = _code(self._words("keep.shared"), self._code, self._words)
 
     def _code_in_report(self) -> str:
-        """The session code, if the user wants it in the report, where every reader can use it."""
+        """The lab code, if the user wants it in the report, where every reader can use it."""
         return self._context.code if self._context.keep_days and self._with_code.value else ""
 
     def _enter(self) -> None:

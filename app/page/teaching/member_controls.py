@@ -41,7 +41,7 @@ class MemberControls:
         delete = gui.add_button(words("class.delete"), color="red", icon=icons.USER_MINUS)
         self._message = gui.add_html("")
         self._handles = [mark, self._name, rename, remove, delete]
-        self._filled = ""  # session code of the student whose nickname has been put into the field
+        self._filled = ""  # lab code of the student whose nickname has been put into the field
         on_press(rename, self._rename)
         on_press(remove, self._remove)
         on_press(delete, self._ask_to_delete)

@@ -27,7 +27,7 @@ class PaceTab:
         self._words, self._course, self._class = words, course, classroom
         pace, self._names = self._class.orders.pace, lesson_titles(course, words)
         titles = {name: title for title, name in self._names.items()}
-        shown, _ = StepsForAll(course, words.language).place(classroom.display)
+        shown, _ = StepsForAll(course, words.language).shown(classroom.display)
         self._lesson = pace.lesson if pace else shown
         steps = self._steps()
         menu = gui.add_dropdown(

@@ -56,7 +56,7 @@ class PredictionsTab:
         self._lessons = lesson_titles(course, words)
         self._titles = {name: title for title, name in self._lessons.items()}
         display = self._class.display
-        lesson, index = self._steps.place(display)
+        lesson, index = self._steps.shown(display)
         steps = self._step_titles(lesson)
 
         icons = viser.Icon
@@ -91,7 +91,7 @@ class PredictionsTab:
         on_press(again, self._ask_again)
         on_press(self._play, self._demonstrate)
         on_press(self._put_back, self._put_lab_back)
-        on_press(push, lambda: self._push(TakeStep(*self._steps.place(self._class.display))))
+        on_press(push, lambda: self._push(TakeStep(*self._steps.shown(self._class.display))))
         on_user_update(self._shown, lambda on: self._show(shown=on))
         on_user_update(self._revealed, self._show_truth)
         on_user_update(self._lesson, lambda label: self._choose(self._lessons[label], 0))
@@ -101,7 +101,7 @@ class PredictionsTab:
     def look(self, large: bool) -> None:
         """Show what the class displays now, which may have been chosen in another window."""
         display, words = self._class.display, self._words
-        lesson, index = self._steps.place(display)
+        lesson, index = self._steps.shown(display)
         steps = self._step_titles(lesson)
         put(self._lesson, value=self._titles[lesson])
         if tuple(self._step.options) != tuple(steps):
@@ -140,7 +140,7 @@ class PredictionsTab:
         self._tell(self._words("class.sent", count=len(self._class.members())))
 
     def _ask_again(self) -> None:
-        name, index = self._steps.place(self._class.display)
+        name, index = self._steps.shown(self._class.display)
         found = prediction_at(self._course.lesson(name, self._words.language), index)
         if found is None:
             self._tell(self._words("class.no_prediction"))
@@ -177,7 +177,7 @@ class PredictionsTab:
         self._look_again()
 
     def _choose_step(self, label: str) -> None:
-        lesson, _ = self._steps.place(self._class.display)
+        lesson, _ = self._steps.shown(self._class.display)
         steps = self._step_titles(lesson)
         if label in steps:
             self._choose(lesson, steps.index(label))

@@ -21,7 +21,7 @@ class StepsForAll:
     course: Course
     language: str
 
-    def place(self, display: Display) -> tuple[str, int]:
+    def shown(self, display: Display) -> tuple[str, int]:
         """Lesson and index of the displayed step, or of one that exists."""
         if not self.course.has(display.lesson):
             return next(iter(self.course.lessons)), 0
@@ -30,7 +30,7 @@ class StepsForAll:
     def beside(self, display: Display, orders: Orders, by: int) -> TakeStep | None:
         """The next step for all (`by` is 1) or the one before (-1); None if there is none."""
         name = orders.push.route if isinstance(orders.push, TakeStep) else ""
-        at: tuple[str, int] | None = self.place(display)
+        at: tuple[str, int] | None = self.shown(display)
         while at is not None:
             at = self._moved(at, name, by)
             if at is not None and not self._steps(at[0])[at[1]].when:
@@ -39,7 +39,7 @@ class StepsForAll:
 
     def demonstration(self, display: Display) -> DemonstrateStep | None:
         """The displayed step's demonstration, or that of the run after it; None if it has none."""
-        lesson, index = self.place(display)
+        lesson, index = self.shown(display)
         steps = self._steps(lesson)
         for at in range(index, min(index + 2, len(steps))):
             if steps[at].script is not None and (at == index or steps[at].kind == "run"):

@@ -148,7 +148,7 @@ class TeacherPanel:
         self._show_standing()
 
     def _followable(self) -> dict[str, str]:
-        """Session codes by displayed label."""
+        """Lab code by displayed label."""
         members = self._class.members().items()
         return {f"{member.number}. {member.name}": code for code, member in members}
 
@@ -198,10 +198,10 @@ class TeacherPanel:
     def _export(self) -> None:
         course, language = self._course, self._words.language
         members = {
-            session: replace(member, progress=of_today(course, member.progress))
-            for session, member in self._class.members().items()
+            lab: replace(member, progress=of_today(course, member.progress))
+            for lab, member in self._class.members().items()
         }
-        students = [(session, member.progress) for session, member in members.items()]
+        students = [(lab, member.progress) for lab, member in members.items()]
         test = course.lesson(BEFORE, language) if course.tests else None
         tests = sheets_without_names(test, students, self._class.code) if test else []
         made = datetime.now(UTC)

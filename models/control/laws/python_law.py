@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import re
 import sys
@@ -13,7 +14,10 @@ from inspect import getdoc
 from pathlib import Path
 from typing import Any
 
+import cloudpickle
+
 from onpath.models.arrays import Array
+from onpath.models.control.laws.content import content
 from onpath.models.control.laws.law import ControlAction, Law, OwnGain, View
 from onpath.models.control.laws.law_error import error_in
 from onpath.models.control.laws.path_following import followed
@@ -80,18 +84,52 @@ def python_law(given: Any) -> Law:
               `Law`, such as `gains` and `memory`, or the class of such an object, which is created
               without arguments;
             - for studies, a function of `Now` that returns θ'' and λ'', p numbers in [rad/s²] and
-              [m/s²], or a class of such callable objects, of which each run creates one.
+              [m/s²], or a callable object, which each run copies as it is when the run begins, or
+              the class of such objects, of which each run creates one.
 
     Raises:
         CodedError: it does not describe a law; the message has file and line.
     """
-    if id(given) not in _KNOWN:
-        _KNOWN[id(given)] = given, _law_of(given)
-    return _KNOWN[id(given)][1]
+    compiled = hasattr(given, "command") and not isinstance(given, type | Law)
+    made_of = _content(given) if compiled else ""  # numbers of a callable object may change
+    if id(given) not in _KNOWN or _KNOWN[id(given)][1] != made_of:
+        _KNOWN[id(given)] = given, made_of, _law_of(given)
+    return _KNOWN[id(given)][2]
 
 
-_KNOWN = dict[int, tuple[Any, Law]]()
-"""Objects and their laws by `id`; the objects are kept so that no other gets the same `id`."""
+_KNOWN = dict[int, tuple[Any, str, Law]]()
+"""Objects with their content and law, by `id`; they are kept so that no other gets that `id`."""
+
+
+def _content(given: Any) -> str:
+    """The content of an object whose command is compiled; "" if it cannot be told."""
+    try:
+        return content(given)
+    except Exception:  # of whatever it consists
+        return ""
+
+
+def copied(given: Any) -> Any:
+    """A copy of a law with its memory, for a run.
+
+    Raises:
+        TypeError: it cannot be copied; the message names what.
+    """
+    try:
+        return copy.deepcopy(given)
+    except Exception as error:
+        for name, value in getattr(given, "__dict__", {}).items():
+            try:
+                copy.deepcopy(value)
+            except Exception:
+                what = f"its {name}, of type {type(value).__name__}, cannot be"
+                break
+        else:
+            what = str(error)
+        raise TypeError(
+            f"each run begins with a copy of it, but {what}. Give a class, of which each run"
+            " creates one object"
+        ) from error
 
 
 def _law_of(given: Any) -> Law:
@@ -101,12 +139,13 @@ def _law_of(given: Any) -> Law:
         if isinstance(given, Law):
             return dataclasses.replace(given, origin=(file, line))
         if hasattr(given, "command"):
-            made = given() if isinstance(given, type) else given
+            made = given() if isinstance(given, type) else _as_it_is(given)
             return _compiled(name, made, (file, line))
         if isinstance(given, type) and any("__call__" in vars(kind) for kind in given.__mro__[:-1]):
             return _called(name, given, given, (file, line))
         if callable(given) and not isinstance(given, type):
-            return _called(name, lambda: given, given, (file, line))
+            copied(given)
+            return _called(name, partial(copied, given), given, (file, line))
     except (Exception, SystemExit) as error:
         raise error_in(name, error, file, line) from error
     raise CodedError("error.law_no_text", kind=type(given).__name__)
@@ -142,6 +181,7 @@ def _law_in(path: Path, name: str, _state: tuple[int, int]) -> Law:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
     except (Exception, SystemExit) as error:
         raise error_in(name, error, str(path)) from error
+    cloudpickle.register_pickle_by_value(module)  # another computer does not have the file
     if name not in vars(module):
         own = [each for each, value in vars(module).items() if _is_of(value, module.__name__)]
         raise unknown_name(name, own, f"law in {path.name}")
@@ -152,6 +192,14 @@ def _law_in(path: Path, name: str, _state: tuple[int, int]) -> Law:
 def _is_of(value: Any, module: str) -> bool:
     """Whether a value of a module may be a law that is defined there."""
     return isinstance(value, Law) or (callable(value) and value.__module__ == module)
+
+
+def _as_it_is(given: Any) -> Any:
+    """An object that later changes of the user's do not reach; itself if it cannot be copied."""
+    try:
+        return copy.deepcopy(given)
+    except Exception:  # of whatever it consists
+        return given
 
 
 def _compiled(name: str, made: Any, origin: tuple[str, int]) -> Law:

@@ -109,8 +109,8 @@ def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep |
     one.keeper.open()
     room = one.room
     teacher = room.admit(shown(KEY), "desk")
-    for session, name in ((ADA, "Ada"), (BOB, "Bob <b>")):
-        room.join(session, room.code, name)
+    for lab, name in ((ADA, "Ada"), (BOB, "Bob <b>")):
+        room.join(lab, room.code, name)
     one.records.save(ADA, {"lessons": {"lesson": "01-a"}})
     room.leave(BOB)
     room.join("c" * 12, room.code, "Cid")

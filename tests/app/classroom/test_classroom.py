@@ -30,7 +30,7 @@ from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.schema import Choice, Sketch
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import write_lesson
 from tests.support.record import record
 
@@ -60,7 +60,7 @@ class Watched:
     def student(self, name: str) -> Lab:
         """One more, in the class."""
         code = f"lab {len(self.labs)}"
-        lab = Lab(store(), FIVE_BAR, self.course)
+        lab = Lab(loop_cache(), FIVE_BAR, self.course)
         self.labs[code] = lab, True
         self.room.join(code, self.room.code, name)
         self.look()
@@ -209,12 +209,12 @@ def test_attempts_under_way_count_and_only_failures_go_on_counting() -> None:
 
 def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -> None:
     lab = klass.student("Ada")
-    outside = Lab(store(), FIVE_BAR, klass.course)
+    outside = Lab(loop_cache(), FIVE_BAR, klass.course)
     do(lab, c.MoveHand(0.01, 0.0))
     klass.room.freeze(True)
     klass.look()
-    before = lab.session.time
-    assert lab.message == ENGLISH("class.frozen") and not lab.session.forces.hands
+    before = lab.simulation.time
+    assert lab.message == ENGLISH("class.frozen") and not lab.simulation.forces.hands
     for command in (
         c.SetRunning(False),
         c.StepOnce(),
@@ -226,12 +226,16 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
         assert lab.message == ENGLISH("class.frozen")
     run(lab, 0.5)
     run(outside, 0.5)
-    assert lab.session.time == before and outside.session.time > 0.4
-    assert lab.session.running and lab.session.parameters.K1 != 1.0 and not lab.session.forces.hands
+    assert lab.simulation.time == before and outside.simulation.time > 0.4
+    assert (
+        lab.simulation.running
+        and lab.simulation.parameters.K1 != 1.0
+        and not lab.simulation.forces.hands
+    )
     klass.room.freeze(False)
     klass.look()
     run(lab, 0.5)
-    assert lab.session.time > before and lab.message == ""
+    assert lab.simulation.time > before and lab.message == ""
 
 
 def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> None:
@@ -253,7 +257,7 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
     klass.look()
     for lab in (first, second):
         assert lab.lessons.lesson is not None and lab.lessons.index == 1
-        assert lab.session.parameters.K1 == 300 and lab.locked  # of the scene before
+        assert lab.simulation.parameters.K1 == 300 and lab.locked  # of the scene before
         assert lab.lessons.answer() is None
         do(lab, c.CloseLesson())
     klass.look()
@@ -266,22 +270,22 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
 
 
 def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
-    own = Lab(store(), FIVE_BAR, klass.course)
+    own = Lab(loop_cache(), FIVE_BAR, klass.course)
     do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
     lab = klass.student("Ada")
     klass.room.freeze(True)
     klass.look()
-    klass.room.push(TakeSetup(capture(own.session)))
+    klass.room.push(TakeSetup(capture(own.simulation)))
     klass.look()
-    assert capture(lab.session) == capture(own.session)
+    assert capture(lab.simulation) == capture(own.simulation)
     assert lab.frozen and lab.message == ENGLISH("class.frozen")
 
 
 def sent_setup(course: Course) -> Setup:
     """That no step of the lessons has."""
-    own = Lab(store(), FIVE_BAR, course)
+    own = Lab(loop_cache(), FIVE_BAR, course)
     do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
-    return capture(own.session)
+    return capture(own.simulation)
 
 
 @pytest.mark.parametrize("step", range(8))
@@ -293,24 +297,24 @@ def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) ->
     waits, before = lab.locked, lab.lessons.progress
     klass.room.push(TakeSetup(setup))
     klass.look()
-    assert capture(lab.session) == setup and lab.message == ENGLISH("class.setup_in_step")
+    assert capture(lab.simulation) == setup and lab.message == ENGLISH("class.setup_in_step")
     assert lab.lessons.progress == before and lab.lessons.index == step
-    assert lab.locked == waits and lab.session.running == (not waits)
+    assert lab.locked == waits and lab.simulation.running == (not waits)
     do(lab, c.GoToStep(1))
     assert lab.lessons.index == min(step + 1, 7)
     do(lab, c.CloseLesson())
-    assert lab.session.parameters.K1 == 7.0  # the free lab as it was
+    assert lab.simulation.parameters.K1 == 7.0  # the free lab as it was
 
 
 def test_set_up_again_brings_the_steps_own_setup_back(klass: Watched) -> None:
     lab = klass.student("Ada")
     do(lab, c.OpenLesson(LESSON))
-    own = capture(lab.session)
+    own = capture(lab.simulation)
     klass.room.push(TakeSetup(sent_setup(klass.course)))
     klass.look()
-    assert capture(lab.session) != own
+    assert capture(lab.simulation) != own
     do(lab, c.BeginStepAnew())
-    assert capture(lab.session) == own and lab.lessons.index == 0
+    assert capture(lab.simulation) == own and lab.lessons.index == 0
 
 
 def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> None:
@@ -336,10 +340,10 @@ def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
         do(lab, c.GoToStep(by))
         assert lab.lessons.progress.lesson == LESSON and lab.lessons.index == index
     do(lab, c.OpenLesson(OTHER))
-    assert lab.lessons.index == 6 and lab.session.editor.design.name == "ellipse"
+    assert lab.lessons.index == 6 and lab.simulation.editor.design.name == "ellipse"
     assert set(lab.lessons.notes.answers) == {"1", "3"}
     do(lab, c.CloseLesson())
-    assert lab.session.parameters.K1 == 7.0
+    assert lab.simulation.parameters.K1 == 7.0
 
 
 def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
@@ -352,7 +356,7 @@ def test_who_joins_later_gets_what_was_sent_last(klass: Watched) -> None:
         klass.look()
         assert late.lessons.lesson is None  # once
     klass.room.push(TakeSetup(sent_setup(klass.course)))
-    assert capture(klass.student("Cid").session) == sent_setup(klass.course)
+    assert capture(klass.student("Cid").simulation) == sent_setup(klass.course)
 
 
 def test_what_stands_ends_when_the_teacher_says_so(klass: Watched) -> None:
@@ -407,7 +411,7 @@ def test_who_leaves_and_returns_keeps_its_place(klass: Watched) -> None:
     del klass.labs["lab 0"]  # dropped after a while; kept in the database
     klass.room.freeze(True)
     klass.look()
-    again = Lab(store(), FIVE_BAR, klass.course)
+    again = Lab(loop_cache(), FIVE_BAR, klass.course)
     again.lessons.resume(lab.lessons.progress, None, again)
     klass.labs["lab 0"] = again, True
     klass.look()

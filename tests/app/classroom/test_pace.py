@@ -16,7 +16,7 @@ from onpath.app.lab.lab import Lab
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.pace import Pace
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import write_lesson
 
 LESSON, OTHER = "01-a", "02-b"
@@ -42,7 +42,7 @@ class Room:
     def student(self) -> Lab:
         """One more, in the class."""
         code = f"lab {len(self.labs)}"
-        self.labs[code] = Lab(store(), FIVE_BAR, self._course), True
+        self.labs[code] = Lab(loop_cache(), FIVE_BAR, self._course), True
         self.room.join(code, self.room.code, code)
         return self.labs[code][0]
 
@@ -84,7 +84,7 @@ ways = st.sampled_from(
 @given(st.lists(ways, max_size=12))
 @settings(max_examples=60)
 def test_no_way_of_a_student_leads_out_of_them(course: Course, walk: list[c.Command]) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, KeepWithin(Pace(LESSON, FIRST, LAST)))
     for way in walk:
         do(lab, way)
@@ -95,7 +95,7 @@ def test_no_way_of_a_student_leads_out_of_them(course: Course, walk: list[c.Comm
 
 
 def test_at_the_border_a_prediction_is_neither_skipped_nor_let_happen(course: Course) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, KeepWithin(Pace(LESSON, 0, 1)), c.GoToStep(1), c.GoToStep(1))
     assert place(lab) == (LESSON, 1) and lab.lessons.waits
     assert lab.message == lab.words("lesson.out_of_pace", first=1, last=2)
@@ -107,7 +107,7 @@ def test_at_the_border_a_prediction_is_neither_skipped_nor_let_happen(course: Co
 
 def test_within_the_last_step_a_lesson_can_be_finished(course: Course) -> None:
     last = len(course.lesson(LESSON, "en").steps) - 1
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, KeepWithin(Pace(LESSON, last - 1, last)), c.FinishLesson())
     assert lab.lessons.ended
 

@@ -26,7 +26,7 @@ from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import Answer, Progress, read_progress
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import write_lesson
 from tests.support.record import record
 
@@ -42,7 +42,7 @@ def course(tmp_path: Path) -> Course:
 
 def asked(course: Course, first: int | None, second: int | None) -> Lab:
     """A lab that was asked twice; None where the student has not answered."""
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, TakeStep(LESSON, CHOICE))
     if first is not None:
         do(lab, c.Predict(option=first))
@@ -54,7 +54,7 @@ def asked(course: Course, first: int | None, second: int | None) -> Lab:
 
 def test_time_waits_for_the_second_answer_and_the_first_is_kept(course: Course) -> None:
     lab = asked(course, 0, None)
-    assert lab.lessons.waits and lab.locked is not None and not lab.session.running
+    assert lab.lessons.waits and lab.locked is not None and not lab.simulation.running
     assert lab.lessons.answer() is None and lab.lessons.first_answer() == Answer(0)
     do(lab, c.Predict(option=1, sure="certain"))
     assert not lab.lessons.waits and lab.locked is None
@@ -78,7 +78,7 @@ def test_it_can_be_asked_again_and_again_and_skipped(course: Course) -> None:
 
 
 def test_a_step_without_prediction_is_only_opened(course: Course) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, TakeStep(LESSON, 0, again=True))
     assert lab.lessons.index == 0 and not lab.lessons.notes.asked_again
 
@@ -114,7 +114,7 @@ def test_both_distributions_stand_side_by_side(course: Course) -> None:
 
 def test_sketches_of_both_rounds_have_a_plot_each(course: Course) -> None:
     block = course.lesson(LESSON, "en").steps[SKETCH].predictions()[0]
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, TakeStep(LESSON, SKETCH), CURVE, TakeStep(LESSON, SKETCH, again=True))
     do(lab, CURVE)
     both = [distribution(block, LESSON, SKETCH, [lab.lessons.progress], a) for a in (False, True)]
@@ -134,7 +134,7 @@ class Teaching:
 
 def test_the_teacher_sees_them_or_only_how_many_there_are(course: Course) -> None:
     room = Classroom(lambda: 0.0)
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)
     do(lab, TakeStep(LESSON, CHOICE), c.Predict(option=0))

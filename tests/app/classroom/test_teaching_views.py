@@ -25,7 +25,7 @@ from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Notes, Progress
 from onpath.lessons.words import ENGLISH
 from onpath.models.systems.catalogue import FIVE_BAR
-from tests.support.lab import do, store
+from tests.support.lab import do, loop_cache
 from tests.support.lesson_texts import write_lesson
 
 LESSON, SKETCH = "01-a", 1
@@ -68,7 +68,7 @@ def test_on_a_projector_no_title_tells_what_will_happen(course: Course) -> None:
 
 
 def test_the_gains_of_a_lab_reach_the_class(course: Course) -> None:
-    room, lab = Classroom(lambda: 0.0), Lab(store(), FIVE_BAR, course)
+    room, lab = Classroom(lambda: 0.0), Lab(loop_cache(), FIVE_BAR, course)
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)
     do(lab, c.SetParameter("K1", 123.0), c.SetParameter("K5", 7.0))
@@ -112,7 +112,7 @@ class Teaching:
 
 def test_picked_sketches_keep_their_numbers_while_others_come_in(course: Course) -> None:
     room = Classroom(lambda: 0.0)
-    labs = {f"lab {i}": (Lab(store(), FIVE_BAR, course), True) for i in range(3)}
+    labs = {f"lab {i}": (Lab(loop_cache(), FIVE_BAR, course), True) for i in range(3)}
     sync = ClassSync(room, labs.get)
     for code, (lab, _) in labs.items():
         room.join(code, room.code, f"Nick {code}")

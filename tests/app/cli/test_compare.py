@@ -96,7 +96,7 @@ def test_a_law_that_stops_says_so_everywhere(
     ("arguments", "message"),
     [
         (["--law", "path_folowing"], "did you mean path_following"),
-        (["--law", "set_point"], "unknown law"),
+        (["--law", "set_point"], "does not take part"),
         (["--law", "across = xi.real; along = 0"], "column"),
         (["--law", "across = 0"], "along"),
         (["--law", "u1 = 0; u2 = 0; u3 = 0"], "does not suit"),
@@ -104,6 +104,7 @@ def test_a_law_that_stops_says_so_everywhere(
         (["--obstruction", "moon"], "unknown obstruction"),
         (["--robot", "hexapod"], "unknown robot"),
         (["--radius", "nan"], "--radius"),
+        (["--radius", "0.05", "--path", "clover"], "has no radius to set"),
         (["--robot", "spatial_arm", "--set", "rise=0.03"], "plane path"),
         (["--set", "speed=0"], "speed along the path"),
         (["--set", "K1=inf"], "K1"),

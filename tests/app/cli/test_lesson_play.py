@@ -82,12 +82,12 @@ def test_an_action_is_named_with_its_values(action: Action, text: str) -> None:
 
 def test_a_task_is_played_as_solved_and_as_failed(tmp_path: Path, capsys: Capture) -> None:
     write_lesson(tmp_path)
-    told = played(capsys, "1", "7", "--folder", str(tmp_path))
+    told = played(capsys, "1", "7", "--lessons", str(tmp_path))
     runs = {run["title"]: run for run in told["runs"]}
     assert list(runs) == ["hold.solution", "hold.failure"]
     assert [run["passed"] for run in runs.values()] == [True, False]
     assert told["setup"]["path"] == "ellipse"
-    assert run_command(["lessons", "play", "01-a", "7", "--folder", str(tmp_path)]) == 0
+    assert run_command(["lessons", "play", "01-a", "7", "--lessons", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "task passed" in text and "task not passed" in text and "hold.solution, 3 s" in text
 
@@ -98,7 +98,7 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
         "until = 2.0\ndo = [{ at = 0.5, hold = true }, { at = 1.5, hold = false }]", script
     )
     write_lesson(tmp_path, text.replace("seconds = 2.0", "seconds = 3.0"))
-    (run,) = played(capsys, "1", "3", "--folder", str(tmp_path))["runs"]
+    (run,) = played(capsys, "1", "3", "--lessons", str(tmp_path))["runs"]
     first, held, again, _ = run["parts"]
     assert again["actions"] == ["reset"]
     assert held["numbers"]["tracker"]["distance"]["max"] > 30
@@ -109,11 +109,11 @@ def test_times_go_on_through_a_reset(tmp_path: Path, capsys: Capture) -> None:
 
 def test_what_a_step_draws_and_where_it_starts_is_printed(tmp_path: Path, capsys: Capture) -> None:
     write_lesson(tmp_path, FORMAT_LESSON, FORMAT_REFERENCE)
-    assert run_command(["lessons", "play", "1", "1", "--folder", str(tmp_path)]) == 0
+    assert run_command(["lessons", "play", "1", "1", "--lessons", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "plot: phase, torques" in text and "show: tube, errors" in text
     assert "start: place = 0.5, across = 10.0" in text and "marks: [at = [50" not in text
-    assert run_command(["lessons", "play", "1", "3", "--folder", str(tmp_path)]) == 0
+    assert run_command(["lessons", "play", "1", "3", "--lessons", str(tmp_path)]) == 0
     text = capsys.readouterr().out
     assert "rate 0.25" in text and "start across = 5" in text and "across_rate [mm/s]" in text
 
@@ -138,7 +138,7 @@ def test_a_lesson_with_problems_or_without_a_reference_is_not_played(
     tmp_path: Path, capsys: Capture
 ) -> None:
     write_lesson(tmp_path, reference=REFERENCE.replace("hold.", "other."))
-    assert run_command(["lessons", "play", "1", "7", "--folder", str(tmp_path)]) == 2
+    assert run_command(["lessons", "play", "1", "7", "--lessons", str(tmp_path)]) == 2
     assert "reference.toml" in capsys.readouterr().err
 
 

@@ -12,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from onpath.app.cli import main
+from onpath.app.cli.serve import Serve
 from tests.support.checkout import ROOT
 from tests.support.waiting import wait_for
 
@@ -24,12 +26,12 @@ import os, signal, sys, time
 from pathlib import Path
 from onpath.app.cli import supervisor
 
-def serve():
+def serve(again):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(3))
     signal.signal(signal.SIGINT, lambda *_: sys.exit(3))
     signal.signal(signal.SIGHUP, lambda *_: sys.exit(3))
     with Path(sys.argv[1]).open("a") as lives:
-        print(os.getpid(), file=lives)
+        print(os.getpid(), again, file=lives)
     exec(sys.argv[2])
     while True:
         time.sleep(0.05)
@@ -52,9 +54,16 @@ class Lab:
 
     @property
     def lives(self) -> list[int]:
-        if not self._lives.exists():
-            return []
-        return [int(line) for line in self._lives.read_text("ascii").splitlines()]
+        return [int(line.split()[0]) for line in self._lines]
+
+    @property
+    def told(self) -> list[str]:
+        """Whether each life was told that another was before it."""
+        return [line.split()[1] for line in self._lines]
+
+    @property
+    def _lines(self) -> list[str]:
+        return self._lives.read_text("ascii").splitlines() if self._lives.exists() else []
 
     def life(self, number: int) -> int:
         """The process of a life, which may have to begin."""
@@ -103,6 +112,7 @@ def test_a_lab_that_is_killed_starts_again_until_it_is_ended(
     made.parent.send_signal(end)
     assert made.code() == 3 and is_gone(last) and len(made.lives) == 4
     assert made.log.read_text("utf-8").count("it starts again") == 3
+    assert made.told == ["False", "True", "True", "True"]
 
 
 def test_a_lab_that_is_told_to_end_all_the_time_ends_once(lab: Callable[..., Lab]) -> None:
@@ -127,7 +137,7 @@ def test_a_lab_in_a_terminal_that_may_be_closed_goes_on(lab: Callable[..., Lab])
 
 
 def test_a_lab_that_hung_starts_again(lab: Callable[..., Lab]) -> None:
-    made = lab("len(Path(sys.argv[1]).read_text().split()) > 2 or os._exit(os.EX_SOFTWARE)")
+    made = lab("len(Path(sys.argv[1]).read_text().splitlines()) > 2 or os._exit(os.EX_SOFTWARE)")
     made.life(2)
     made.parent.terminate()
     assert made.code() == 3 and len(made.lives) == 3
@@ -158,3 +168,13 @@ def test_where_something_else_supervises_the_process_itself_serves(
 ) -> None:
     made = lab(NOTIFY_SOCKET="/nowhere")
     assert made.life(0) == made.parent.pid
+
+
+def test_a_lab_that_starts_again_opens_no_further_tab(monkeypatch: pytest.MonkeyPatch) -> None:
+    opens = list[bool]()
+    monkeypatch.setattr(Serve, "run", lambda self: opens.append(self.open))
+    monkeypatch.setattr(main, "supervised", lambda serve: serve(False) + serve(True))
+    monkeypatch.setattr(sys, "argv", ["onpath", "--open"])
+    with pytest.raises(SystemExit, match="0"):
+        main.main()
+    assert opens == [True, False]

@@ -29,11 +29,11 @@ def process() -> Iterator[ExportProcess]:
 
 
 def test_a_file_from_the_process_is_the_same_to_the_byte(process: ExportProcess) -> None:
-    session = new_lab(0.4).session
+    simulation = new_lab(0.4).simulation
     made = process.call(
-        LONG, csv_file, session.entry.name, session.parameters, session.history.copy()
+        LONG, csv_file, simulation.entry.name, simulation.parameters, simulation.history.copy()
     )
-    assert made == csv_bytes(session.robot, session.history.all())
+    assert made == csv_bytes(simulation.robot, simulation.history.all())
 
 
 def test_it_is_another_process_with_lower_priority(process: ExportProcess) -> None:

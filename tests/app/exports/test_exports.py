@@ -18,16 +18,29 @@ from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words, languages
 from onpath.models.control.sides import SIDES
 from tests.support.csv_columns import read_csv
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, finish, new_lab, replayed, run, store, y
+from tests.support.lab import (
+    FOLLOWER,
+    FRAME,
+    TRACKER,
+    do,
+    finish,
+    loop_cache,
+    new_lab,
+    replayed,
+    run,
+    y,
+)
 
 
 def watched(lab: Lab, frames: int) -> list[tuple[float, dict[str, dict[str, np.ndarray]]]]:
     """(time, what each robot's log said) at the end of each frame."""
     seen = []
     for _ in range(frames):
-        lab.advance(lab.session.rate * FRAME)
-        rows = {n: {k: v.copy() for k, v in r.shown().items()} for n, r in lab.session.runs.items()}
-        seen.append((lab.session.time, rows))
+        lab.advance(lab.simulation.rate * FRAME)
+        rows = {
+            n: {k: v.copy() for k, v in r.shown().items()} for n, r in lab.simulation.runs.items()
+        }
+        seen.append((lab.simulation.time, rows))
     return seen
 
 
@@ -39,7 +52,7 @@ def eventful() -> tuple[Lab, list]:
     do(lab, c.Hold(False), c.SetParameter("K3", 300), c.SetParameter("payload", 0.1))
     do(
         lab,
-        c.Grab(FOLLOWER, y(lab.session, FOLLOWER) + np.array([0.0, 0.03])),
+        c.Grab(FOLLOWER, y(lab.simulation, FOLLOWER) + np.array([0.0, 0.03])),
     )
     seen += watched(lab, 15)
     do(lab, c.Release(), c.ChoosePath("ellipse"), c.SetParameter("encoder_counts", 4000))
@@ -53,11 +66,11 @@ def eventful() -> tuple[Lab, list]:
 
 def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
     lab, seen = eventful()
-    runs = replayed(lab.session)
+    runs = replayed(lab.simulation)
     assert set(runs) == set(SIDES)
     for name, trajectory in runs.items():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3)
-        assert trajectory.t[-1] == pytest.approx(lab.session.time - 1e-3)
+        assert trajectory.t[-1] == pytest.approx(lab.simulation.time - 1e-3)
         for time, rows in seen:
             at = round(time * 1e3) - 1  # the row of the frame's last tick
             for field, value in rows[name].items():
@@ -71,7 +84,7 @@ def test_replay_after_going_on_from_the_past() -> None:
     lab = new_lab(1.0)
     do(lab, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
     seen = watched(lab, 20)
-    for name, trajectory in replayed(lab.session).items():
+    for name, trajectory in replayed(lab.simulation).items():
         assert np.allclose(np.diff(trajectory.t), 1e-3, atol=1e-9)
         for time, rows in seen:
             row = trajectory.fields["q"][round(time * 1e3) - 1]
@@ -84,7 +97,7 @@ def test_two_kilohertz_gives_whole_milliseconds() -> None:
     for k in range(12):  # every frame another path, so that no segment joins the next
         do(lab, c.SelectPoint(0), c.NudgePoint(0.0005 * (-1) ** k, 0.0))
         lab.advance(FRAME)
-    for trajectory in replayed(lab.session).values():
+    for trajectory in replayed(lab.simulation).values():
         assert trajectory.t == pytest.approx(np.arange(len(trajectory.t)) * 1e-3, abs=1e-9)
         assert len(trajectory.t) == 200
 
@@ -92,39 +105,39 @@ def test_two_kilohertz_gives_whole_milliseconds() -> None:
 def test_csv_tells_the_distance_to_the_path_as_it_was() -> None:
     lab, _ = eventful()
     columns = read_csv(
-        io.StringIO(csv_bytes(lab.session.robot, lab.session.history.all()).decode())
+        io.StringIO(csv_bytes(lab.simulation.robot, lab.simulation.history.all()).decode())
     )
     assert set(columns) == set(SIDES)
     first = slice(0, 330)  # on the circle
     radius = np.hypot(columns[TRACKER]["y1_m"], columns[TRACKER]["y2_m"])[first]
     assert columns[TRACKER]["distance_m"][first] == pytest.approx(np.abs(radius - 0.05), abs=1e-9)
-    assert len(columns[TRACKER]["t_s"]) == round(lab.session.time * 1e3)
+    assert len(columns[TRACKER]["t_s"]) == round(lab.simulation.time * 1e3)
 
 
 def test_one_robot_that_stands_still_does_not_spoil_the_export() -> None:
     lab = new_lab(0.3)
-    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    lab.simulation.runs[FOLLOWER].fields()["v"][:] = 500.0
     run(lab, 0.4)
-    assert lab.session.runs[FOLLOWER].diverged
-    both = replayed(lab.session)
+    assert lab.simulation.runs[FOLLOWER].diverged
+    both = replayed(lab.simulation)
     assert both[FOLLOWER].t[-1] < 0.32 < 0.69 < both[TRACKER].t[-1]
-    later = [s for s in lab.session.history.all() if s.time > 0.4]
-    assert set(replay(lab.session.robot, later)) == {TRACKER}
-    assert b",right," not in csv_bytes(lab.session.robot, later)
-    assert draw_history(replay(lab.session.robot, later)).startswith(b"\x89PNG")
-    lab.session.runs[TRACKER].fields()["v"][:] = 500.0
+    later = [s for s in lab.simulation.history.all() if s.time > 0.4]
+    assert set(replay(lab.simulation.robot, later)) == {TRACKER}
+    assert b",right," not in csv_bytes(lab.simulation.robot, later)
+    assert draw_history(replay(lab.simulation.robot, later)).startswith(b"\x89PNG")
+    lab.simulation.runs[TRACKER].fields()["v"][:] = 500.0
     run(lab, 0.2)
-    end = [s for s in lab.session.history.all() if s.time > 0.75]
+    end = [s for s in lab.simulation.history.all() if s.time > 0.75]
     with pytest.raises(ValueError, match="stood still"):
-        replay(lab.session.robot, end)
+        replay(lab.simulation.robot, end)
 
 
 def test_picture_and_page_are_whole() -> None:
     lab = new_lab(0.6)
-    history = lab.session.history.all()
-    picture = draw_history(replay(lab.session.robot, history))
+    history = lab.simulation.history.all()
+    picture = draw_history(replay(lab.simulation.robot, history))
     assert picture.startswith(b"\x89PNG") and picture.endswith(b"IEND\xaeB`\x82")
-    page = record_scene(lab.session.robot, history)
+    page = record_scene(lab.simulation.robot, history)
     assert page.lstrip()[:15].lower() == b"<!doctype html>" and page.rstrip().endswith(b"</html>")
     assert len(page) < 3_000_000
 
@@ -135,11 +148,11 @@ def test_the_picture_says_what_it_shows(language: str) -> None:
     do(lab, c.SetParameter("K1", 650.0), c.SetParameter("payload", 0.1), c.Hold(True))
     run(lab, 0.3)
     do(lab, c.Hold(False), c.ChooseLaw("left", "waiting_clock"))
-    finish(store())
+    finish(loop_cache())
     run(lab, 0.3)
-    session = lab.session
-    drawn = replay(session.robot, session.history.all())
-    figure = history_figure(drawn, words, session.parameters, "five_bar", "circle")
+    simulation = lab.simulation
+    drawn = replay(simulation.robot, simulation.history.all())
+    figure = history_figure(drawn, words, simulation.parameters, "five_bar", "circle")
     said = " ".join(text.get_text() for text in figure.findobj(match=Text))
     assert (
         words.get("path.circle", "circle") in said
@@ -163,5 +176,5 @@ def test_a_hold_is_marked_for_as_long_as_it_was() -> None:
     run(lab, 0.2)
     do(lab, c.Hold(False))
     run(lab, 0.3)
-    ((begin, end),) = held_times(replayed(lab.session)[FOLLOWER])
+    ((begin, end),) = held_times(replayed(lab.simulation)[FOLLOWER])
     assert begin == pytest.approx(0.3, abs=0.02) and end == pytest.approx(0.5, abs=0.02)

@@ -28,6 +28,7 @@ from onpath.models.control.laws.registry import law_named
 from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.cases import drawn, some
 
 CURVES = {name: presets()[name].curve for name in ("circle", "clover", "segment")}
 LARGEST = 1_500_000  # [B]
@@ -113,17 +114,17 @@ LARGEST_PAGE = "flexible"
 
 @pytest.mark.parametrize(
     "robot",
-    [
-        pytest.param(name, marks=() if name == LARGEST_PAGE else pytest.mark.thorough)
-        for name in ROBOTS
-    ],
+    some(
+        [LARGEST_PAGE, *drawn([name for name in ROBOTS if name != LARGEST_PAGE], 2)],
+        quick=[LARGEST_PAGE],
+    ),
 )
 def test_a_page_with_all_laws_has_at_most_a_megabyte_and_a_half(robot: str, tmp_path: Path) -> None:
     """Whatever laws the author includes."""
     system = ROBOTS[robot].make(ROBOTS[robot].parameters()).system
     laws = [name for name in onpath.laws() if law_named(name).suits(system)]
     assert len(laws) > 4
-    file = onpath.figure(tmp_path / "a.html", robot, choices=laws)
+    file = onpath.figure(robot, choices=laws).save(tmp_path / "a.html")
     assert file.stat().st_size < LARGEST
 
 
@@ -157,7 +158,7 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--law", "set_point"] * 3, "one or two"),
         (["--path", "circle", "--path", "circle 0.3"], "path 'circle 0.3': "),
         (["--path", "circle 0,05"], "write 0.05 instead of 0,05"),
-        (["--path", "@missing.txt"], "--path @missing.txt: No such file"),
+        (["--path", "@missing.txt"], "missing.txt: there is no such file"),
         (["--set", "K1=nothing"], "K1"),
         (["--slider", "torque_limit"], "cannot be changed in a figure"),
         (["--slider", "task"], "cannot be changed in a figure"),
@@ -169,27 +170,25 @@ def test_what_cannot_be_a_figure_is_refused_in_a_line(
         (["--choice", "path_folowing"], "path_following"),
     ]
     for arguments, hint in wrong:
-        assert run_command(["export", "figure", target, *arguments]) == 2, arguments
+        assert run_command(["figure", target, *arguments]) == 2, arguments
         said = capsys.readouterr().err
         assert said.count("\n") == 1 and hint in said and not list(tmp_path.iterdir())
-    assert run_command(["export", "figure", str(tmp_path / "no" / "a.html")]) == 2
+    assert run_command(["figure", str(tmp_path / "no" / "a.html")]) == 2
 
 
 def test_paths_may_be_read_from_files(tmp_path: Path) -> None:
     oval, file = tmp_path / "My oval.txt", tmp_path / "a.html"
     oval.write_text("ellipse 0.06 0.03", "utf-8-sig")
-    arguments = ["export", "figure", str(file), "--path", f"@{oval}", "--path", "circle"]
+    arguments = ["figure", str(file), "--path", f"@{oval}", "--path", "circle"]
     assert run_command(arguments) == 0
     named = {"My oval": onpath.ellipse(0.06, 0.03), "circle": "circle"}
-    assert file.read_bytes() == onpath.figure(tmp_path / "b.html", paths=named).read_bytes()
+    assert file.read_bytes() == onpath.figure(path=named).save(tmp_path / "b.html").read_bytes()
 
 
-def test_one_law_and_paths_of_one_s_own(tmp_path: Path) -> None:
+def test_one_law_and_paths_of_one_s_own() -> None:
     paths = {"my oval": onpath.ellipse(0.06, 0.03), "line": "segment"}
     law = "across = -K1*xi - K2*dxi; along = 9*(5 - dtheta)"
-    page = onpath.figure(tmp_path / "a.html", laws=law, paths=paths, title="Mine").read_text(
-        "utf-8"
-    )
+    page = onpath.figure(law=law, path=paths, title="Mine").html
     assert "my oval" in page and "<title>Mine</title>" in page
 
 

@@ -98,7 +98,7 @@ def test_twelve_simultaneous_requests_make_twelve_films_and_leave_nothing_behind
     started: list[WebsockServer] = []
     genuine = WebsockServer.start
     monkeypatch.setattr(WebsockServer, "start", lambda s: (started.append(s), genuine(s)))
-    record_scene(lab.session.robot, lab.session.history.all())
+    record_scene(lab.simulation.robot, lab.simulation.history.all())
     with tab() as (client, exporter):  # a first one, which loads what all share
         press_at_once(lab, [exporter])
         wait_for(lambda: client.answered)
@@ -244,7 +244,7 @@ def test_a_server_built_while_another_is_being_built_listens(
             requests=door,
             limits=limits,
             counts=connections,
-            to_place=lambda *_: None,
+            set_prefix=lambda *_: None,
             elsewhere=bool,
             channel=hardening.DataChannel(),
             course_url="",
@@ -257,7 +257,7 @@ def test_a_server_built_while_another_is_being_built_listens(
 
 
 def test_a_recording_says_what_was_set_and_has_the_plots(lab: Lab) -> None:
-    session = lab.session
-    page = film_file("five_bar", session.parameters, session.history.copy(), "en").decode()
+    simulation = lab.simulation
+    page = film_file("five_bar", simulation.parameters, simulation.history.copy(), "en").decode()
     told = page.rpartition("<details")[2]
     assert "Settings and plots" in told and "data:image/png;base64,iVBOR" in told

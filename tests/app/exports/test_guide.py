@@ -166,7 +166,7 @@ def test_lessons_of_ones_own_have_a_guide_and_a_worksheet(tmp_path: Path) -> Non
     """Also those without any of the teacher's texts; whatever they say is escaped."""
     write_lesson(tmp_path, LESSON.replace('"Hold back."', '"`<script>alert(1)</script>`"'))
     files = [tmp_path / name for name in ("g.html", "w.html", "k.html")]
-    own = ["--folder", str(tmp_path)]
+    own = ["--lessons", str(tmp_path)]
     assert run_command(["lessons", "guide", "--html", str(files[0]), *own]) == 0
     sheets = ["--html", str(files[1]), "--key", str(files[2]), "--language", "de"]
     assert run_command(["lessons", "worksheet", "1", *sheets, *own]) == 0
@@ -200,7 +200,7 @@ def test_lessons_with_problems_are_not_printed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_lesson(tmp_path, reference=REFERENCE.replace("hold.", "other."))
-    given = ["--html", str(tmp_path / "g.html"), "--folder", str(tmp_path)]
+    given = ["--html", str(tmp_path / "g.html"), "--lessons", str(tmp_path)]
     assert run_command(["lessons", "guide", *given]) == 2
     assert "reference.toml" in capsys.readouterr().err
 
@@ -211,5 +211,5 @@ def test_a_pdf_without_a_browser_is_refused_with_a_way_out(
     monkeypatch.setattr("onpath.app.exports.print_page.find_browser", lambda: None)
     write_lesson(tmp_path)
     pdf = tmp_path / "g.pdf"
-    assert run_command(["lessons", "guide", "--pdf", str(pdf), "--folder", str(tmp_path)]) == 2
+    assert run_command(["lessons", "guide", "--pdf", str(pdf), "--lessons", str(tmp_path)]) == 2
     assert "--html" in capsys.readouterr().err and not pdf.exists()

@@ -160,12 +160,12 @@ def test_a_tab_reads_one_file_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None
 def test_the_lab_follows_the_path_of_a_file_and_draws_the_line_if_it_is_far() -> None:
     lab = new_lab(0.2)
     do(lab, answer(b"0,0\n4,0\n4,4\n0,4\n", "a.csv", Placing(fit=0.1, corners=ROUND, radius=0.02)))
-    design = lab.session.editor.design
-    assert design.name == "drawn" and not lab.session.editor.faults
+    design = lab.simulation.editor.design
+    assert design.name == "drawn" and not lab.simulation.editor.faults
     assert "tightest bend" in lab.message and "mm away from the lines" in lab.message
     assert len(take_page_snapshot(lab, 1.0).path.given) > 4
     run(lab, 1.0)
-    assert all(each.diverged is None for each in lab.session.runs.values())
+    assert all(each.diverged is None for each in lab.simulation.runs.values())
     do(lab, c.Undo())
     assert not len(take_page_snapshot(lab, 1.0).path.given)
 
@@ -173,19 +173,19 @@ def test_the_lab_follows_the_path_of_a_file_and_draws_the_line_if_it_is_far() ->
 def test_what_cannot_be_followed_is_red_and_the_nearest_that_can_is_followed() -> None:
     lab = new_lab(0.2)
     do(lab, answer(b"G0 X0 Y0\nG1 X30\nY30\nX0\nY0\n", "a.nc"))
-    editor, snapshot = lab.session.editor, take_page_snapshot(lab, 1.0)
-    assert not curve_faults(lab.session.robot.margin, editor.design.curve)
+    editor, snapshot = lab.simulation.editor, take_page_snapshot(lab, 1.0)
+    assert not curve_faults(lab.simulation.robot.margin, editor.design.curve)
     assert "bends too sharply" in lab.message and "nearest path" in lab.message
     assert len(snapshot.path.refused)
     run(lab, 1.0)
-    assert all(each.diverged is None for each in lab.session.runs.values())
+    assert all(each.diverged is None for each in lab.simulation.runs.values())
     do(lab, c.MovePoint(0, editor.design.points[0] + 1e-3))
     assert not len(take_page_snapshot(lab, 1.0).path.refused)
 
 
 def test_what_nothing_near_could_follow_is_refused_and_the_old_path_kept() -> None:
     lab = new_lab(0.2)
-    before = lab.session.editor.design
+    before = lab.simulation.editor.design
     do(lab, answer(b"0,0\n1,0.001\n2,0\n1,-0.001\n", "a.csv"))
-    assert lab.session.editor.design is before and "refused" in lab.message
+    assert lab.simulation.editor.design is before and "refused" in lab.message
     assert len(take_page_snapshot(lab, 1.0).path.refused)

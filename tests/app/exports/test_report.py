@@ -26,7 +26,7 @@ from onpath.lessons.progress import Answer, Notes, Progress, Truth
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.waiting import wait_for
 
@@ -275,7 +275,7 @@ class Client:
 
 @pytest.mark.thorough
 def test_it_is_sent_as_it_was_when_it_was_requested(course: Course) -> None:
-    lab, client = Lab(store(), FIVE_BAR, course), Client()
+    lab, client = Lab(loop_cache(), FIVE_BAR, course), Client()
     do(lab, c.OpenLesson(NAME), c.GoToStep(1))
     do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
     run(lab, 2.3)

@@ -32,7 +32,7 @@ from onpath.models.control.settable import value_of, with_values
 from onpath.models.control.sides import LEFT
 from onpath.models.paths.curves import circle
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
-from tests.support.lab import FRAME, do, finish, run, store
+from tests.support.lab import FRAME, do, finish, loop_cache, run
 
 LAW = "sliding_mode"
 
@@ -57,21 +57,21 @@ def test_both_loops_have_the_same_bits(name: str) -> None:
 
 
 def test_it_runs_compiled_in_the_lab_with_its_gain_in_the_share_code() -> None:
-    loops = store()
+    loops = loop_cache()
     lab = Lab(loops)
     do(lab, c.ChooseLaw(LEFT, LAW), c.SetParameter("reach", 4.5))
     for _ in range(3):
         run(lab, FRAME)
         finish(loops)
-    own = lab.session.runs[LEFT]
+    own = lab.simulation.runs[LEFT]
     assert isinstance(loops.find(own.robot, own.kind), CompiledLoop)
-    setup = decode(encode(capture(lab.session)))
+    setup = decode(encode(capture(lab.simulation)))
     assert setup.robots[FIVE_BAR.name].parameters == {"reach": 4.5}
     other = Lab(loops)
     other.set_up(setup)
-    assert value_of(other.session.parameters, "reach") == 4.5
-    assert other.session.parameters == lab.session.parameters
-    assert other.session.laws[LEFT] == LAW
+    assert value_of(other.simulation.parameters, "reach") == 4.5
+    assert other.simulation.parameters == lab.simulation.parameters
+    assert other.simulation.laws[LEFT] == LAW
 
 
 def test_it_holds_against_a_force_below_its_reach() -> None:
@@ -91,7 +91,7 @@ def test_it_runs_on_the_command_line(capsys: pytest.CaptureFixture[str]) -> None
 
 def test_it_is_exported_with_sliders_for_its_gains(tmp_path: Path) -> None:
     file = tmp_path / "page.html"
-    assert run_command(["export", "figure", str(file), "--law", LAW, "--set", "reach=3"]) == 0
+    assert run_command(["figure", str(file), "--law", LAW, "--set", "reach=3"]) == 0
     assert "Sliding mode" in file.read_text("utf-8")
     figure = chosen("five_bar", (LAW,), {"circle": circle(0.05)}, {"reach": 3.0})
     assert {"boundary", "reach"} <= {*figure.sliders}

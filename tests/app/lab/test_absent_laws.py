@@ -14,7 +14,7 @@ from onpath.app.lab.setups.stored import to_data
 from onpath.app.storage.lab_state import put_back
 from onpath.lessons.progress import Progress
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT
-from tests.support.lab import assert_sound, store
+from tests.support.lab import assert_sound, loop_cache
 
 KEPT = Setup(robots={"five_bar": RobotSetup({"reach": 4.0, "K1": 500.0})}, laws={LEFT: "sliding"})
 
@@ -25,20 +25,20 @@ def kept(**changes: Any) -> Any:
 
 
 def test_a_kept_lab_opens_without_them_and_says_so() -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     put_back(lab, kept())
-    assert lab.session.parameters.K1 == 500.0 and not lab.session.parameters.own_gains
-    assert lab.session.laws == DEFAULT_LAWS
+    assert lab.simulation.parameters.K1 == 500.0 and not lab.simulation.parameters.own_gains
+    assert lab.simulation.laws == DEFAULT_LAWS
     assert "sliding, reach" in lab.message and lab.message_level == "warning"
     assert_sound(lab)
 
 
 def test_nothing_is_said_if_nothing_is_lacking() -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     robots = {"five_bar": RobotSetup({"clock_gain": 20.0})}
     put_back(lab, kept(robots=robots, laws={LEFT: "waiting_clock"}))
-    assert lab.message == "" and lab.session.parameters.own_gains == (("clock_gain", 20.0),)
-    assert lab.session.laws[LEFT] == "waiting_clock"
+    assert lab.message == "" and lab.simulation.parameters.own_gains == (("clock_gain", 20.0),)
+    assert lab.simulation.laws[LEFT] == "waiting_clock"
 
 
 @pytest.mark.parametrize("setup", [Setup(robots=KEPT.robots), Setup(laws=KEPT.laws)])

@@ -16,7 +16,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.file_chain import Options
 from onpath.models.systems.robot_file import read_robot
 from onpath.models.systems.robots import RobotEntry
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.robot_files import PLANAR, urdf
 
 
@@ -37,8 +37,8 @@ def test_a_share_code_restores_the_robot_or_says_that_it_is_absent(
 ) -> None:
     entry = own(tmp_path)
     monkeypatch.setitem(ROBOTS, entry.name, entry)
-    lab = Lab(store(), entry)
-    setup = capture(lab.session)
+    lab = Lab(loop_cache(), entry)
+    setup = capture(lab.simulation)
     code = encode(setup)
     assert decode(code) == setup and setup.robot == entry.name
     monkeypatch.delitem(ROBOTS, entry.name)
@@ -52,12 +52,12 @@ def test_a_kept_lab_goes_on_without_an_absent_robot_and_says_so(
 ) -> None:
     entry = own(tmp_path)
     monkeypatch.setitem(ROBOTS, entry.name, entry)
-    lab = Lab(store(), entry)
-    lab.session.choose_robot(ROBOTS["two_link_arm"])
-    lab.session.choose_robot(entry)
-    state: LabState = {"setup": to_data(capture(lab.session)), "lessons": {}, "before": None}
+    lab = Lab(loop_cache(), entry)
+    lab.simulation.choose_robot(ROBOTS["two_link_arm"])
+    lab.simulation.choose_robot(entry)
+    state: LabState = {"setup": to_data(capture(lab.simulation)), "lessons": {}, "before": None}
     monkeypatch.delitem(ROBOTS, entry.name)
-    other = Lab(store())
+    other = Lab(loop_cache())
     put_back(other, state)
-    assert other.session.entry.name == "five_bar"
+    assert other.simulation.entry.name == "five_bar"
     assert entry.name in other.message

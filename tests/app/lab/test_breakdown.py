@@ -23,13 +23,13 @@ def blown_up() -> Lab:
     run(lab, 1.5)
     do(lab, c.SetParameter("alpha", 1.0))
     run(lab, 0.5)
-    assert any(each.diverged for each in lab.session.runs.values())
+    assert any(each.diverged for each in lab.simulation.runs.values())
     return lab
 
 
 def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
-    lab, session = blown_up, blown_up.session
-    fault = max(run.diverged.time for run in session.runs.values() if run.diverged)
+    lab, simulation = blown_up, blown_up.simulation
+    fault = max(run.diverged.time for run in simulation.runs.values() if run.diverged)
     said = lab.message
     do(lab, c.ReplayBreakdown())
     times, ends, notes = [], [], set[str]()
@@ -46,7 +46,7 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     assert len({end.tobytes() for end in ends}) > 5  # not only the beginnings of frames
     assert np.isfinite(ends).all()
     assert any(f"{LARGER:g}" in note for note in notes)
-    assert session.exaggeration == 1.0 and session.viewing is None
+    assert simulation.exaggeration == 1.0 and simulation.viewing is None
     assert lab.message == said
 
 
@@ -59,33 +59,33 @@ def test_of_a_rigid_robot_it_says_nothing_of_bending(entry: RobotEntry) -> None:
     do(lab, c.SetParameter("K1", 2500.0), c.SetParameter("K2", 200.0))
     for _ in range(40):
         run(lab, 0.25)
-        if any(each.diverged for each in lab.session.runs.values()):
+        if any(each.diverged for each in lab.simulation.runs.values()):
             break
     do(lab, c.ReplayBreakdown())
-    assert lab.breakdown.replaying and lab.session.exaggeration == 1.0
+    assert lab.breakdown.replaying and lab.simulation.exaggeration == 1.0
     assert "Its last moments, slowly." in lab.message and "bending" not in lab.message
 
 
 def test_any_action_of_the_user_ends_it_and_time_runs(blown_up: Lab) -> None:
-    lab, session = blown_up, blown_up.session
-    said, running = lab.message, session.running
+    lab, simulation = blown_up, blown_up.simulation
+    said, running = lab.message, simulation.running
     for command, then in (
         (c.SelectPoint(None), running),
         (c.SetRunning(), not running),
         (c.SetParameter("K1", 300.0), running),
     ):
-        session.running = running
+        simulation.running = running
         do(lab, c.ReplayBreakdown())
         run(lab, 0.5)
         assert lab.message.startswith(said.partition(". Reset")[0])  # which robot, and why
         assert lab.message_level == "replay"
         do(lab, command)
-        assert not lab.breakdown.replaying and session.exaggeration == 1.0
-        assert session.viewing is None and session.running is then
+        assert not lab.breakdown.replaying and simulation.exaggeration == 1.0
+        assert simulation.viewing is None and simulation.running is then
         assert lab.message == said and lab.message_level == "error"
-    session.running = True
+    simulation.running = True
     do(lab, c.ReplayBreakdown(), c.Reset())
-    assert not lab.breakdown.replaying and session.running and lab.message == ""
+    assert not lab.breakdown.replaying and simulation.running and lab.message == ""
 
 
 def test_a_teacher_who_freezes_the_lab_stops_it_too(blown_up: Lab) -> None:
@@ -99,15 +99,15 @@ def test_a_teacher_who_freezes_the_lab_stops_it_too(blown_up: Lab) -> None:
 
 def test_time_runs_afterwards_as_before(blown_up: Lab) -> None:
     for running in (True, False):
-        blown_up.session.running = running
+        blown_up.simulation.running = running
         do(blown_up, c.ReplayBreakdown())
-        assert not blown_up.session.running
+        assert not blown_up.simulation.running
         run(blown_up, LASTS + RESTS + 0.1)
-        assert not blown_up.breakdown.replaying and blown_up.session.running is running
+        assert not blown_up.breakdown.replaying and blown_up.simulation.running is running
 
 
 def test_the_message_names_the_robot_that_stopped_last(blown_up: Lab) -> None:
-    last = max(r.diverged.time for r in blown_up.session.runs.values() if r.diverged)
+    last = max(r.diverged.time for r in blown_up.simulation.runs.values() if r.diverged)
     assert f"{last:.2f} s" in blown_up.message
     said = blown_up.message
     blown_up.clear_message()
@@ -119,18 +119,18 @@ def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
     run(blown_up, 0.5)
     do(blown_up, c.LookAt(0.02))
     run(blown_up, 0.1)
-    session = blown_up.session
-    assert not blown_up.breakdown.replaying and session.exaggeration == 1.0
-    assert session.viewing == pytest.approx(session.time - 0.02)
+    simulation = blown_up.simulation
+    assert not blown_up.breakdown.replaying and simulation.exaggeration == 1.0
+    assert simulation.viewing == pytest.approx(simulation.time - 0.02)
 
 
 def test_the_last_stable_settings_are_offered_and_applied(blown_up: Lab) -> None:
     assert take_snapshot(blown_up, 1.0).remedy == {"alpha": 0.5}
     do(blown_up, c.UseEarlierSettings())
     run(blown_up, 1.0)
-    session = blown_up.session
-    assert take_snapshot(blown_up, 1.0).parameters["alpha"] == 0.5 and session.running
-    assert not any(each.diverged for each in session.runs.values())
+    simulation = blown_up.simulation
+    assert take_snapshot(blown_up, 1.0).parameters["alpha"] == 0.5 and simulation.running
+    assert not any(each.diverged for each in simulation.runs.values())
     assert take_snapshot(blown_up, 1.0).remedy == {}
 
 
@@ -144,19 +144,19 @@ def test_a_replay_that_is_asked_for_after_a_reset_is_not_shown(blown_up: Lab) ->
     """The page sends it by itself, perhaps too late; the user sees no message."""
     do(blown_up, c.Reset(), c.ReplayBreakdown())
     assert not blown_up.message and not blown_up.breakdown.replaying
-    assert blown_up.session.viewing is None
+    assert blown_up.simulation.viewing is None
 
 
 def test_the_distance_of_a_stopped_robot_is_that_of_its_pose(blown_up: Lab) -> None:
     """In the readout as in the plot, and also as the largest one."""
-    session = blown_up.session
-    column = session.sample_layout.slices["distance"].start
-    _, samples = session.history.samples(0.0, session.time, 1000)
-    stopped = [(i, each) for i, each in enumerate(session.runs.values()) if each.diverged]
+    simulation = blown_up.simulation
+    column = simulation.sample_layout.slices["distance"].start
+    _, samples = simulation.history.samples(0.0, simulation.time, 1000)
+    stopped = [(i, each) for i, each in enumerate(simulation.runs.values()) if each.diverged]
     assert stopped
     for place, each in stopped:
         y, theta = each.shown()["y"], each.shown()["theta"]
-        far = near_distance(session.robot.frame, session.editor.curve, y[None], theta)
+        far = near_distance(simulation.robot.frame, simulation.editor.curve, y[None], theta)
         assert each.distance == pytest.approx(float(far[0]))
         assert each.max_distance >= each.distance
         assert samples[-1, place, column] == pytest.approx(each.distance, rel=1e-6)

@@ -36,7 +36,7 @@ OTHERS = [name for name in laws_for() if name not in DEFAULT_LAWS.values()]
 
 def change(lab: Lab, side: str, law: str) -> None:
     """Change a law at once, as a script does."""
-    lab.session.change_law(side, law)
+    lab.simulation.change_law(side, law)
 
 
 @pytest.mark.thorough
@@ -46,8 +46,8 @@ def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetParameter("K3", 500.0), c.Hold(True))
     run(lab, 0.3)
-    before, time = states(lab.session)[side], lab.session.time
-    own = lab.session.runs[side]
+    before, time = states(lab.simulation)[side], lab.simulation.time
+    own = lab.simulation.runs[side]
     old = {name: value.copy() for name, value in own.fields().items()}
     change(lab, side, law)
     new = own.fields()
@@ -58,11 +58,11 @@ def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
         assert np.array_equal(new[name], old[name]), name
     assert new["theta_ref"] == new["theta"] and not new["integral"].any()
     assert all(not new[name].any() for name, _ in LAWS[law].memory)
-    assert lab.session.time == time and lab.session.laws[side] == law
-    event = lab.session.events.last
+    assert lab.simulation.time == time and lab.simulation.laws[side] == law
+    event = lab.simulation.events.last
     assert event is not None
     assert (event.name, event.detail, event.sides) == ("law", law, (side,))
-    assert lab.session.forces.held == set(SIDES)
+    assert lab.simulation.forces.held == set(SIDES)
     run(lab, 0.2)
     assert_sound(lab)
 
@@ -82,15 +82,15 @@ def test_the_old_law_goes_on_until_the_new_loop_can_run() -> None:
     lab = Lab(cache)
     run(lab, 0.2)
     do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
-    time = lab.session.time
+    time = lab.simulation.time
     run(lab, 0.2)
-    assert lab.session.laws == DEFAULT_LAWS and lab.session.time > time + 0.15
+    assert lab.simulation.laws == DEFAULT_LAWS and lab.simulation.time > time + 0.15
     assert take_snapshot(lab, 1.0).run.laws[LEFT] == "waiting_clock"  # what the menu shows
     assert take_snapshot(lab, 1.0).laws == DEFAULT_LAWS  # what moves the robots
-    assert capture(lab.session).laws == {LEFT: "waiting_clock"}
+    assert capture(lab.simulation).laws == {LEFT: "waiting_clock"}
     cache.ready = True
     run(lab, FRAME)
-    assert lab.session.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"}
+    assert lab.simulation.laws == {**DEFAULT_LAWS, LEFT: "waiting_clock"}
     cache.close()
 
 
@@ -100,8 +100,8 @@ def test_a_choice_is_taken_back_before_its_loop_is_ready() -> None:
     do(lab, c.ChooseLaw(LEFT, "set_point"), c.ChooseLaw(LEFT, DEFAULT_LAWS[LEFT]))
     cache.ready = True
     run(lab, 0.1)
-    assert lab.session.laws == DEFAULT_LAWS == lab.session.chosen_laws
-    assert not [event for event in lab.session.events if event.name == "law"]
+    assert lab.simulation.laws == DEFAULT_LAWS == lab.simulation.chosen_laws
+    assert not [event for event in lab.simulation.events if event.name == "law"]
     cache.close()
 
 
@@ -117,16 +117,18 @@ def test_a_wrong_name_is_refused_and_changes_nothing(side: str, law: str, said: 
     lab = new_lab(0.1)
     do(lab, c.ChooseLaw(side, law))
     assert said in lab.message and lab.message_level == "warning"
-    assert lab.session.chosen_laws == DEFAULT_LAWS
+    assert lab.simulation.chosen_laws == DEFAULT_LAWS
 
 
 def test_a_law_that_does_not_suit_the_robot() -> None:
     lab = new_lab()
     change(lab, RIGHT, ONLY_SQUARE)
     do(lab, c.ChooseRobot("flexible"))
-    assert lab.session.laws == DEFAULT_LAWS and LAWS[ONLY_SQUARE].label in lab.message
+    assert lab.simulation.laws == DEFAULT_LAWS and LAWS[ONLY_SQUARE].label in lab.message
     do(lab, c.ChooseLaw(LEFT, ONLY_SQUARE))
-    assert "not possible with this robot" in lab.message and lab.session.chosen_laws == DEFAULT_LAWS
+    assert (
+        "not possible with this robot" in lab.message and lab.simulation.chosen_laws == DEFAULT_LAWS
+    )
 
 
 def changing() -> Lab:
@@ -149,10 +151,10 @@ def test_history_is_replayed_to_the_last_bit_across_changes() -> None:
             change(lab, side, law)
         for _ in range(20):
             run(lab, FRAME)
-            for side, own in lab.session.runs.items():
+            for side, own in lab.simulation.runs.items():
                 row = own.shown()
-                seen.append((side, lab.session.time, row["q"].copy(), row["u"].copy()))
-    runs = replay(lab.session.robot, lab.session.history.all())
+                seen.append((side, lab.simulation.time, row["q"].copy(), row["u"].copy()))
+    runs = replay(lab.simulation.robot, lab.simulation.history.all())
     names = [trajectory.law for trajectory in runs[LEFT]]
     assert names == ["trajectory_tracking", WITH_MEMORY, "set_point", "trajectory_tracking"]
     fields = {
@@ -181,55 +183,57 @@ def test_looking_back_shows_each_frame_under_its_law() -> None:
 
 def test_going_on_from_before_a_change_and_undoing_that() -> None:
     lab = changing()
-    end = states(lab.session)
+    end = states(lab.simulation)
     do(lab, c.LookAt(1.2))
-    past = lab.session.history.at(lab.session.viewing or 0.0)
+    past = lab.simulation.history.at(lab.simulation.viewing or 0.0)
     assert past is not None
     do(lab, c.GoOn())
-    assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}  # those of now
-    for side, own in lab.session.runs.items():
+    assert lab.simulation.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}  # those of now
+    for side, own in lab.simulation.runs.items():
         drive = past.drives[side]
         assert drive.kind.law == DEFAULT_LAWS[side]
         assert np.array_equal(own.fields()["q"], drive.state[:2])
         assert own.fields()["theta_ref"] == own.fields()["theta"]
-    told = [(event.detail, event.sides) for event in lab.session.events if event.name == "law"]
+    told = [(event.detail, event.sides) for event in lab.simulation.events if event.name == "law"]
     assert told == [("set_point", (LEFT,)), ("waiting_clock", (RIGHT,))]
     run(lab, 0.3)
     change(lab, RIGHT, "contouring")
     do(lab, c.UndoGoOn())
-    assert lab.session.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
-    for side, state in states(lab.session).items():
+    assert lab.simulation.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
+    for side, state in states(lab.simulation).items():
         assert np.array_equal(state, end[side])
     run(lab, 0.1)
     do(lab, c.UndoGoOn())
-    assert lab.session.laws[RIGHT] == "contouring"
+    assert lab.simulation.laws[RIGHT] == "contouring"
     assert_sound(lab)
 
 
 def test_the_marker_is_what_the_law_aims_at() -> None:
     lab = new_lab(0.4)
-    session = lab.session
+    simulation = lab.simulation
     for law in laws_for():
         change(lab, RIGHT, law)
         run(lab, 0.2)
-        own = session.runs[RIGHT].shown()[LAWS[law].aim]
-        place = session.robot.place(session.robot.frame.lift(session.editor.curve.at(own)))
+        own = simulation.runs[RIGHT].shown()[LAWS[law].aim]
+        place = simulation.robot.position(
+            simulation.robot.frame.lift(simulation.editor.curve.at(own))
+        )
         view = take_snapshot(lab, 1.0).robots[RIGHT]
         assert view.law == law and view.points[MARKER] == pytest.approx(place[0], abs=1e-6)
 
 
 def test_a_set_up_carries_the_laws() -> None:
     lab = changing()
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     assert setup.laws == {LEFT: "set_point", RIGHT: "waiting_clock"}
     other = new_lab()
     do(other, c.UseShared(encode(setup)))
-    assert other.session.laws == setup.laws and other.session.time == 0.0
-    assert capture(other.session) == setup == decode(encode(setup))
+    assert other.simulation.laws == setup.laws and other.simulation.time == 0.0
+    assert capture(other.simulation) == setup == decode(encode(setup))
     do(other, c.Reset())
-    assert other.session.laws == setup.laws
-    do(other, c.UseShared(encode(capture(new_lab().session))))
-    assert other.session.laws == DEFAULT_LAWS
+    assert other.simulation.laws == setup.laws
+    do(other, c.UseShared(encode(capture(new_lab().simulation))))
+    assert other.simulation.laws == DEFAULT_LAWS
 
 
 @pytest.mark.thorough
@@ -237,8 +241,8 @@ def test_files_tell_the_side_and_the_law_of_every_row() -> None:
     lab = changing()
     change(lab, RIGHT, "set_point")  # both alike
     run(lab, 0.2)
-    history = lab.session.history.all()
-    rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.session.robot, history).decode())))
+    history = lab.simulation.history.all()
+    rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.simulation.robot, history).decode())))
     found = dict.fromkeys((row["side"], row["law"]) for row in rows)
     assert list(found) == [
         (LEFT, "trajectory_tracking"),
@@ -248,6 +252,6 @@ def test_files_tell_the_side_and_the_law_of_every_row() -> None:
         (RIGHT, "waiting_clock"),
         (RIGHT, "set_point"),
     ]
-    assert len(rows) == 2 * round(lab.session.time * 1e3)
-    assert draw_history(replay(lab.session.robot, history)).startswith(b"\x89PNG")
-    assert record_scene(lab.session.robot, history).rstrip().endswith(b"</html>")
+    assert len(rows) == 2 * round(lab.simulation.time * 1e3)
+    assert draw_history(replay(lab.simulation.robot, history)).startswith(b"\x89PNG")
+    assert record_scene(lab.simulation.robot, history).rstrip().endswith(b"</html>")

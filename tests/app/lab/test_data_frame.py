@@ -42,7 +42,7 @@ class Reader:
 
     def see(self, lab: Lab, reads: bool = True) -> bool:
         """Note the present, and read a frame. Returns whether there was one."""
-        self.source.note(lab.session)
+        self.source.note(lab.simulation)
         frame = self.source.take(lab) if reads else None
         if frame is None:
             return False
@@ -78,14 +78,14 @@ class Reader:
 
 def assert_knows(reader: Reader, lab: Lab) -> None:
     """Assert that a page knows the present, and the recent past as the lab's history has it."""
-    session, last = lab.session, reader.rows[-1]
-    assert last[0] == round(TIME * session.time)
-    assert (reader.running, reader.past) == (session.running, session.viewing)
+    simulation, last = lab.simulation, reader.rows[-1]
+    assert last[0] == round(TIME * simulation.time)
+    assert (reader.running, reader.past) == (simulation.running, simulation.viewing)
     held = [bool(last[1] >> i & 1) for i in range(len(SIDES))]
     pulled = [bool(last[1] >> (2 + i) & 1) for i in range(len(SIDES))]
-    assert held == [side in session.forces.held for side in SIDES]
-    assert pulled == [side in session.forces.hands for side in SIDES]
-    for known, run in zip(reader.robots(last), session.runs.values(), strict=True):
+    assert held == [side in simulation.forces.held for side in SIDES]
+    assert pulled == [side in simulation.forces.hands for side in SIDES]
+    for known, run in zip(reader.robots(last), simulation.runs.values(), strict=True):
         row = run.shown()
         assert abs(known["distance"] - run.distance) <= UNIT
         assert abs(known["theta"] - row["theta"]) <= 1 / ANGLE
@@ -94,12 +94,12 @@ def assert_knows(reader: Reader, lab: Lab) -> None:
         assert np.abs(known["force"] - row["force"]).max() <= 1 / FORCE
     times = [row[0] for row in reader.rows]
     assert all(a < b or a == b == times[-1] for a, b in pairwise(times))
-    begins, samples = session.history.samples(-1.0, session.time, 10_000)
+    begins, samples = simulation.history.samples(-1.0, simulation.time, 10_000)
     rows = {row[0]: reader.robots(row) for row in reader.rows}
-    far = session.sample_layout.slices["distance"].start
+    far = simulation.sample_layout.slices["distance"].start
     assert times[0] <= round(TIME * begins[0]) if len(begins) else True
     for time, sample in zip(begins, samples, strict=True):
-        if (tick := round(TIME * float(time))) in rows and time < session.time:
+        if (tick := round(TIME * float(time))) in rows and time < simulation.time:
             told = [robot["distance"] for robot in rows[tick]]
             assert np.abs(sample[:, far] - told).max() <= 1.5 * UNIT
 
@@ -144,7 +144,7 @@ def test_a_page_knows_what_its_lab_did(steps: list[tuple[c.Command, int, int]]) 
         do(lab, command)
         for i in range(frames):
             lab.drain()
-            lab.advance(lab.session.rate * FRAME)
+            lab.advance(lab.simulation.rate * FRAME)
             reader.see(lab, reads=i % seldom == 0)
         reader.see(lab)
         assert_knows(reader, lab)
@@ -255,22 +255,22 @@ def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
     for _ in range(60):
         lab.advance(FRAME)
     reader.see(lab)
-    session = lab.session
-    message = msgspec.json.decode(path_message(session.robot, take_motion(lab).path))
+    simulation = lab.simulation
+    message = msgspec.json.decode(path_message(simulation.robot, take_motion(lab).path))
     points = np.array(message["points"]) / LENGTH
-    assert message["closed"] is session.editor.curve.closed
+    assert message["closed"] is simulation.editor.curve.closed
     right, up = np.array(message["right"]), np.array(message["up"])
     assert [right @ right, up @ up, right @ up] == pytest.approx([1, 1, 0], abs=1e-9)
-    for robot, run in zip(reader.robots(reader.rows[-1]), session.runs.values(), strict=True):
+    for robot, run in zip(reader.robots(reader.rows[-1]), simulation.runs.values(), strict=True):
         place = (robot["theta"] + np.pi) / (2 * np.pi) % 1 * (len(points) - 1)
         closest = [np.interp(place, range(len(points)), column) for column in points.T]
-        truth = session.robot.frame.lift(session.editor.curve.at(run.shown()["theta"][0]))
+        truth = simulation.robot.frame.lift(simulation.editor.curve.at(run.shown()["theta"][0]))
         assert np.abs(closest - truth).max() < 3e-5
     if name == "flexible":
         rigid = np.array(reader.straight[-1]).reshape(2, -1) / LENGTH
         ends = np.array([robot["y"] for robot in reader.robots(reader.rows[-1])])
-        bent = [run.shown()["y"] for run in session.runs.values()]
-        deflection = session.sample()[:, session.sample_layout.slices["deflection"].start]
+        bent = [run.shown()["y"] for run in simulation.runs.values()]
+        deflection = simulation.sample()[:, simulation.sample_layout.slices["deflection"].start]
         assert np.linalg.norm(ends - rigid, axis=1) == pytest.approx(np.abs(deflection), abs=2e-5)
         assert np.abs(ends - bent).max() <= UNIT
     else:

@@ -34,7 +34,7 @@ ACTIONS = (
 
 
 @pytest.fixture(scope="module")
-def store() -> Iterator[LoopCache]:
+def loop_cache() -> Iterator[LoopCache]:
     """Of a server that has been running for a while."""
     made = LoopCache()
     warm_up(made, built_in_course(), rest=0.0).join()
@@ -45,10 +45,10 @@ def store() -> Iterator[LoopCache]:
 @settings(deadline=None, max_examples=40)
 @given(st.integers(0, 2**32), st.integers(1, 12))
 def test_nothing_that_a_page_sends_takes_long_at_a_time(
-    store: LoopCache, seed: int, count: int
+    loop_cache: LoopCache, seed: int, count: int
 ) -> None:
     """Messages of one page are decoded, and their commands applied, each in frames of its own."""
-    draw, lab = random.Random(seed), Lab(store, course=built_in_course())
+    draw, lab = random.Random(seed), Lab(loop_cache, course=built_in_course())
     gc.disable()  # a collection takes its time whenever it likes
     try:
         for _ in range(count):
@@ -79,14 +79,17 @@ def test_a_link_does_the_same_whether_at_once_or_in_parts(
     whole.drain()
     while parts.has_commands:
         parts.drain(most)
-        before = parts.session.time
+        before = parts.simulation.time
         if parts.has_commands:
             parts.advance(FRAME)
-        assert parts.session.time == before or parts.session.time == before + 0.016
-    for name, state in states(whole.session).items():
-        assert (state == states(parts.session)[name]).all()
-    assert whole.session.parameters == parts.session.parameters
-    assert whole.session.laws == parts.session.laws and whole.session.rate == parts.session.rate
+        assert parts.simulation.time == before or parts.simulation.time == before + 0.016
+    for name, state in states(whole.simulation).items():
+        assert (state == states(parts.simulation)[name]).all()
+    assert whole.simulation.parameters == parts.simulation.parameters
+    assert (
+        whole.simulation.laws == parts.simulation.laws
+        and whole.simulation.rate == parts.simulation.rate
+    )
 
 
 def test_a_lab_says_that_it_waits_for_its_commands() -> None:
@@ -94,9 +97,9 @@ def test_a_lab_says_that_it_waits_for_its_commands() -> None:
     lab.post(c.Act((Action(robot="flexible"), Action(robot="five_bar")) * 20))
     for _ in range(PATIENCE + 2):
         lab.drain(1e-4)
-        time = lab.session.time
+        time = lab.simulation.time
         lab.advance(FRAME)
-        assert lab.session.time == time
+        assert lab.simulation.time == time
     assert lab.waits and lab.notice == (lab.words("say.waits"), "info")
     run(lab, 2 * FRAME)
     assert not lab.waits and lab.notice[0] != lab.words("say.waits")
@@ -106,7 +109,7 @@ def test_a_lab_says_that_it_waits_for_its_commands() -> None:
 def test_a_link_has_a_bounded_number_of_actions() -> None:
     lab = new_lab()
     do(lab, c.Act((Action(robot="flexible"),) * (MOST_ACTIONS + 1)))
-    assert "at most 100 actions" in lab.message and lab.session.entry.name == "five_bar"
+    assert "at most 100 actions" in lab.message and lab.simulation.entry.name == "five_bar"
 
 
 def test_no_lesson_has_a_link_of_so_many_actions() -> None:

@@ -15,10 +15,10 @@ from tests.support.lab import new_lab, run
 def test_robots_that_begin_beside_the_path_are_there_at_once(beside: float) -> None:
     """Also across it: overshoot is a share of the largest value, which is that at the start."""
     lab = new_lab()
-    lab.session.start = Start(beside=beside)
-    lab.session.reset()
+    lab.simulation.start = Start(beside=beside)
+    lab.simulation.reset()
     run(lab, 0.1)
-    record = record_of(lab.session, Beginning(lab.session.run_number, 0.0))
+    record = record_of(lab.simulation, Beginning(lab.simulation.run_number, 0.0))
     assert record.times[0] == 0.0
     for robot in ROBOTS:
         values = record.values[robot]

@@ -25,14 +25,14 @@ from onpath.models.systems.flexible_robot import (
     critical_alpha,
 )
 from tests.support.drawing import drawn
-from tests.support.lab import FOLLOWER, TRACKER, do, run, states, store
+from tests.support.lab import FOLLOWER, TRACKER, do, loop_cache, run, states
 
 STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.parameters()))
 
 
 def flexible(seconds: float = 0.0, **changes: object) -> Lab:
     """A lab with the flexible link, some of its parameters changed."""
-    lab = Lab(store(), FLEXIBLE)
+    lab = Lab(loop_cache(), FLEXIBLE)
     do(lab, *[c.SetParameter(name, value) for name, value in changes.items()])
     run(lab, seconds)
     assert lab.message == ""
@@ -41,73 +41,75 @@ def flexible(seconds: float = 0.0, **changes: object) -> Lab:
 
 def extras(lab: Lab, name: str) -> np.ndarray:
     """One of the extra fields over the whole history, (rows, robots, size)."""
-    _, samples = lab.session.history.samples(0.0, lab.session.time, 10_000)
-    return lab.session.sample_layout.unpack(samples)[name].astype(float)
+    _, samples = lab.simulation.history.samples(0.0, lab.simulation.time, 10_000)
+    return lab.simulation.sample_layout.unpack(samples)[name].astype(float)
 
 
 def test_it_runs_on_its_path() -> None:
     lab = flexible(3.0)
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
-    assert lab.session.runs[FOLLOWER].shown()["theta_rate"][0] == pytest.approx(2.0, abs=0.1)
+    assert lab.simulation.runs[FOLLOWER].shown()["theta_rate"][0] == pytest.approx(2.0, abs=0.1)
 
 
 def test_held_back_the_follower_waits_and_the_tracker_is_torn_off() -> None:
     lab = flexible(1.0)
     do(lab, c.Hold(True))
     run(lab, 1.5)
-    worst = {name: run_.max_distance for name, run_ in lab.session.runs.items()}
+    worst = {name: run_.max_distance for name, run_ in lab.simulation.runs.items()}
     assert worst[FOLLOWER] < 0.5 * worst[TRACKER]
-    assert all(run_.diverged is None for run_ in lab.session.runs.values())
+    assert all(run_.diverged is None for run_ in lab.simulation.runs.values())
     do(lab, c.Hold(False))
     run(lab, 2.5)
-    assert max(run_.distance for run_ in lab.session.runs.values()) < 2e-3
+    assert max(run_.distance for run_ in lab.simulation.runs.values()) < 2e-3
 
 
 @pytest.mark.parametrize("plane", list(STAGE.pulls))
 def test_a_pull_bends_the_link_and_is_survived(plane: str) -> None:
     lab = flexible(0.5, speed=0.0)
-    robot, start = lab.session.robot, lab.session.runs[FOLLOWER].shown()["y"].copy()
+    robot, start = lab.simulation.robot, lab.simulation.runs[FOLLOWER].shown()["y"].copy()
     across = np.cross(STAGE.pulls[plane].normal, [0.0, 0.0, 1.0])
     way = np.array([1.0, 0.0, 0.0]) if not across.any() else across / np.linalg.norm(across)
-    do(lab, c.Grab(FOLLOWER, robot.unplace(robot.place(start) + 0.03 * way)))
+    do(lab, c.Grab(FOLLOWER, robot.output_at(robot.position(start) + 0.03 * way)))
     run(lab, 0.3)
-    moved = robot.place(lab.session.runs[FOLLOWER].shown()["y"]) - robot.place(start)
+    moved = robot.position(lab.simulation.runs[FOLLOWER].shown()["y"]) - robot.position(start)
     assert moved @ way > 1e-4
     assert np.abs(extras(lab, "deflection")[-1]).max() > 1e-4
     do(lab, c.Release())
     run(lab, 2.0)
-    assert lab.session.runs[FOLLOWER].distance < 1e-3 and lab.message == ""
+    assert lab.simulation.runs[FOLLOWER].distance < 1e-3 and lab.message == ""
 
 
 def test_going_on_from_the_past_is_the_same_motion_again() -> None:
     lab = flexible(1.0)
-    segment = lab.session.history.at(0.5)
+    segment = lab.simulation.history.at(0.5)
     assert segment is not None
-    do(lab, c.LookAt(lab.session.time - 0.5))
+    do(lab, c.LookAt(lab.simulation.time - 0.5))
     shown = take_snapshot(lab, 1.0).robots[FOLLOWER]
-    q = segment.drives[FOLLOWER].state[: lab.session.robot.system.n]
-    np.testing.assert_allclose(shown.bars, drawn(lab.session.robot.skeleton, q, 1.0)[0], atol=1e-15)
+    q = segment.drives[FOLLOWER].state[: lab.simulation.robot.system.n]
+    np.testing.assert_allclose(
+        shown.bars, drawn(lab.simulation.robot.skeleton, q, 1.0)[0], atol=1e-15
+    )
     then = {name: drive.state.copy() for name, drive in segment.drives.items()}
     do(lab, c.GoOn())
-    for name, state in states(lab.session).items():
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, then[name])
     run(lab, 0.5)
-    assert lab.session.time > segment.time and lab.message_level == "info"
+    assert lab.simulation.time > segment.time and lab.message_level == "info"
 
 
 def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
     lab = flexible(1.0, output="redefined")
-    own = lab.session.parameters
+    own = lab.simulation.parameters
     assert isinstance(own, FlexibleParameters)
-    critical = critical_alpha(own, lab.session.runs[FOLLOWER].shown()["q"][:3])
+    critical = critical_alpha(own, lab.simulation.runs[FOLLOWER].shown()["q"][:3])
     assert 0.5 < critical < 0.9
     calm = extras(lab, "internal_energy")[-20:].max()
     do(lab, c.SetParameter("alpha", 0.9))
     run(lab, 3.0)
     assert lab.message_level == "error" and str(UNSTABLE) in lab.message
     assert extras(lab, "internal_energy").max() > 100 * calm
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert np.isfinite(run_.state).all() and np.isfinite(run_.row).all()
     do(lab, c.Reset())
     run(lab, 3.0)
@@ -115,28 +117,31 @@ def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
     do(lab, c.SetParameter("alpha", 0.5), c.Reset())
     assert lab.message == ""
     run(lab, 2.5)
-    assert lab.message == "" and max(r.distance for r in lab.session.runs.values()) < 2e-3
+    assert lab.message == "" and max(r.distance for r in lab.simulation.runs.values()) < 2e-3
 
 
 def test_each_robot_keeps_its_side() -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     do(lab, c.SetParameter("K1", 900), c.ChoosePath("clover"))
     do(lab, c.ChooseRobot("flexible"))
     assert (
-        lab.session.editor.design.name == "circle"
-        and lab.session.parameters == FLEXIBLE.parameters()
+        lab.simulation.editor.design.name == "circle"
+        and lab.simulation.parameters == FLEXIBLE.parameters()
     )
     do(lab, c.SetParameter("rho", 0.3), c.ChoosePath("ellipse"))
     run(lab, 0.2)
     do(lab, c.ChooseRobot("five_bar"))
-    assert lab.session.editor.design.name == "clover" and lab.session.parameters.K1 == 900
+    assert lab.simulation.editor.design.name == "clover" and lab.simulation.parameters.K1 == 900
     assert (
-        lab.session.entry is FIVE_BAR and lab.session.time == 0.0 and not lab.session.robot.extras
+        lab.simulation.entry is FIVE_BAR
+        and lab.simulation.time == 0.0
+        and not lab.simulation.robot.extras
     )
     do(lab, c.ChooseRobot("flexible"))
-    assert lab.session.editor.design.name == "ellipse"
+    assert lab.simulation.editor.design.name == "ellipse"
     assert (
-        isinstance(lab.session.parameters, FlexibleParameters) and lab.session.parameters.rho == 0.3
+        isinstance(lab.simulation.parameters, FlexibleParameters)
+        and lab.simulation.parameters.rho == 0.3
     )
 
 
@@ -147,8 +152,8 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     do(drawn, c.SetExaggeration(10))
     run(plain, 0.3)
     run(drawn, 0.3)
-    for name, state in states(plain.session).items():
-        np.testing.assert_array_equal(states(drawn.session)[name], state)
+    for name, state in states(plain.simulation).items():
+        np.testing.assert_array_equal(states(drawn.simulation)[name], state)
     true, large = (take_snapshot(lab, 1.0) for lab in (plain, drawn))
     assert true.note == "" and "10×" in large.note
     one, two = true.robots[FOLLOWER], large.robots[FOLLOWER]
@@ -157,16 +162,16 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     assert one.deflection == two.deflection != 0.0
     np.testing.assert_array_equal(one.trace[-1], two.trace[-1])
     do(drawn, c.SetExaggeration(float("nan")))
-    assert drawn.session.exaggeration == 10 and drawn.message
+    assert drawn.simulation.exaggeration == 10 and drawn.message
 
 
 @pytest.mark.parametrize(("name", "value"), [("modes", 5), ("plant", "unit_modes")])
 def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value: object) -> None:
     lab = flexible(0.2)
     do(lab, c.SetParameter(name, value))
-    assert lab.session.time == 0.0 and not len(lab.session.history)
+    assert lab.simulation.time == 0.0 and not len(lab.simulation.history)
     run(lab, 0.2)
-    sizes = dict(lab.session.sample_layout.fields)
+    sizes = dict(lab.simulation.sample_layout.fields)
     assert sizes["modes"] == (value if name == "modes" else 3)
     total = extras(lab, "modes").sum(-1)
     np.testing.assert_allclose(total, extras(lab, "deflection")[..., 0], atol=1e-8)
@@ -174,7 +179,7 @@ def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value:
 
 def test_it_can_be_taken_home() -> None:
     lab = flexible(0.5)
-    robot, history = lab.session.robot, lab.session.history.all()
+    robot, history = lab.simulation.robot, lab.simulation.history.all()
     rows = list(csv.reader(io.StringIO(csv_bytes(robot, history).decode())))
     assert {"q3_rad", "y3_m", "f1_m1.5"} <= set(rows[0]) and len(rows) > 400
     assert draw_history(replay(robot, history)).startswith(b"\x89PNG")

@@ -20,14 +20,19 @@ def flexible_lab(seconds: float = 1.0) -> Lab:
 
 def test_both_robots_go_on_from_where_they_are() -> None:
     lab = flexible_lab()
-    session = lab.session
-    before, runs, time, unloaded = states(session), session.run_number, session.time, session.robot
+    simulation = lab.simulation
+    before, runs, time, unloaded = (
+        states(simulation),
+        simulation.run_number,
+        simulation.time,
+        simulation.robot,
+    )
     for payload in (0.02, 0.05, 0.0):
         do(lab, c.SetParameter("payload", payload))
-        assert (session.run_number, session.time) == (runs, time)
-        for side, state in states(session).items():
+        assert (simulation.run_number, simulation.time) == (runs, time)
+        for side, state in states(simulation).items():
             assert np.array_equal(state, before[side])
-        assert (session.robot is unloaded) == (payload == 0)
+        assert (simulation.robot is unloaded) == (payload == 0)
     assert lab.message == ""
 
 
@@ -36,7 +41,7 @@ def test_the_tip_sags_under_the_load_and_comes_back() -> None:
     for payload in (0.0, 0.02, 0.0):
         do(lab, c.SetParameter("payload", payload))
         run(lab, 2.0)
-        distances.append(lab.session.runs[FOLLOWER].distance)
+        distances.append(lab.simulation.runs[FOLLOWER].distance)
     assert distances[1] > 1e-3 > 5e-4 > max(distances[0], distances[2])
     assert_sound(lab)
 
@@ -48,9 +53,9 @@ def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
     for payload in (0.02, 0.04, 0.0):
         do(lab, c.SetParameter("payload", payload))
         run(lab, 0.5)
-        ends.append({side: own.row.copy() for side, own in lab.session.runs.items()})
-    for side, own in lab.session.runs.items():
-        log = replayed(lab.session)[side]
+        ends.append({side: own.row.copy() for side, own in lab.simulation.runs.items()})
+    for side, own in lab.simulation.runs.items():
+        log = replayed(lab.simulation)[side]
         assert np.allclose(np.diff(log.t), 1e-3)
         shown = own.log.unpack(ends[-1][side])
         assert log.fields["y"][-1] == pytest.approx(shown["y"], abs=1e-12)
@@ -63,15 +68,15 @@ def test_going_back_to_before_the_load_goes_on_with_it() -> None:
     do(lab, c.SetParameter("payload", 0.02))
     run(lab, 1.0)
     do(lab, c.LookAt(1.5), c.GoOn())
-    assert lab.session.time == pytest.approx(0.5, abs=0.05)
+    assert lab.simulation.time == pytest.approx(0.5, abs=0.05)
     run(lab, 0.5)
     assert_sound(lab)
     do(lab, c.SetParameter("payload", 0.0), c.UndoGoOn())
-    assert all(own.robot is lab.session.robot for own in lab.session.runs.values())
+    assert all(own.robot is lab.simulation.robot for own in lab.simulation.runs.values())
     do(lab, c.SetRunning(True))
     run(lab, 0.5)
     assert_sound(lab)
-    assert set(replayed(lab.session)) == {FOLLOWER, TRACKER}
+    assert set(replayed(lab.simulation)) == {FOLLOWER, TRACKER}
 
 
 def test_a_typed_law_goes_on_too() -> None:
@@ -80,10 +85,10 @@ def test_a_typed_law_goes_on_too() -> None:
     for side in SIDES:
         do(lab, c.TypeLaw(side, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
     run(lab, 0.5)
-    time = lab.session.time
+    time = lab.simulation.time
     do(lab, c.SetParameter("payload", 0.02))
     run(lab, 0.3)
-    assert lab.session.time == pytest.approx(time + 0.3, abs=0.02)
+    assert lab.simulation.time == pytest.approx(time + 0.3, abs=0.02)
     assert_sound(lab)
 
 
@@ -93,13 +98,13 @@ def test_a_robot_with_other_states_begins_anew_and_the_user_is_told(
 ) -> None:
     lab = flexible_lab(0.3)
     do(lab, c.SetParameter(name, value))
-    assert lab.session.time == 0 and "restarted" in lab.message
+    assert lab.simulation.time == 0 and "restarted" in lab.message
 
 
 def test_a_load_with_another_number_of_modes_begins_anew() -> None:
     lab = flexible_lab(0.3)
     do(lab, c.SetParameter("payload", 0.02), c.SetParameter("modes", 2))
-    assert lab.session.time == 0
+    assert lab.simulation.time == 0
     run(lab, 0.2)
     do(lab, c.ResetParameters())
-    assert lab.session.time == 0 and "restarted" in lab.message
+    assert lab.simulation.time == 0 and "restarted" in lab.message

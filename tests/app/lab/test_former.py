@@ -40,8 +40,9 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.flexible_parameters import FlexibleParameters
 from onpath.models.systems.parameter_specs import FORMER_NAMES
 from tests.support.built_in import built_in_course
+from tests.support.cases import drawn
 from tests.support.checkout import ROOT
-from tests.support.lab import do, new_lab, run, states, store, y
+from tests.support.lab import do, loop_cache, new_lab, run, states, y
 
 WRITTEN = json.loads((ROOT / "tests/data/setups_version_2.json").read_text("utf-8"))
 CASES = {case["name"]: case for case in WRITTEN["cases"]}
@@ -77,7 +78,7 @@ SINCE_2 = {"at_limit_for": "path_following", "observer_time": 0.0, "observer_bou
 
 def parameters(lab: Lab, robot: str) -> Any:
     do(lab, c.ChooseRobot(robot))
-    return lab.session.parameters
+    return lab.simulation.parameters
 
 
 def opened(code: str) -> Lab:
@@ -92,7 +93,7 @@ def held(lab: Lab) -> dict[str, np.ndarray]:
     run(lab, 0.2)
     do(lab, c.Hold(True))
     run(lab, 0.2)
-    return states(lab.session)
+    return states(lab.simulation)
 
 
 def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
@@ -102,13 +103,13 @@ def as_then(robot: str, own: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_share_code_means_what_it_meant(name: str) -> None:
     case = CASES[name]
     lab = opened(case["code"])
-    assert lab.session.entry.name == case["robot"]
-    assert lab.session.laws == case["laws"] and lab.session.editor.design.name == case["path"]
-    assert from_data(case["data"]) == decode(case["code"]) == capture(lab.session)
+    assert lab.simulation.entry.name == case["robot"]
+    assert lab.simulation.laws == case["laws"] and lab.simulation.editor.design.name == case["path"]
+    assert from_data(case["data"]) == decode(case["code"]) == capture(lab.simulation)
     for robot in WRITTEN["defaults"]:
         found = values_of(parameters(lab, robot))
         expected = as_then(robot, case["parameters"].get(robot, {}))
@@ -116,13 +117,13 @@ def test_a_share_code_means_what_it_meant(name: str) -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_share_code_moves_as_it_moved(name: str) -> None:
     case = CASES[name]
     lab = opened(case["code"])
     moved = held(lab)
     for side, place in case["end_points"].items():
-        assert y(lab.session, side) == pytest.approx(place, abs=1e-9)  # of another machine
+        assert y(lab.simulation, side) == pytest.approx(place, abs=1e-9)  # of another machine
     told = opened(case["code"])
     do(told, *(c.SetParameter(n, v) for n, v in written_out(case).items()), c.Reset())
     for side, state in held(told).items():
@@ -135,12 +136,12 @@ def written_out(case: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", drawn([*CASES], 4))
 def test_a_kept_lab_and_a_set_up_of_a_class_too(name: str) -> None:
     data = CASES[name]["data"]
     lab = new_lab()
     put_back(lab, {"setup": data, "lessons": {}, "before": data})
-    assert capture(lab.session) == lab.lessons.before == decode(CASES[name]["code"])
+    assert capture(lab.simulation) == lab.lessons.before == decode(CASES[name]["code"])
     sent = read_push({"setup": data})
     assert isinstance(sent, TakeSetup) and sent.setup == from_data(data)
 
@@ -206,13 +207,13 @@ def test_an_old_stored_lab_is_restored_and_stored_with_its_version() -> None:
     lab, kept = new_lab(), list[dict[str, Any]]()
     old = {"benches": {"five_bar": {"parameters": {"K1": 900.0}}}}
     put_back(lab, {"setup": old, "lessons": {}, "before": old})
-    assert (lab.session.parameters.K1, lab.session.parameters.K3) == (900.0, 0.0)
+    assert (lab.simulation.parameters.K1, lab.simulation.parameters.K3) == (900.0, 0.0)
     assert lab.lessons.before == from_data(old)
     keep(lab, lambda state: kept.append(state()))
     assert kept[0]["setup"]["defaults"] == kept[0]["before"]["defaults"] == DEFAULTS
     again = new_lab()
     put_back(again, kept[0])
-    assert capture(again.session) == capture(lab.session)
+    assert capture(again.simulation) == capture(lab.simulation)
 
 
 def test_an_old_push_of_a_teacher_is_accepted() -> None:
@@ -269,25 +270,25 @@ def records(tmp_path: Path) -> Records:
 @pytest.mark.parametrize("code", [ELLIPSE, SLOW])
 def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
     lab = new_lab()
-    lab.session.change_law(LEFT, "set_point")
+    lab.simulation.change_law(LEFT, "set_point")
     do(lab, c.UseShared(code))
-    assert lab.message == lab.words("say.set_up") and lab.session.laws == DEFAULT_LAWS
-    assert decode(code).laws == {} and "laws" not in to_data(capture(lab.session))
+    assert lab.message == lab.words("say.set_up") and lab.simulation.laws == DEFAULT_LAWS
+    assert decode(code).laws == {} and "laws" not in to_data(capture(lab.simulation))
     if code == ELLIPSE:
-        assert lab.session.parameters.K1 == 900.0
-        assert lab.session.earlier["two_link_arm"][0].K2 == 33.0
+        assert lab.simulation.parameters.K1 == 900.0
+        assert lab.simulation.earlier["two_link_arm"][0].K2 == 33.0
     else:
-        session = lab.session
-        told = session.entry.name, session.rate, session.copy, session.exaggeration
+        simulation = lab.simulation
+        told = simulation.entry.name, simulation.rate, simulation.copy, simulation.exaggeration
         assert told == ("flexible", 0.5, False, 4.0)
 
 
 def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     kept = records.load("c0de01")
     assert kept is not None
-    lab = Lab(store(), course=COURSE)
+    lab = Lab(loop_cache(), course=COURSE)
     put_back(lab, kept)
-    assert lab.session.laws == DEFAULT_LAWS and lab.lessons.progress.lesson == LESSON
+    assert lab.simulation.laws == DEFAULT_LAWS and lab.lessons.progress.lesson == LESSON
     notes = lab.lessons.notes
     assert notes.answers["1"].values == (0.0, 1.0, 30.0, 2.0)
     assert max(notes.truths["1"].tracker) > 40 > 5 > max(notes.truths["1"].follower)
@@ -295,7 +296,7 @@ def test_a_kept_lab_opens_in_its_lesson(records: Records) -> None:
     page = report(LessonState(COURSE, lab.lessons.progress), "", DAY).decode()
     assert "Tracker" in page and "Follower" in page
     do(lab, c.CloseLesson())
-    assert lab.session.parameters.K1 == 900.0 and lab.session.editor.design.name == "edited"
+    assert lab.simulation.parameters.K1 == 900.0 and lab.simulation.editor.design.name == "edited"
     records.close()
 
 
@@ -308,7 +309,7 @@ def test_a_lab_that_called_the_output_law_is_restored_and_stored_with_its_new_na
     assert absent == () and from_data(remaining) == from_data({"defaults": DEFAULTS, **old})
     lab, kept = new_lab(), list[dict[str, Any]]()
     put_back(lab, {"setup": {"defaults": DEFAULTS, **old}, "lessons": {}, "before": None})
-    assert value_of(lab.session.parameters, "output") == "redefined"
+    assert value_of(lab.simulation.parameters, "output") == "redefined"
     keep(lab, lambda state: kept.append(state()))
     stored = {"parameters": {"output": "redefined"}}
     assert kept[0]["setup"]["benches"]["flexible"] == stored
@@ -323,9 +324,9 @@ OLD_PLANT = {"robot": "flexible", "benches": {"flexible": {"parameters": {"plant
 
 
 def plant(lab: Lab) -> str:
-    assert isinstance(lab.session.parameters, FlexibleParameters)
-    assert lab.session.robot.system.name == "flexible"
-    return lab.session.parameters.plant
+    assert isinstance(lab.simulation.parameters, FlexibleParameters)
+    assert lab.simulation.robot.system.name == "flexible"
+    return lab.simulation.parameters.plant
 
 
 def test_a_share_code_with_the_old_name_opens() -> None:
@@ -338,7 +339,7 @@ def test_a_share_code_with_the_old_name_opens() -> None:
         "tracker_integral": "on",
         **SINCE_2,
     }  # as it was then
-    assert capture(lab.session).robots["flexible"].parameters == own
+    assert capture(lab.simulation).robots["flexible"].parameters == own
 
 
 def test_an_old_stored_plant_is_restored_and_stored_under_the_new_name() -> None:

@@ -19,7 +19,7 @@ from onpath.app.lab.history import COARSE, LONGEST, MOST, RECENT, SECONDS, Histo
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import single
 from onpath.app.lab.segments import FEW, HistoryFrame, Input, Inputs, Segment
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.control.sides import DEFAULT_LAWS, RIGHT, SIDES
@@ -118,8 +118,8 @@ def test_short_stretches_do_not_pile_up() -> None:
 def test_a_minute_takes_little_memory() -> None:
     """At 60 Hz, both robots, after a long time: less than 1 MB."""
     lab = new_lab(0.5)
-    lab.session.simulate(17)
-    one = lab.session.history.at(lab.session.time)
+    lab.simulation.simulate(17)
+    one = lab.simulation.history.at(lab.simulation.time)
     assert one is not None
     taken = [memory_of_a_minute(lab, one) for _ in range(3)]
     used, peak = (min(each) for each in zip(*taken, strict=True))  # other threads take some, too
@@ -128,9 +128,9 @@ def test_a_minute_takes_little_memory() -> None:
 
 def memory_of_a_minute(lab: Lab, one: Segment) -> tuple[int, int]:
     """What a history has in the end, and what all threads had meanwhile at most, [B]."""
-    names, rows = list(lab.session.runs), list(one.sample)
-    inputs = Inputs(one.curve, one.dt, tuple(lab.session.runs[name].input() for name in names))
-    states = [lab.session.runs[name].state for name in names]
+    names, rows = list(lab.simulation.runs), list(one.sample)
+    inputs = Inputs(one.curve, one.dt, tuple(lab.simulation.runs[name].input() for name in names))
+    states = [lab.simulation.runs[name].state for name in names]
     places = [single(state, row, 0.0, 0.0) for state, row in zip(states, rows, strict=True)]
     tracemalloc.start()
     history = new_history()
@@ -150,16 +150,16 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
     for k in range(2400):
         if k % 37 == 0:
             do(lab, c.SetParameter("K2", 20.0 + k % 5))
-        lab.session.simulate(17)
-    segments, name = lab.session.history.all(), FOLLOWER
+        lab.simulation.simulate(17)
+    segments, name = lab.simulation.history.all(), FOLLOWER
     assert sum(s.ticks for s in segments) == 2400 * 17
-    recent = [s.ticks for s in segments if s.time > lab.session.time - RECENT]
+    recent = [s.ticks for s in segments if s.time > lab.simulation.time - RECENT]
     assert set(recent) == {17} and max(s.ticks for s in segments) == COARSE
     assert len(segments) < 2400 * 0.8
     for segment, later in pairwise(segments):
         drive, ends = segment.drives[name], segment.time + segment.ticks * segment.dt
         assert later.time == pytest.approx(ends, abs=1e-9)
-        loop = lab.session._store.find(lab.session.robot, drive.kind)
+        loop = lab.simulation._loop_cache.find(lab.simulation.robot, drive.kind)
         assert loop is not None
         state, _ = loop.run(drive.state, drive.settings, segment.curve.table(), segment.ticks)
         assert np.array_equal(state, later.drives[name].state)
@@ -213,7 +213,7 @@ def test_samples_are_few_in_order_and_within(
     assert inside == len(times) if inside <= most else len(times) > most / 4
 
 
-# In a session
+# In a simulation
 
 
 def busy(seconds: float = 1.0) -> Lab:
@@ -224,7 +224,7 @@ def busy(seconds: float = 1.0) -> Lab:
     do(lab, c.Hold(False), c.SetParameter("K3", 200))
     do(
         lab,
-        c.Grab(TRACKER, y(lab.session, TRACKER) + np.array([0.02, 0.0])),
+        c.Grab(TRACKER, y(lab.simulation, TRACKER) + np.array([0.02, 0.0])),
     )
     run(lab, seconds / 3)
     do(lab, c.Release(), c.ChoosePath("ellipse"))
@@ -236,14 +236,14 @@ def test_past_is_shown_as_it_was() -> None:
     lab, seen = new_lab(), []
     for _ in range(60):
         lab.advance(FRAME)
-        seen.append((lab.session.time, take_snapshot(lab, 1.0)))
+        seen.append((lab.simulation.time, take_snapshot(lab, 1.0)))
     for ago in (0.1, 0.4, 0.9):
         do(lab, c.LookAt(ago))
-        assert not lab.session.running and lab.session.viewing == pytest.approx(
-            lab.session.time - ago
+        assert not lab.simulation.running and lab.simulation.viewing == pytest.approx(
+            lab.simulation.time - ago
         )
         now = take_snapshot(lab, 1.0)
-        at = lab.session.history.at(lab.session.viewing or 0.0)
+        at = lab.simulation.history.at(lab.simulation.viewing or 0.0)
         assert at is not None
         begin = at.time
         then = min(seen, key=lambda pair: abs(pair[0] - begin))[1]
@@ -255,7 +255,7 @@ def test_past_is_shown_as_it_was() -> None:
             assert shown.max_distance == was.max_distance
             assert shown.speed == pytest.approx(was.speed, rel=1e-5)
     do(lab, c.LookAt(0.0))
-    assert lab.session.viewing is None
+    assert lab.simulation.viewing is None
     assert take_snapshot(lab, 1.0).robots[TRACKER].tip == pytest.approx(
         seen[-1][1].robots[TRACKER].tip
     )
@@ -264,13 +264,15 @@ def test_past_is_shown_as_it_was() -> None:
 def test_looking_back_by_keys_stops_at_both_ends() -> None:
     lab = new_lab(1.0)
     do(lab, c.LookBack(0.2), c.LookBack(0.2))
-    assert lab.session.viewing == pytest.approx(lab.session.time - 0.4)
+    assert lab.simulation.viewing == pytest.approx(lab.simulation.time - 0.4)
     do(lab, c.LookBack(-0.3))
-    assert lab.session.viewing == pytest.approx(lab.session.time - 0.1)
+    assert lab.simulation.viewing == pytest.approx(lab.simulation.time - 0.1)
     do(lab, c.LookBack(100.0))
-    assert lab.session.viewing == pytest.approx(lab.session.time - lab.session.history.span())
+    assert lab.simulation.viewing == pytest.approx(
+        lab.simulation.time - lab.simulation.history.span()
+    )
     do(lab, c.LookBack(-100.0))
-    assert lab.session.viewing is None
+    assert lab.simulation.viewing is None
 
 
 @pytest.mark.parametrize("values", [{}, {"K3": 300, "encoder_counts": 4000}, {"control_rate": 50}])
@@ -281,32 +283,32 @@ def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]
     passed: dict[int, dict[str, np.ndarray]] = {}
     for _ in range(40):
         lab.advance(FRAME)
-        passed[round(lab.session.time * 1e3)] = states(lab.session)
+        passed[round(lab.simulation.time * 1e3)] = states(lab.simulation)
     do(lab, c.LookAt(0.4), c.GoOn())
-    begin = lab.session.time
-    assert lab.session.viewing is None and lab.session.running
+    begin = lab.simulation.time
+    assert lab.simulation.viewing is None and lab.simulation.running
     assert begin == pytest.approx(1.667 - 0.4, abs=0.035)
     compared = 0
-    while lab.session.time < 1.6:
-        lab.session.simulate(1)
-        then = passed.get(round(lab.session.time * 1e3))
+    while lab.simulation.time < 1.6:
+        lab.simulation.simulate(1)
+        then = passed.get(round(lab.simulation.time * 1e3))
         if then is not None:
             compared += 1
-            for name, state in states(lab.session).items():
+            for name, state in states(lab.simulation).items():
                 assert np.array_equal(state, then[name])
     assert compared > 10
 
 
 def test_going_on_forgets_what_came_after() -> None:
     lab = busy()
-    most = lab.session.runs[TRACKER].max_distance
-    do(lab, c.LookAt(lab.session.time - 0.2), c.GoOn())
-    assert lab.session.time < 0.21 and lab.session.history.span() < 0.21
-    assert not lab.session.forces.held and not lab.session.forces.hands
-    assert lab.session.runs[TRACKER].max_distance < most / 3
+    most = lab.simulation.runs[TRACKER].max_distance
+    do(lab, c.LookAt(lab.simulation.time - 0.2), c.GoOn())
+    assert lab.simulation.time < 0.21 and lab.simulation.history.span() < 0.21
+    assert not lab.simulation.forces.held and not lab.simulation.forces.hands
+    assert lab.simulation.runs[TRACKER].max_distance < most / 3
     run(lab, 0.5)
-    assert contiguous(lab.session.history)
-    for run_ in lab.session.runs.values():
+    assert contiguous(lab.simulation.history)
+    for run_ in lab.simulation.runs.values():
         assert run_.diverged is None and run_.distance < 3e-3
 
 
@@ -316,39 +318,44 @@ def test_going_on_from_a_time_with_another_path_finds_the_new_one() -> None:
     run(lab, 0.5)
     do(lab, c.LookAt(0.8), c.GoOn())
     run(lab, 2.0)
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
-        assert not lab.session.editor.curve.closed
+        assert not lab.simulation.editor.curve.closed
 
 
 def test_acting_on_the_lab_ends_looking_back() -> None:
     for command in (c.Hold(True), c.MoveHand(0.01, 0.0), c.StepOnce(), c.ChoosePath("ellipse")):
         lab = new_lab(0.5)
-        time = lab.session.time
+        time = lab.simulation.time
         do(lab, c.LookAt(0.3), command)
-        assert lab.session.viewing is None and lab.session.time >= time
+        assert lab.simulation.viewing is None and lab.simulation.time >= time
 
 
 def test_reset_forgets_the_past() -> None:
     lab = new_lab(0.5)
     do(lab, c.LookAt(0.3), c.Reset())
-    assert lab.session.viewing is None and len(lab.session.history) == 0 and lab.session.time == 0.0
+    assert (
+        lab.simulation.viewing is None
+        and len(lab.simulation.history) == 0
+        and lab.simulation.time == 0.0
+    )
     do(lab, c.LookAt(0.3))
-    assert lab.session.viewing is None
+    assert lab.simulation.viewing is None
 
 
 def test_a_robot_that_had_diverged_stands_still_again_and_one_that_had_not_runs() -> None:
     lab = new_lab(0.5)
-    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    lab.simulation.runs[FOLLOWER].fields()["v"][:] = 500.0
     run(lab, 0.5)
-    assert lab.session.runs[FOLLOWER].diverged
+    assert lab.simulation.runs[FOLLOWER].diverged
     do(lab, c.LookAt(0.2), c.GoOn())
-    assert lab.session.runs[FOLLOWER].diverged and "Path following stopped" in lab.message
-    do(lab, c.LookAt(lab.session.time - 0.3), c.GoOn())
-    assert lab.session.runs[FOLLOWER].diverged is None and lab.message_level == "info"
+    assert lab.simulation.runs[FOLLOWER].diverged and "Path following stopped" in lab.message
+    do(lab, c.LookAt(lab.simulation.time - 0.3), c.GoOn())
+    assert lab.simulation.runs[FOLLOWER].diverged is None and lab.message_level == "info"
     run(lab, 0.3)
     assert (
-        lab.session.runs[FOLLOWER].diverged is None and lab.session.runs[FOLLOWER].distance < 1e-3
+        lab.simulation.runs[FOLLOWER].diverged is None
+        and lab.simulation.runs[FOLLOWER].distance < 1e-3
     )
 
 
@@ -358,14 +365,14 @@ def test_a_page_may_be_built_while_the_robot_is_changed(
 ) -> None:
     """Another thread reads the samples when the new robot is there and its run has not begun."""
     lab = new_lab(0.1)
-    restart, seen = Session._restart, list[np.ndarray]()
+    restart, seen = Simulation._restart, list[np.ndarray]()
 
-    def read_first(session: Session) -> None:
-        seen.append(session.history.samples(0.0, 1.0, 100)[1])
-        restart(session)
+    def read_first(simulation: Simulation) -> None:
+        seen.append(simulation.history.samples(0.0, 1.0, 100)[1])
+        restart(simulation)
 
-    monkeypatch.setattr(Session, "_restart", read_first)
-    size = lab.session.sample_layout.size
+    monkeypatch.setattr(Simulation, "_restart", read_first)
+    size = lab.simulation.sample_layout.size
     do(lab, c.ChooseRobot(robot))
     assert [samples.shape[2] for samples in seen] == [size] and len(seen[0])
 
@@ -401,13 +408,13 @@ def test_inputs_that_differ_in_few_settings_share_the_others(
     change: Callable[[int], c.Command],
 ) -> None:
     lab = new_lab(0.1)
-    follower = lab.session.runs[FOLLOWER]
+    follower = lab.simulation.runs[FOLLOWER]
     for k in range(5):
         do(lab, change(k))
-        lab.session.simulate(17)
+        lab.simulation.simulate(17)
         made = follower.input()
         assert np.array_equal(made.settings(np.frombuffer(follower.values)), follower.settings)
-    drives = [s.drives[FOLLOWER] for s in lab.session.history.all()[-4:]]
+    drives = [s.drives[FOLLOWER] for s in lab.simulation.history.all()[-4:]]
     assert len({d.settings.tobytes() for d in drives}) == 4
-    inputs = lab.session.history.copy().columns["inputs"][-4:]
+    inputs = lab.simulation.history.copy().columns["inputs"][-4:]
     assert len(set(map(id, inputs))) == 1

@@ -13,7 +13,7 @@ import pytest
 from onpath.app.cli.main import run_command
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.loops import loop_cache
+from onpath.app.lab.loops import loop_cache as module
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.loops import CompiledLoop, InterpretedLoop
@@ -43,46 +43,46 @@ def law(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 @pytest.fixture
-def store() -> Iterator[LoopCache]:
+def loop_cache() -> Iterator[LoopCache]:
     made = LoopCache()
     yield made
     made.close()
 
 
 def test_others_are_still_compiled(
-    store: LoopCache, law: str, caplog: pytest.LogCaptureFixture
+    loop_cache: LoopCache, law: str, caplog: pytest.LogCaptureFixture
 ) -> None:
     robot = RIGID_FIVE_BAR
-    with caplog.at_level(logging.WARNING, loop_cache.__name__):
+    with caplog.at_level(logging.WARNING, module.__name__):
         for _ in range(3):
-            store.prepare(robot, Kind(law))
-            finish(store)
-    assert isinstance(store.find(robot, Kind(law)), InterpretedLoop)
+            loop_cache.prepare(robot, Kind(law))
+            finish(loop_cache)
+    assert isinstance(loop_cache.find(robot, Kind(law)), InterpretedLoop)
     (warning,) = caplog.records
     assert law in warning.getMessage() and "OP_" in warning.getMessage()
-    store.prepare(robot, Kind("waiting_clock"))
-    finish(store)
-    assert isinstance(store.find(robot, Kind("waiting_clock")), CompiledLoop)
+    loop_cache.prepare(robot, Kind("waiting_clock"))
+    finish(loop_cache)
+    assert isinstance(loop_cache.find(robot, Kind("waiting_clock")), CompiledLoop)
 
 
-def test_a_lab_uses_it_and_another_lab_notices_nothing(store: LoopCache, law: str) -> None:
-    labs = Lab(store), Lab(store)
+def test_a_lab_uses_it_and_another_lab_notices_nothing(loop_cache: LoopCache, law: str) -> None:
+    labs = Lab(loop_cache), Lab(loop_cache)
     for lab, name in zip(labs, (law, "waiting_clock"), strict=True):
         do(lab, c.ChooseLaw(LEFT, name))
         for _ in range(4):
             run(lab, FRAME)
-            finish(store)
-        assert lab.session.laws[LEFT] == name
-    made = [store.find(r.robot, r.kind) for r in (lab.session.runs[LEFT] for lab in labs)]
+            finish(loop_cache)
+        assert lab.simulation.laws[LEFT] == name
+    made = [loop_cache.find(r.robot, r.kind) for r in (lab.simulation.runs[LEFT] for lab in labs)]
     assert [type(loop) for loop in made] == [InterpretedLoop, CompiledLoop]
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_the_page_says_once_that_it_is_interpreted_and_why(
-    store: LoopCache, law: str, language: str
+    loop_cache: LoopCache, law: str, language: str
 ) -> None:
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     do(lab, c.SetLanguage(language))
     reason = lab.words("error.no_translation", owner=law, operation="OP_ERFINV", target="LLVM")
     shown = list[str]()
@@ -93,25 +93,25 @@ def test_the_page_says_once_that_it_is_interpreted_and_why(
             do(lab, command)
         for _ in range(3):
             run(lab, FRAME)
-            finish(store)
+            finish(loop_cache)
         shown += [lab.message] * (reason in lab.message)
     assert shown == [lab.words("say.law_interpreted", reason=reason)]
 
 
-def test_nothing_is_said_while_a_law_is_being_compiled(store: LoopCache) -> None:
-    lab = Lab(store)
+def test_nothing_is_said_while_a_law_is_being_compiled(loop_cache: LoopCache) -> None:
+    lab = Lab(loop_cache)
     do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
     for _ in range(4):
         run(lab, FRAME)
         assert not lab.message
-        finish(store)
+        finish(loop_cache)
 
 
 def test_an_exported_figure_is_refused_in_one_line(
     tmp_path: Path, law: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file = tmp_path / "a.html"
-    assert run_command(["export", "figure", str(file), "--law", law]) == 2
+    assert run_command(["figure", str(file), "--law", law]) == 2
     error = capsys.readouterr().err
     assert law in error and "OP_" in error and "WebAssembly" in error
     assert error.count("\n") == 1 and not list(tmp_path.iterdir())

@@ -46,7 +46,7 @@ ERRORS = {
 COMMANDS = [
     ["experiment", "obstruction"],
     ["compare", "--obstruction", "none"],
-    ["export", "figure", "page.html"],
+    ["figure", "page.html"],
 ]
 
 
@@ -138,29 +138,29 @@ def laws(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 @pytest.fixture
-def store() -> Iterator[LoopCache]:
+def loop_cache() -> Iterator[LoopCache]:
     made = LoopCache()
     yield made
     made.close()
 
 
-def frames(lab: Lab, store: LoopCache, count: int = 3) -> None:
+def frames(lab: Lab, loop_cache: LoopCache, count: int = 3) -> None:
     for _ in range(count):
         run(lab, FRAME)
-        finish(store)
+        finish(loop_cache)
 
 
-def test_it_is_not_chosen(store: LoopCache, laws: list[str]) -> None:
-    lab = Lab(store)
-    before, began = dict(lab.session.laws), lab.session.time
+def test_it_is_not_chosen(loop_cache: LoopCache, laws: list[str]) -> None:
+    lab = Lab(loop_cache)
+    before, began = dict(lab.simulation.laws), lab.simulation.time
     do(lab, c.ChooseLaw(LEFT, "everywhere"))
-    frames(lab, store)
+    frames(lab, loop_cache)
     assert "everywhere cannot be used here: TypeError: an error in the law" in lab.message
     assert Path(__file__).name in lab.message
-    assert lab.session.laws == before and lab.session.time > began
+    assert lab.simulation.laws == before and lab.simulation.time > began
     do(lab, c.ChooseLaw(LEFT, "waiting_clock"))
-    frames(lab, store)
-    assert lab.session.laws[LEFT] == "waiting_clock"
+    frames(lab, loop_cache)
+    assert lab.simulation.laws[LEFT] == "waiting_clock"
 
 
 @pytest.mark.parametrize(
@@ -172,38 +172,40 @@ def test_it_is_not_chosen(store: LoopCache, laws: list[str]) -> None:
     ],
 )
 def test_where_it_fails_the_usual_law_takes_its_place(
-    store: LoopCache, laws: list[str], law: str, command: c.Command
+    loop_cache: LoopCache, laws: list[str], law: str, command: c.Command
 ) -> None:
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     do(lab, c.ChooseLaw(LEFT, law))
-    frames(lab, store)
-    assert lab.session.laws[LEFT] == law
+    frames(lab, loop_cache)
+    assert lab.simulation.laws[LEFT] == law
     do(lab, command)
-    frames(lab, store)
-    assert lab.session.laws == DEFAULT_LAWS
+    frames(lab, loop_cache)
+    assert lab.simulation.laws == DEFAULT_LAWS
     assert f"{law} cannot be used here: TypeError" in lab.message
     assert lab.message_level == "warning"
-    began = lab.session.time
-    frames(lab, store)
-    assert lab.session.time > began
+    began = lab.simulation.time
+    frames(lab, loop_cache)
+    assert lab.simulation.time > began
     assert_sound(lab)
 
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(6))
-def test_whatever_is_changed_the_lab_goes_on(store: LoopCache, laws: list[str], seed: int) -> None:
+def test_whatever_is_changed_the_lab_goes_on(
+    loop_cache: LoopCache, laws: list[str], seed: int
+) -> None:
     """The law of a side is the one that was chosen, or where that fails the usual one."""
     rng = np.random.default_rng(seed)
     robots = ["five_bar", "two_link_arm", "spatial_arm", "flexible"]
-    lab, wanted = Lab(store), dict(DEFAULT_LAWS)
+    lab, wanted = Lab(loop_cache), dict(DEFAULT_LAWS)
 
     def possible(law: str) -> bool:
-        session = lab.session
+        simulation = lab.simulation
         fails = {
             "everywhere": True,
-            "on_two_links": session.entry.name == "two_link_arm",
-            "in_space": session.robot.system.p == 3,
-            "with_encoders": session.parameters.encoder_counts > 0,
+            "on_two_links": simulation.entry.name == "two_link_arm",
+            "in_space": simulation.robot.system.p == 3,
+            "with_encoders": simulation.parameters.encoder_counts > 0,
         }
         return not fails.get(law, False)
 
@@ -221,14 +223,14 @@ def test_whatever_is_changed_the_lab_goes_on(store: LoopCache, laws: list[str], 
             do(lab, c.SetParameter("encoder_counts", counts))
         else:
             do(lab, c.Reset(), c.Undo())
-        frames(lab, store)
+        frames(lab, loop_cache)
         wanted = {
             side: law if possible(law) else DEFAULT_LAWS[side] for side, law in wanted.items()
         }
-        assert lab.session.laws == wanted
-        began = lab.session.time
-        frames(lab, store, 1)
-        assert lab.session.time > began
+        assert lab.simulation.laws == wanted
+        began = lab.simulation.time
+        frames(lab, loop_cache, 1)
+        assert lab.simulation.time > began
         assert_sound(lab)
 
 

@@ -31,7 +31,7 @@ from onpath.lessons.vocabulary.names import RATES
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
-from tests.support.lab import FOLLOWER, FRAME, do, run, store
+from tests.support.lab import FOLLOWER, FRAME, do, loop_cache, run
 from tests.support.lesson_texts import write_lesson
 
 NAME = "01-a"
@@ -49,51 +49,51 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
 
 @pytest.fixture
 def lab(course: Course) -> Lab:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.OpenLesson(NAME))
     return lab
 
 
 def test_a_step_starts_where_it_says_and_the_next_one_on_the_path(lab: Lab) -> None:
-    start = lab.session.start
+    start = lab.simulation.start
     assert (start.theta, start.beside, start.along, start.across) == (0.5, 0.01, 0.05, -0.02)
     run(lab, 3 * FRAME)
-    first = lab.session.history.samples(0.0, 1.0, 100)[1][2]
-    own = lab.session.sample_layout.unpack(first)
+    first = lab.simulation.history.samples(0.0, 1.0, 100)[1][2]
+    own = lab.simulation.sample_layout.unpack(first)
     assert own["xi"][:, 0] == pytest.approx([0.01, 0.01], abs=2e-3)
     do(lab, c.CloseLesson())
-    assert lab.session.start.beside == 0.0
+    assert lab.simulation.start.beside == 0.0
 
 
 def test_slow_motion_shows_the_same_motion_more_slowly(lab: Lab) -> None:
     """Time goes at a quarter of the chosen rate from 0.2 s on, and at that rate after the end."""
     do(lab, c.GoToStep(1), c.Predict(), c.GoToStep(1))
-    lab.session.rate = 2.0
+    lab.simulation.rate = 2.0
     do(lab, c.PlayStep())
     seen = list[tuple[float, float]]()
     while lab.lessons.playing:
-        before = lab.session.time
+        before = lab.simulation.time
         lab.drain()
-        lab.advance(lab.session.rate * FRAME)
-        if lab.session.time > before:
-            seen.append((before, lab.session.time - before))
+        lab.advance(lab.simulation.rate * FRAME)
+        if lab.simulation.time > before:
+            seen.append((before, lab.simulation.time - before))
         assert len(seen) < 2000
     early = [step for time, step in seen[:5]]
     late = [step for time, step in seen[-20:-1]]
     assert max(early) == pytest.approx(2 * FRAME, abs=1.1e-3)
-    assert max(late) == pytest.approx(FRAME / 2, abs=1.1e-3) and lab.session.rate == 2.0
-    assert lab.session.run_number >= 1  # it began anew at its third action
+    assert max(late) == pytest.approx(FRAME / 2, abs=1.1e-3) and lab.simulation.rate == 2.0
+    assert lab.simulation.run_number >= 1  # it began anew at its third action
 
 
 def test_what_is_measured_does_not_depend_on_the_rate(course: Course) -> None:
     lesson = course.lesson(NAME, "en")
     ends = []
     for rate in (1.0, 0.25):
-        lab = lab_at(lesson, lesson.steps[0], store())
+        lab = lab_at(lesson, lesson.steps[0], loop_cache())
         do_ = (Action(at=0.1, rate=rate), Action(at=0.3, pull=(10.0, 0.0)))
         for _ in play(lab, Script(do_, until=1.0)):
             pass
-        ends.append(lab.session.runs[FOLLOWER].state.copy())
+        ends.append(lab.simulation.runs[FOLLOWER].state.copy())
     np.testing.assert_allclose(ends[0], ends[1], atol=2e-3)
 
 
@@ -225,7 +225,7 @@ def test_the_phase_plane_is_in_a_snapshot_only_when_it_is_drawn(lab: Lab) -> Non
     phase = take_page_snapshot(lab, 1.0).phase
     assert phase.shape[1:] == (2, 2) and len(phase) > 25  # every frame
     assert phase[0, :, 0] == pytest.approx([0.01, 0.01], abs=2e-3)  # from the start beside the path
-    own = lab.session.sample_layout.unpack(lab.session.history.samples(0.0, 1.0, 100)[1][-1])
+    own = lab.simulation.sample_layout.unpack(lab.simulation.history.samples(0.0, 1.0, 100)[1][-1])
     np.testing.assert_allclose(phase[-1], np.column_stack([own["xi"], own["xi_rate"]]))
     do(lab, c.CloseLesson())
     run(lab, 0.2)
@@ -248,10 +248,10 @@ def test_what_differs_from_the_set_up_is_known_until_it_is_set_back(
     lab: Lab, there: c.Command, back: c.Command | None, name: str
 ) -> None:
     lab.lessons.open_at(NAME, TASK, lab)
-    begin = Beginning.now(lab.session)
-    assert record_of(lab.session, begin).changed() == ()
+    begin = Beginning.now(lab.simulation)
+    assert record_of(lab.simulation, begin).changed() == ()
     do(lab, there)
-    assert record_of(lab.session, begin).changed() == (name,)
+    assert record_of(lab.simulation, begin).changed() == (name,)
     if back is not None:
         do(lab, back, c.Reset())
-        assert record_of(lab.session, begin).changed() == ()
+        assert record_of(lab.simulation, begin).changed() == ()

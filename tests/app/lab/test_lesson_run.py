@@ -26,7 +26,7 @@ from onpath.lessons.task_schema import Event, Task
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, run, store
+from tests.support.lab import FOLLOWER, FRAME, TRACKER, do, loop_cache, run
 from tests.support.lesson_texts import write_lesson
 
 NAME = "01-a"
@@ -45,21 +45,22 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
 @pytest.fixture
 def lab(course: Course) -> Lab:
     """A lab with that lesson open."""
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.OpenLesson(NAME))
     return lab
 
 
 def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"))
     do(lab, c.OpenLesson(NAME))
     assert (
-        lab.session.parameters.K1 == 300 and lab.session.parameters.K2 == FIVE_BAR.parameters().K2
+        lab.simulation.parameters.K1 == 300
+        and lab.simulation.parameters.K2 == FIVE_BAR.parameters().K2
     )
-    assert lab.session.editor.design.name == "circle" and lab.session.running
+    assert lab.simulation.editor.design.name == "circle" and lab.simulation.running
     do(lab, c.CloseLesson())
-    assert lab.session.parameters.K2 == 33 and lab.session.editor.design.name == "clover"
+    assert lab.simulation.parameters.K2 == 33 and lab.simulation.editor.design.name == "clover"
     assert lab.lessons.lesson is None and lab.locked is None
 
 
@@ -68,13 +69,13 @@ def test_nothing_happens_before_a_prediction(lab: Lab) -> None:
     for command in (c.SetRunning(True), c.StepOnce(), c.GoOn(), c.PlayStep()):
         do(lab, command)
         run(lab, 0.2)
-        assert lab.session.time == 0.0 and not lab.session.running
+        assert lab.simulation.time == 0.0 and not lab.simulation.running
     assert lab.message == str(lab.locked) == ENGLISH("lesson.locked")
     do(lab, c.Predict(times=(0.0, 1.0, 2.0), values=(0.0, 40.0, 0.0)))
     assert lab.locked is None and lab.message == ""
     do(lab, c.SetRunning(True))
     run(lab, 0.2)
-    assert lab.session.time > 0.1
+    assert lab.simulation.time > 0.1
 
 
 def test_why_nothing_happens_is_told_in_the_language_of_the_lab(lab: Lab) -> None:
@@ -115,9 +116,9 @@ def test_prediction_and_truth_are_kept_side_by_side(lab: Lab) -> None:
     do(lab, c.GoToStep(1), c.Predict(times=(0.0, 2.0), values=(5.0, 99.0)), c.GoToStep(1))
     do(lab, c.PlayStep())
     run(lab, 0.3)
-    assert lab.lessons.playing and lab.lessons.truth(lab.session) is not None
+    assert lab.lessons.playing and lab.lessons.truth(lab.simulation) is not None
     run(lab, 2.0)
-    assert not lab.lessons.playing and not lab.session.running
+    assert not lab.lessons.playing and not lab.simulation.running
     notes = lab.lessons.notes
     truth, answer = notes.truths["1"], notes.answers["1"]
     assert answer.values[0] == 5.0 and answer.values[-1] == 60.0  # its axis ends there
@@ -128,7 +129,7 @@ def test_prediction_and_truth_are_kept_side_by_side(lab: Lab) -> None:
 
 def test_a_task_fails_then_passes_and_stays_passed(lab: Lab) -> None:
     do(lab, c.GoToStep(3), c.GoToStep(3))
-    assert lab.lessons.step_is("task") and lab.session.editor.design.name == "ellipse"
+    assert lab.lessons.step_is("task") and lab.simulation.editor.design.name == "ellipse"
     do(lab, c.Hold(True))
     run(lab, 0.5)
     do(lab, c.Hold(False))
@@ -147,7 +148,7 @@ def test_a_task_fails_then_passes_and_stays_passed(lab: Lab) -> None:
 @pytest.mark.parametrize("frame", [0.7 / 60, 1 / 60, 1.3 / 60])
 def test_pulled_off_let_go_and_back_again(frame: float) -> None:
     """Lesson 1's last task, by the keys that it names, at the paces that a lab has."""
-    lab = Lab(store(), FIVE_BAR, built_in_course()[0])
+    lab = Lab(loop_cache(), FIVE_BAR, built_in_course()[0])
     do(lab, TakeStep("01-path-or-timetable", 9))
     for _ in range(6):
         do(lab, c.MoveHand(0.005, 0.0))
@@ -176,25 +177,25 @@ def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(lab: Lab) -> Non
 def test_what_is_undone_by_rewinding_passes_no_task(lab: Lab) -> None:
     """Go on from before a hold, and it has not happened."""
     held = Task("held", "Hold back.", (Event("hold"), Event("let_go", times=1)))
-    begin = Beginning.now(lab.session)
+    begin = Beginning.now(lab.simulation)
     run(lab, 1.0)
     do(lab, c.Hold(True))
     run(lab, 0.5)
     do(lab, c.LookAt(1.0), c.GoOn())
     run(lab, 0.5)
-    assert not judge(held, record_of(lab.session, begin), Words())[0].passed
+    assert not judge(held, record_of(lab.simulation, begin), Words())[0].passed
     do(lab, c.Hold(True))
     run(lab, 0.1)
-    assert all(verdict.passed for verdict in judge(held, record_of(lab.session, begin), Words()))
+    assert all(verdict.passed for verdict in judge(held, record_of(lab.simulation, begin), Words()))
 
 
 def test_the_truth_has_every_peak_however_long_ago() -> None:
     """Lesson 3 plays for longer than the lab's past is kept at every frame."""
-    lab = Lab(store(), FIVE_BAR, built_in_course()[0])
+    lab = Lab(loop_cache(), FIVE_BAR, built_in_course()[0])
     do(lab, TakeStep("03-the-five-bar", 3), c.Predict(), c.PlayStep())
-    seen: dict[str, list[float]] = {name: [] for name in lab.session.runs}
+    seen: dict[str, list[float]] = {name: [] for name in lab.simulation.runs}
     while lab.lessons.playing:
-        for name, one in lab.session.runs.items():
+        for name, one in lab.simulation.runs.items():
             seen[name].append(float(np.abs(one.shown()["u"]).max()))
         lab.advance(FRAME)
         lab.drain()
@@ -221,10 +222,10 @@ def test_hints_come_one_at_a_time_until_there_is_none(lab: Lab) -> None:
 
 def test_links_act_on_the_lab(lab: Lab) -> None:
     do(lab, c.Act((Action(set={"K3": 100.0}), Action(path="clover"), Action(hold=True))))
-    assert lab.session.parameters.K3 == 100.0 and lab.session.editor.design.name == "clover"
-    assert lab.session.forces.held
+    assert lab.simulation.parameters.K3 == 100.0 and lab.simulation.editor.design.name == "clover"
+    assert lab.simulation.forces.held
     do(lab, c.Act((Action(set={"K3": 1e9}),)))
-    assert lab.session.parameters.K3 == 100.0 and "K3" in lab.message
+    assert lab.simulation.parameters.K3 == 100.0 and "K3" in lab.message
 
 
 def test_resetting_by_hand_ends_what_is_shown(lab: Lab) -> None:

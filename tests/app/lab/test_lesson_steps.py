@@ -22,7 +22,7 @@ from onpath.models.control.settable import changed
 from onpath.models.control.sides import RIGHT, SIDES
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import LESSON, write_lesson
 
 COURSE = built_in_course()[0]
@@ -36,12 +36,12 @@ steps = st.sampled_from(STEPS)
 
 def new_lab() -> Lab:
     """A lab with all lessons, none of them open."""
-    return Lab(store(), course=COURSE)
+    return Lab(loop_cache(), course=COURSE)
 
 
 def setting(lab: Lab) -> Setup:
     """A lab's set-up, with what it draws larger."""
-    return capture(lab.session)
+    return capture(lab.simulation)
 
 
 @lru_cache
@@ -57,9 +57,9 @@ def wanted(name: str, index: int) -> tuple[Setup, dict[str, np.ndarray]]:
         for parameter, value in scene.set.items():
             parameters = changed(parameters, parameter, value)
         path = scene.path or path
-    assert lab.session.parameters == parameters
-    assert lab.session.editor.design is lab.session.presets[path]
-    return setting(lab), {n: run.state.copy() for n, run in lab.session.runs.items()}
+    assert lab.simulation.parameters == parameters
+    assert lab.simulation.editor.design is lab.simulation.presets[path]
+    return setting(lab), {n: run.state.copy() for n, run in lab.simulation.runs.items()}
 
 
 def here(lab: Lab) -> tuple[str, int]:
@@ -71,12 +71,15 @@ def assert_at_the_beginning(lab: Lab) -> None:
     """Assert the state of a new lab that came straight to this step."""
     setup, states = wanted(*here(lab))
     assert setting(lab) == setup
-    for name, one in lab.session.runs.items():
+    for name, one in lab.simulation.runs.items():
         assert np.array_equal(one.state, states[name])
-    assert lab.session.time == 0.0 and lab.session.viewing is None
-    assert lab.session.forces.pushes == dict.fromkeys(SIDES, FREE) and not lab.session.forces.held
-    assert lab.session.editor.selected is None and lab.session.editor.proposed is None
-    assert np.array_equal(lab.session.editor.table, lab.session.editor.design.curve.table())
+    assert lab.simulation.time == 0.0 and lab.simulation.viewing is None
+    assert (
+        lab.simulation.forces.pushes == dict.fromkeys(SIDES, FREE)
+        and not lab.simulation.forces.held
+    )
+    assert lab.simulation.editor.selected is None and lab.simulation.editor.proposed is None
+    assert np.array_equal(lab.simulation.editor.table, lab.simulation.editor.design.curve.table())
 
 
 def arrived(lab: Lab) -> Lab:
@@ -84,7 +87,7 @@ def arrived(lab: Lab) -> Lab:
     run_, lesson = lab.lessons, lab.lessons.lesson
     assert lesson is not None and lab.script is None
     assert_at_the_beginning(lab)
-    assert lab.session.running == (lesson.scene_at(run_.index).running and not run_.waits)
+    assert lab.simulation.running == (lesson.scene_at(run_.index).running and not run_.waits)
     return lab
 
 
@@ -118,11 +121,11 @@ def set_up_again(lab: Lab) -> Lab:
 def played(lab: Lab) -> Lab:
     """The script, from its beginning, seen at any speed."""
     do(lab, c.Predict())
-    rate = lab.session.rate
+    rate = lab.simulation.rate
     c.PlayStep().apply(lab)  # and nothing of the script yet
     if lab.lessons.playing:
-        assert lab.session.rate == rate and lab.session.running
-        lab.session.rate = 1.0
+        assert lab.simulation.rate == rate and lab.simulation.running
+        lab.simulation.rate = 1.0
         assert_at_the_beginning(lab)
     run(lab, 0.3)
     return lab
@@ -140,8 +143,12 @@ def reloaded(lab: Lab) -> Lab:
     keep(lab, lambda make: kept.append(make()))
     again = new_lab()
     put_back(again, kept[0])
-    assert capture(again.session) == capture(lab.session) and here(again) == here(lab)
-    assert again.session.time == 0.0 and not again.session.forces.held and not again.session.events
+    assert capture(again.simulation) == capture(lab.simulation) and here(again) == here(lab)
+    assert (
+        again.simulation.time == 0.0
+        and not again.simulation.forces.held
+        and not again.simulation.events
+    )
     return again
 
 
@@ -248,10 +255,10 @@ def test_what_a_step_keeps_is_what_the_step_before_has(
         [TakeStep("01-a", 2)],
         [c.OpenLesson("01-a"), *3 * [c.GoToStep(1)], c.GoToStep(-1)],
     ):
-        lab = Lab(store(), course=Course(course.lessons))
+        lab = Lab(loop_cache(), course=Course(course.lessons))
         do(lab, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
         assert lab.lessons.index == 2
-        assert (lab.session.parameters.K1, lab.session.parameters.K2) == (300.0, 30.0)
+        assert (lab.simulation.parameters.K1, lab.simulation.parameters.K2) == (300.0, 30.0)
 
 
 def test_no_undo_brings_the_path_of_another_step_back() -> None:
@@ -259,7 +266,7 @@ def test_no_undo_brings_the_path_of_another_step_back() -> None:
     do(lab, TakeStep(*STEPS[0]), c.ChoosePath("ellipse"), c.ChoosePath("clover"), c.Undo())
     for leave in (c.GoToStep(1), c.GoToStep(-1), c.CloseLesson()):
         do(lab, c.ChoosePath("ellipse"), leave)
-        design = lab.session.editor.design
+        design = lab.simulation.editor.design
         for command in (c.Undo(), c.Redo()):
             do(lab, command)
-            assert lab.session.editor.design is design
+            assert lab.simulation.editor.design is design

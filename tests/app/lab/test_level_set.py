@@ -26,7 +26,7 @@ NONE = "has no level set"
 
 
 def across(lab: Lab) -> str:
-    return lab.session.parameters.across
+    return lab.simulation.parameters.across
 
 
 def level_set(path: str = "circle") -> Lab:
@@ -42,14 +42,14 @@ def level_set(path: str = "circle") -> Lab:
 def test_without_a_level_set_it_is_refused_and_nothing_changes(path: str) -> None:
     lab = level_set(path)
     assert across(lab) == "distance" and NONE in lab.message and lab.message_level == "warning"
-    assert not any(kept.kind.level_set for kept in lab.session.runs.values())
+    assert not any(kept.kind.level_set for kept in lab.simulation.runs.values())
 
 
 @pytest.mark.parametrize("path", ["circle", "ellipse"])
 def test_with_a_level_set_it_is_used(path: str) -> None:
     lab = level_set(path)
     assert across(lab) == "level_set" and lab.message == ""
-    assert all(kept.kind.level_set for kept in lab.session.runs.values())
+    assert all(kept.kind.level_set for kept in lab.simulation.runs.values())
     do(lab, c.ChoosePath("ellipse" if path == "circle" else "circle"))
     run(lab, 0.5)
     assert across(lab) == "level_set"
@@ -69,12 +69,12 @@ def test_when_the_path_loses_it_the_distance_is_measured_and_this_is_said(
     change: Callable[[], c.Command], runs: bool
 ) -> None:
     lab = level_set()
-    lab.session.running = runs
+    lab.simulation.running = runs
     do(lab, change())
     assert across(lab) == "distance" and NONE in lab.message
-    lab.session.running = True
+    lab.simulation.running = True
     run(lab, 0.5)
-    assert not any(kept.kind.level_set for kept in lab.session.runs.values())
+    assert not any(kept.kind.level_set for kept in lab.simulation.runs.values())
 
 
 def test_experiments_refuse_it_in_words() -> None:
@@ -101,15 +101,15 @@ def test_a_figure_tells_its_unit() -> None:
 
 def test_what_had_another_unit_is_in_no_plot_picture_or_task() -> None:
     lab = new_lab(0.5)
-    begin = Beginning(lab.session.run_number, 0.0)
-    assert "across" in record_of(lab.session, begin).values["follower"]
+    begin = Beginning(lab.simulation.run_number, 0.0)
+    assert "across" in record_of(lab.simulation, begin).values["follower"]
     do(lab, c.SetParameter("across", "level_set"))
     run(lab, 0.5)
-    values = record_of(lab.session, begin).values["follower"]
+    values = record_of(lab.simulation, begin).values["follower"]
     assert "distance" in values and not {"across", "across_rate"} & set(values)
     since = take_page_snapshot(lab, 1.0).plots.across_since
     assert since == pytest.approx(0.5, abs=0.02)
-    for parts in replay(lab.session.robot, lab.session.history.all()).values():
+    for parts in replay(lab.simulation.robot, lab.simulation.history.all()).values():
         assert len(parts) == 1 and parts[0].level_set
         lacks = np.isnan(parts[0].fields["xi"][:, 0])
         assert np.array_equal(lacks, parts[0].t < since - 1e-9)

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import PATIENCE, Lab
-from onpath.app.lab.loops import loop_cache
+from onpath.app.lab.loops import loop_cache as module
 from onpath.app.lab.loops.loop_cache import MOST, MOST_SOON, Key, LoopCache
 from onpath.app.server.warm_up import LATER, warm_up
 from onpath.lessons.action_schema import Action, Laws, Script
@@ -70,7 +70,7 @@ def gate() -> Gate:
 
 
 @pytest.fixture
-def store(gate: Gate) -> Iterator[LoopCache]:
+def loop_cache(gate: Gate) -> Iterator[LoopCache]:
     made = LoopCache(translate=gate)
     pool = made._pool
     yield made
@@ -81,7 +81,7 @@ def store(gate: Gate) -> Iterator[LoopCache]:
 
 
 def loops(lab: Lab) -> list[Loop | None]:
-    return [run.loop() for run in lab.session.runs.values()]
+    return [run.loop() for run in lab.simulation.runs.values()]
 
 
 def law(number: float) -> str:
@@ -97,65 +97,69 @@ def key(number: float) -> Key:
 
 
 def test_a_lab_stands_still_until_its_loops_are_made_and_says_so(
-    store: LoopCache, gate: Gate
+    loop_cache: LoopCache, gate: Gate
 ) -> None:
-    lab, reference = Lab(store), new_lab()
+    lab, reference = Lab(loop_cache), new_lab()
     run(lab, 0.2)
-    assert lab.session.time == 0.0 and loops(lab) == [None, None] and not lab.waits
+    assert lab.simulation.time == 0.0 and loops(lab) == [None, None] and not lab.waits
     run(lab, PATIENCE * FRAME)
     assert lab.waits and lab.notice == (lab.words("say.waits"), "info")
     gate.set()
-    finish(store)
+    finish(loop_cache)
     run(lab, 0.5)
     run(reference, 0.5)
     assert not lab.waits and lab.notice == reference.notice
     assert all(isinstance(loop, CompiledLoop) for loop in loops(lab))
-    for name, state in states(lab.session).items():
-        assert np.array_equal(state, reference.session.runs[name].state)
-        assert lab.session.runs[name].diverged is None
-    assert np.array_equal(lab.session.sample(), reference.session.sample())
+    for name, state in states(lab.simulation).items():
+        assert np.array_equal(state, reference.simulation.runs[name].state)
+        assert lab.simulation.runs[name].diverged is None
+    assert np.array_equal(lab.simulation.sample(), reference.simulation.sample())
 
 
-def test_the_first_sample_is_the_same_whenever_its_loop_comes(store: LoopCache, gate: Gate) -> None:
-    late, soon = Lab(store), new_lab()
+def test_the_first_sample_is_the_same_whenever_its_loop_comes(
+    loop_cache: LoopCache, gate: Gate
+) -> None:
+    late, soon = Lab(loop_cache), new_lab()
     for lab in (late, soon):
-        lab.session.running = False
+        lab.simulation.running = False
         do(lab, c.SetStart("beside", 0.01), c.Reset())
         run(lab, FRAME)
     gate.set()
-    finish(store)
+    finish(loop_cache)
     run(late, FRAME)
-    assert np.array_equal(late.session.sample(), soon.session.sample())
+    assert np.array_equal(late.simulation.sample(), soon.simulation.sample())
 
 
-def test_commands_keep_their_order_while_a_step_waits(store: LoopCache, gate: Gate) -> None:
-    lab = Lab(store)
+def test_commands_keep_their_order_while_a_step_waits(loop_cache: LoopCache, gate: Gate) -> None:
+    lab = Lab(loop_cache)
     do(lab, c.SetRunning(False), c.StepOnce(), c.StepOnce(), c.SetRate(2.0))
     run(lab, 0.5)
-    assert lab.session.time == 0.0 and lab.session.rate == 1.0 and lab.waits
+    assert lab.simulation.time == 0.0 and lab.simulation.rate == 1.0 and lab.waits
     gate.set()
-    finish(store)
+    finish(loop_cache)
     run(lab, 0.1)
-    assert lab.session.time == pytest.approx(2e-3) and lab.session.rate == 2.0 and not lab.waits
+    assert (
+        lab.simulation.time == pytest.approx(2e-3) and lab.simulation.rate == 2.0 and not lab.waits
+    )
 
 
 def test_settings_that_need_another_loop_stop_time_until_it_is_made(
-    store: LoopCache, gate: Gate
+    loop_cache: LoopCache, gate: Gate
 ) -> None:
     gate.set()
-    lab = Lab(store)
-    finish(store)
+    lab = Lab(loop_cache)
+    finish(loop_cache)
     do(lab, c.TypeLaw(LEFT, law(0.125)))
-    wait_for(lambda: (run(lab, FRAME), lab.session.laws[LEFT] == law(0.125))[1], LONG)
+    wait_for(lambda: (run(lab, FRAME), lab.simulation.laws[LEFT] == law(0.125))[1], LONG)
     gate.clear()
     do(lab, c.SetParameter("encoder_counts", 4096.0))
-    time = lab.session.time
+    time = lab.simulation.time
     run(lab, 0.5)
-    assert lab.session.time == time and lab.waits
+    assert lab.simulation.time == time and lab.waits
     gate.set()
-    wait_for(lambda: (run(lab, FRAME), lab.session.time > time)[1], LONG)
-    assert all(each.kind.encoder for each in lab.session.runs.values())
-    assert lab.session.laws[LEFT] == law(0.125)
+    wait_for(lambda: (run(lab, FRAME), lab.simulation.time > time)[1], LONG)
+    assert all(each.kind.encoder for each in lab.simulation.runs.values())
+    assert lab.simulation.laws[LEFT] == law(0.125)
     assert_sound(lab)
 
 
@@ -193,8 +197,8 @@ EVERY_KIND = Script(
 @pytest.mark.parametrize("late", [1, 7, 23])
 def test_a_script_gives_the_same_bits_however_late_its_loops_come(late: int) -> None:
     ends = list[Lab]()
-    for store in (LateCache(late), LoopCache(at_once=True)):
-        lab = Lab(store)
+    for loop_cache in (LateCache(late), LoopCache(at_once=True)):
+        lab = Lab(loop_cache)
         lab.script = player_of(EVERY_KIND)
         frames = 0
         while lab.script is not None:
@@ -202,17 +206,17 @@ def test_a_script_gives_the_same_bits_however_late_its_loops_come(late: int) -> 
             frames += 1
             assert frames < 4000
         ends.append(lab)
-        store.close()
+        loop_cache.close()
     late_lab, soon = ends
-    assert late_lab.session.time == soon.session.time and late_lab.message == soon.message
-    for side, state in states(soon.session).items():
-        assert np.array_equal(state, states(late_lab.session)[side])
-        assert late_lab.session.laws[side] == soon.session.laws[side]
+    assert late_lab.simulation.time == soon.simulation.time and late_lab.message == soon.message
+    for side, state in states(soon.simulation).items():
+        assert np.array_equal(state, states(late_lab.simulation)[side])
+        assert late_lab.simulation.laws[side] == soon.simulation.laws[side]
 
 
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_nothing_is_built_on_the_thread_of_the_simulation(
-    store: LoopCache, gate: Gate, robot: str, monkeypatch: pytest.MonkeyPatch
+    loop_cache: LoopCache, gate: Gate, robot: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whatever needs another loop: robots, laws, parameters, a hand, the kind of path."""
     built, known = set[int](), kernel_of
@@ -221,16 +225,16 @@ def test_nothing_is_built_on_the_thread_of_the_simulation(
         built.add(threading.get_ident())
         return known(*wanted)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loop_cache, "kernel_of", kernel)
+    monkeypatch.setattr(module, "kernel_of", kernel)
     gate.set()
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     asked: list[c.Command] = [c.ChooseRobot(robot)]
     asked += [c.ChooseLaw(RIGHT, each) for each in laws_for(robot)[:2]]
     asked += [c.SetParameter("encoder_counts", 2000.0), c.Hold(on=True), c.ChoosePath("arc")]
     for command in asked:
         do(lab, command)
         run(lab, 0.4)
-        finish(store)
+        finish(loop_cache)
     assert built and threading.get_ident() not in built | gate.threads
     assert_sound(lab)
 
@@ -254,7 +258,7 @@ def one_kernel() -> Kernel:
 @pytest.fixture
 def cheap(one_kernel: Kernel, monkeypatch: pytest.MonkeyPatch) -> None:
     """All loops have one kernel."""
-    monkeypatch.setattr(loop_cache, "kernel_of", lambda *_: one_kernel)
+    monkeypatch.setattr(module, "kernel_of", lambda *_: one_kernel)
 
 
 @given(wanted)
@@ -262,29 +266,29 @@ def test_the_next_loop_is_for_the_lab_that_has_taken_least(
     asked: list[tuple[int, list[int]]],
 ) -> None:
     """Only what a lab wanted last is made for it, and nobody waits for who has taken more."""
-    store, labs, last = LoopCache(), [Owner() for _ in range(5)], dict[int, list[int]]()
-    store.close()  # the test takes the place of its thread
+    loop_cache, labs, last = LoopCache(), [Owner() for _ in range(5)], dict[int, list[int]]()
+    loop_cache.close()  # the test takes the place of its thread
     for number, keys in asked:
-        store.want(labs[number], [(RIGID_FIVE_BAR, Kind(str(each))) for each in keys])
+        loop_cache.want(labs[number], [(RIGID_FIVE_BAR, Kind(str(each))) for each in keys])
         last[number] = keys
     spent, made = dict.fromkeys(range(5), 0.0), set[int]()
-    while (task := store._next()) is not None:
+    while (task := loop_cache._next()) is not None:
         lab, (_, kind) = task
         number = labs.index(lab)  # type: ignore[arg-type]
         waiting = [n for n, keys in last.items() if set(keys) - made]
         assert spent[number] == min(spent[n] for n in waiting)
         assert int(kind.law) == next(k for k in last[number] if k not in made)
         made.add(int(kind.law))
-        store._keep(task[1], CodedError("error.law_cannot_run"))
+        loop_cache._keep(task[1], CodedError("error.law_cannot_run"))
         spent[number] += 1.0 + number
-        store._spent[labs[number]] = spent[number]
+        loop_cache._spent[labs[number]] = spent[number]
     assert made == {each for keys in last.values() for each in keys}
 
 
 def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
-    store: LoopCache, gate: Gate
+    loop_cache: LoopCache, gate: Gate
 ) -> None:
-    greedy, other = Lab(store), Lab(store)
+    greedy, other = Lab(loop_cache), Lab(loop_cache)
     for number in range(300):
         typed = [c.TypeLaw(side, law(number + i / 4)) for i, side in enumerate(SIDES)]
         do(greedy, *typed)
@@ -295,8 +299,8 @@ def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
         if number > 150:
             run(other, FRAME)
     laws = {LEFT: "waiting_clock", RIGHT: law(-1)}
-    wait_for(lambda: (run(other, FRAME), other.session.laws == laws)[1], LONG)
-    assert greedy.session.chosen_laws == {LEFT: law(299), RIGHT: law(299.25)}
+    wait_for(lambda: (run(other, FRAME), other.simulation.laws == laws)[1], LONG)
+    assert greedy.simulation.chosen_laws == {LEFT: law(299), RIGHT: law(299.25)}
     for each in (greedy, other):
         run(each, 0.1)
         assert_sound(each)
@@ -304,16 +308,16 @@ def test_a_lab_that_types_without_end_does_not_hold_up_another_one(
 
 @pytest.mark.usefixtures("cheap")
 def test_what_is_prepared_waits_for_what_labs_wait_for_and_is_bounded(
-    store: LoopCache, gate: Gate
+    loop_cache: LoopCache, gate: Gate
 ) -> None:
     for kind in some_kinds(200):
-        store.prepare(RIGID_FIVE_BAR, kind)
+        loop_cache.prepare(RIGID_FIVE_BAR, kind)
     assert gate.reached.wait(LONG)
     lab = Owner()
-    store.want(lab, [key(7)])
+    loop_cache.want(lab, [key(7)])
     gate.set()
-    wait_for(lambda: store.find(*key(7)) is not None, LONG)
-    assert len(gate.passed) <= 3 and len(store._soon) <= MOST_SOON
+    wait_for(lambda: loop_cache.find(*key(7)) is not None, LONG)
+    assert len(gate.passed) <= 3 and len(loop_cache._soon) <= MOST_SOON
 
 
 # What is kept
@@ -331,29 +335,29 @@ def some_kinds(most: int) -> list[Kind]:
 
 @pytest.mark.usefixtures("cheap")
 def test_loops_in_use_are_shared_and_of_the_others_only_the_last_are_kept() -> None:
-    store = LoopCache(at_once=True, translate=InterpretedLoop)
+    loop_cache = LoopCache(at_once=True, translate=InterpretedLoop)
     robot, (mine, *others) = RIGID_FIVE_BAR, some_kinds(3 * MOST)
-    used, seen = store.find(robot, mine), WeakSet[Loop]()
+    used, seen = loop_cache.find(robot, mine), WeakSet[Loop]()
     for kind in others:
-        loop = store.find(robot, kind)
-        assert loop is not None and store.find(robot, kind) is loop
+        loop = loop_cache.find(robot, kind)
+        assert loop is not None and loop_cache.find(robot, kind) is loop
         seen.add(loop)
     del loop
     gc.collect()
-    assert store.find(robot, mine) is used
-    assert len(store._kept) <= MOST and len(seen) <= MOST
-    store.close()
+    assert loop_cache.find(robot, mine) is used
+    assert len(loop_cache._kept) <= MOST and len(seen) <= MOST
+    loop_cache.close()
 
 
 def test_a_lab_keeps_the_loop_that_it_uses() -> None:
-    store = LoopCache(at_once=True)
-    lab, same = Lab(store), Lab(store)
+    loop_cache = LoopCache(at_once=True)
+    lab, same = Lab(loop_cache), Lab(loop_cache)
     for each in (lab, same):
         do(each, c.TypeLaw(LEFT, law(0)), c.TypeLaw(RIGHT, law(0.25)))
         run(each, 0.2)
     before = loops(lab)
     for number in range(MOST):
-        store._keep(key(5000 + number), CodedError("error.law_cannot_run"))
+        loop_cache._keep(key(5000 + number), CodedError("error.law_cannot_run"))
     for each in (lab, same):
         do(each, c.SetParameter("K1", 500.0), c.Hold(on=True))
         run(each, 0.3)
@@ -361,7 +365,7 @@ def test_a_lab_keeps_the_loop_that_it_uses() -> None:
         run(each, 0.3)
         assert_sound(each)
     assert loops(lab) == before == loops(same)
-    store.close()
+    loop_cache.close()
 
 
 def test_kernels_of_typed_laws_displace_no_others() -> None:
@@ -377,93 +381,98 @@ def test_kernels_of_typed_laws_displace_no_others() -> None:
 
 
 def test_a_failed_compilation_is_logged_once_for_each_kind_and_the_lab_continues(
-    store: LoopCache, gate: Gate, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    loop_cache: LoopCache,
+    gate: Gate,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
 ) -> None:
     monkeypatch.setitem(sys.modules, "llvmlite.binding", None)
     gate.set()
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     with caplog.at_level(logging.WARNING):
         lab.advance(FRAME)
-        finish(store)
+        finish(loop_cache)
         for _ in range(20):
             lab.advance(FRAME)
         do(lab, c.Hold(on=True))
         for _ in range(20):
             lab.advance(FRAME)
-    warnings = [r for r in caplog.records if r.name == loop_cache.__name__]
+    warnings = [r for r in caplog.records if r.name == module.__name__]
     assert all("interpreted" in warning.getMessage() for warning in warnings)
     assert len(warnings) == 2 * len(SIDES)  # free, and held
-    assert lab.session.time == pytest.approx(40 * FRAME, abs=2e-3)
+    assert lab.simulation.time == pytest.approx(40 * FRAME, abs=2e-3)
     assert all(isinstance(loop, InterpretedLoop) for loop in loops(lab))
 
 
 def test_whatever_fails_in_the_background_the_next_loop_is_made(
-    store: LoopCache, gate: Gate, monkeypatch: pytest.MonkeyPatch
+    loop_cache: LoopCache, gate: Gate, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def failing(*wanted: Key) -> Kernel:
         if wanted == key(1):
             raise MemoryError
         return kernel_of(*wanted)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(loop_cache, "kernel_of", failing)
+    monkeypatch.setattr(module, "kernel_of", failing)
     gate.set()
     lab = Owner()
-    store.want(lab, [key(1), key(2)])
-    wait_for(lambda: store.find(*key(2)) is not None, LONG)
+    loop_cache.want(lab, [key(1), key(2)])
+    wait_for(lambda: loop_cache.find(*key(2)) is not None, LONG)
     with pytest.raises(CodedError, match="not possible"):
-        store.find(*key(1))
+        loop_cache.find(*key(1))
 
 
-def test_closing_gives_up_what_is_waiting(store: LoopCache, gate: Gate) -> None:
-    lab, pool = Owner(), store._pool
-    store.want(lab, [key(number) for number in range(4)])
+def test_closing_gives_up_what_is_waiting(loop_cache: LoopCache, gate: Gate) -> None:
+    lab, pool = Owner(), loop_cache._pool
+    loop_cache.want(lab, [key(number) for number in range(4)])
     assert gate.reached.wait(LONG) and pool is not None
-    store.close()
+    loop_cache.close()
     gate.set()
     pool.shutdown(wait=True)
     assert len(gate.passed) == 1
-    store.want(lab, [key(9)])  # that is new, and refused quietly
-    assert store.find(*key(9)) is None
+    loop_cache.want(lab, [key(9)])  # that is new, and refused quietly
+    assert loop_cache.find(*key(9)) is None
 
 
 # In advance
 
 
-def test_a_first_lab_finds_its_loops_compiled(store: LoopCache, gate: Gate) -> None:
+def test_a_first_lab_finds_its_loops_compiled(loop_cache: LoopCache, gate: Gate) -> None:
     """Free and held: whoever comes after a while waits for no loop."""
     gate.set()
-    warm_up(store, NO_LESSONS, rest=0.0).join(LONG)
-    finish(store)
+    warm_up(loop_cache, NO_LESSONS, rest=0.0).join(LONG)
+    finish(loop_cache)
     assert all(name in sys.modules for name in (*LATER, "babel"))
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     for commands in ([], [c.Hold(on=True)]):
         do(lab, *commands)
         lab.advance(FRAME)
         assert all(isinstance(loop, CompiledLoop) for loop in loops(lab))
-    assert len(store._kept) == 2 * len(SIDES)
+    assert len(loop_cache._kept) == 2 * len(SIDES)
 
 
 def test_whoever_gets_a_loop_also_gets_that_with_a_hand_on_the_robot(
-    store: LoopCache, gate: Gate
+    loop_cache: LoopCache, gate: Gate
 ) -> None:
     gate.set()
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     run(lab, FRAME)
-    finish(store)
+    finish(loop_cache)
     run(lab, FRAME)
-    time = lab.session.time
+    time = lab.simulation.time
     do(lab, c.Hold(on=True))
     run(lab, FRAME)
-    assert lab.session.time > time
+    assert lab.simulation.time > time
 
 
-def test_what_a_speed_limit_needs_is_made_in_the_background(store: LoopCache, gate: Gate) -> None:
+def test_what_a_speed_limit_needs_is_made_in_the_background(
+    loop_cache: LoopCache, gate: Gate
+) -> None:
     """`slow_down` builds nothing on the simulation thread."""
     gate.set()
     speed_limit._on_path.cache_clear()
-    lab = Lab(store)
+    lab = Lab(loop_cache)
     lab.advance(FRAME)
-    finish(store)
+    finish(loop_cache)
     assert speed_limit._on_path.cache_info().misses == 1
     do(lab, c.SetParameter("torque_limit", 0.5), c.SetParameter("at_limit", "slow_down"))
     lab.advance(FRAME)

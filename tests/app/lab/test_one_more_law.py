@@ -34,11 +34,13 @@ def test_a_law_is_one_file() -> None:
 
 @pytest.mark.thorough
 def test_no_list_and_no_test_has_to_be_changed_for_it() -> None:
+    """Of those that know the list of laws."""
     run_tests(
+        *("-m", "not thorough"),
         "tests/test_architecture.py",
         "tests/lessons/test_names_listed.py",
         "tests/app/page/test_words.py",
-        "tests/app/notebook",
+        "tests/app/notebook/test_same_motion.py",
         "tests/models/control/laws/test_laws.py",
         "tests/models/systems/test_parameters.py",
     )

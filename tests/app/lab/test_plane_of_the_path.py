@@ -88,18 +88,18 @@ def test_robots_with_other_planes_share_their_loops_and_last_as_long_as_they_are
 def test_another_plane_in_the_lab_begins_a_run_there() -> None:
     lab = flexible()
     run(lab, 0.3)
-    runs, before = lab.session.run_number, take_snapshot(lab, 1.0)
+    runs, before = lab.simulation.run_number, take_snapshot(lab, 1.0)
     for name, value in PLANE.items():
         do(lab, c.SetParameter(name, value))
-    assert "restarted" in lab.message and lab.session.run_number > runs
+    assert "restarted" in lab.message and lab.simulation.run_number > runs
     assert (
         take_snapshot(lab, 1.0).key != before.key
     )  # the page is built anew: drags are in that plane
     run(lab, 2.5)
     assert_sound(lab)
-    way = replayed(lab.session)[FOLLOWER].fields["y"][-400::20]
+    way = replayed(lab.simulation)[FOLLOWER].fields["y"][-400::20]
     assert off_the_ellipse(way, **PLANE).max() < 1e-3
-    drawn = lab.session.robot.unplace(take_snapshot(lab, 1.0, before).path.points)
+    drawn = lab.simulation.robot.output_at(take_snapshot(lab, 1.0, before).path.points)
     assert off_the_ellipse(drawn, **PLANE).max() < SMALL
 
 
@@ -107,11 +107,11 @@ def test_another_plane_in_the_lab_begins_a_run_there() -> None:
 def test_a_plane_out_of_reach_is_refused_and_changes_nothing(name: str, value: float) -> None:
     lab = flexible(centre=0.15, d=0.6)
     run(lab, 0.2)
-    before, robot = states(lab.session), lab.session.robot
+    before, robot = states(lab.simulation), lab.simulation.robot
     do(lab, c.SetParameter(name, value))
     assert lab.message and lab.message_level == "warning"
-    assert lab.session.robot is robot
-    for side, state in states(lab.session).items():
+    assert lab.simulation.robot is robot
+    for side, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[side])
 
 
@@ -123,20 +123,20 @@ def test_labs_with_different_planes_run_together_as_alone() -> None:
         for lab in alone:
             lab.advance(FRAME)
     for a, b in zip(together, alone, strict=True):
-        np.testing.assert_array_equal(y(a.session, FOLLOWER), y(b.session, FOLLOWER))
-        assert a.session.runs[FOLLOWER].distance == b.session.runs[FOLLOWER].distance
-        assert a.session.runs[FOLLOWER].max_distance < 5e-3
+        np.testing.assert_array_equal(y(a.simulation, FOLLOWER), y(b.simulation, FOLLOWER))
+        assert a.simulation.runs[FOLLOWER].distance == b.simulation.runs[FOLLOWER].distance
+        assert a.simulation.runs[FOLLOWER].max_distance < 5e-3
 
 
 def test_set_ups_carry_it_wherever_the_lab_was_before() -> None:
     lab = flexible(**PLANE)
     do(lab, c.ChoosePath("ellipse"))
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     for other in (new_lab(), flexible(), flexible(d=0.55)):
-        restore(other.session, decode(encode(setup)))
-        assert capture(other.session) == setup
-        assert other.session.robot is lab.session.robot
+        restore(other.simulation, decode(encode(setup)))
+        assert capture(other.simulation) == setup
+        assert other.simulation.robot is lab.simulation.robot
         run(other, 0.2)
         assert_sound(other)
-        restore(other.session, Setup(robot="flexible"))
-        assert other.session.robot is other.session.robot.core
+        restore(other.simulation, Setup(robot="flexible"))
+        assert other.simulation.robot is other.simulation.robot.core

@@ -21,14 +21,14 @@ def test_both_are_pulled_across_and_let_go(robot: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
     run(lab, 1.0)
-    begin = lab.session.time
+    begin = lab.simulation.time
     do(lab, c.Pulse())
     run(lab, (FRAMES + 4) * FRAME)
-    for motion in replayed(lab.session).values():
+    for motion in replayed(lab.simulation).values():
         before = float(motion.distance[(motion.t > begin - 0.1) & (motion.t < begin)].max())
         assert before + 5e-5 < motion.distance[motion.t >= begin].max() < 2 * ASIDE
-    assert lab.script is None and not lab.session.forces.hands
-    names = [event.name for event in lab.session.events]
+    assert lab.script is None and not lab.simulation.forces.hands
+    names = [event.name for event in lab.simulation.events]
     assert names.count("pull") == names.count("release") == 1
 
 
@@ -40,9 +40,9 @@ def test_without_damping_it_goes_on_swinging_and_with_damping_it_does_not() -> N
         run(lab, 1.0)
         do(lab, c.Pulse())
         run(lab, 1.0)
-        begin = lab.session.time
+        begin = lab.simulation.time
         run(lab, 0.3)
-        motion = replayed(lab.session)[RIGHT]
+        motion = replayed(lab.simulation)[RIGHT]
         left[k2] = float(motion.distance[motion.t >= begin].max())
     assert left[2.0] > 10 * left[40.0]
 
@@ -50,10 +50,10 @@ def test_without_damping_it_goes_on_swinging_and_with_damping_it_does_not() -> N
 def test_a_hand_that_pulls_already_is_not_taken_away() -> None:
     lab = new_lab()
     run(lab, 0.2)
-    target = lab.session.runs[RIGHT].shown()["y"] + np.array([0.01, 0.0])
+    target = lab.simulation.runs[RIGHT].shown()["y"] + np.array([0.01, 0.0])
     do(lab, c.Grab(RIGHT, target), c.Pulse())
     run(lab, 1.0)
-    assert lab.session.forces.grabbed == RIGHT and lab.script is None
+    assert lab.simulation.forces.grabbed == RIGHT and lab.script is None
 
 
 def test_it_pulls_each_robot_where_it_is() -> None:
@@ -65,8 +65,8 @@ def test_it_pulls_each_robot_where_it_is() -> None:
     run(lab, 0.4)
     do(lab, c.Hold(False, "left"))
     run(lab, 2.0)
-    begin = lab.session.time
+    begin = lab.simulation.time
     do(lab, c.Pulse())
     run(lab, 0.5)
-    largest = [float(m.distance[m.t >= begin].max()) for m in replayed(lab.session).values()]
+    largest = [float(m.distance[m.t >= begin].max()) for m in replayed(lab.simulation).values()]
     assert largest[0] == pytest.approx(largest[1], rel=0.15)

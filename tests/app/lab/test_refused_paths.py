@@ -15,7 +15,7 @@ from tests.support.lab import do, new_lab
 
 def test_the_marks_of_a_drag_that_goes_no_further_go_with_the_hand() -> None:
     lab = new_lab(0.5)
-    editor = lab.session.editor
+    editor = lab.simulation.editor
     far = editor.points()[0] + [0.1, 0.1]
     do(lab, c.MovePoint(0, far, finished=False))
     assert editor.faults
@@ -28,12 +28,12 @@ def test_a_user_is_told_of_a_path_that_is_far_from_the_stroke() -> None:
     ends = zip(corners, np.roll(corners, -1, axis=0), strict=True)
     stroke = np.concatenate([np.linspace(a, b, 60) for a, b in ends])
     do(lab, c.DrawPath(stroke))
-    curve = lab.session.editor.design.curve
+    curve = lab.simulation.editor.design.curve
     assert curve.deviation > 4e-3
     assert f"{1e3 * curve.deviation:.1f} mm away from the lines" in lab.message
     angle = np.linspace(0, 2 * np.pi, 200)
     do(lab, c.DrawPath(0.05 * np.column_stack([np.cos(angle), np.sin(angle)])))
-    assert lab.session.editor.design.curve.deviation < 2e-3 and lab.message == ""
+    assert lab.simulation.editor.design.curve.deviation < 2e-3 and lab.message == ""
 
 
 @settings(max_examples=3)
@@ -41,11 +41,11 @@ def test_a_user_is_told_of_a_path_that_is_far_from_the_stroke() -> None:
 def test_exactly_the_presets_that_are_offered_without_a_warning_can_be_chosen(name: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(name))
-    remarks = {path: remark_on(path, lab.session.robot) for path in presets()}
+    remarks = {path: remark_on(path, lab.simulation.robot) for path in presets()}
     refused = {path for path, remark in remarks.items() if remark == "design.refused"}
     assert refused < set(presets())
     for path in presets():
         do(lab, c.ChoosePath("circle"), c.ChoosePath(path))
-        assert (lab.session.editor.design.name == path) is (path not in refused)
+        assert (lab.simulation.editor.design.name == path) is (path not in refused)
         assert ("is refused" in lab.message) is (path in refused)
-    assert np.isfinite(lab.session.editor.table).all()
+    assert np.isfinite(lab.simulation.editor.table).all()

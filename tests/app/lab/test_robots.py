@@ -20,11 +20,11 @@ from onpath.app.exports.figures import experiment_figure
 from onpath.app.exports.files import csv_bytes, picture_file
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.session import Session
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.share_code import decode, encode
-from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_views
+from onpath.app.lab.simulation import Simulation
+from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_snapshots
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page import panel_factory
 from onpath.app.page.panels.robot_picture import picture_of, robot_sketch
@@ -39,7 +39,7 @@ from onpath.models.systems import catalogue
 from onpath.models.systems.catalogue import FLEXIBLE, ROBOTS
 from onpath.models.systems.robots import RobotEntry
 from tests.support.checkout import ROOT
-from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, store, y
+from tests.support.lab import FOLLOWER, TRACKER, assert_drawable, assert_sound, do, loop_cache, y
 from tests.support.lab import run as run_lab
 from tests.support.new_robot import GANTRY, new_robot
 
@@ -60,16 +60,16 @@ def entry(request: pytest.FixtureRequest, gantry: None) -> RobotEntry:
 
 def lab_with(entry: RobotEntry, seconds: float = 0.0) -> Lab:
     """As a user comes to it: from the first robot, by the menu."""
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     do(lab, c.ChooseRobot(entry.name))
     run_lab(lab, seconds)
     return lab
 
 
-def off_path(session: Session, side: str) -> float:
+def off_path(simulation: Simulation, side: str) -> float:
     """How far a robot is off its path, [m]: the output of a gantry, the end-point of the others."""
-    run = session.runs[side]
-    if session.entry.name == "rod_gantry":
+    run = simulation.runs[side]
+    if simulation.entry.name == "rod_gantry":
         return float(np.abs(run.shown()["xi"]).max())
     return run.distance
 
@@ -93,14 +93,14 @@ def test_two_robots_of_one_name_are_refused(gantry: None, tmp_path: Path) -> Non
 @pytest.mark.thorough
 def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry) -> None:
     lab = lab_with(entry, 2.0)
-    session = lab.session
+    simulation = lab.simulation
     for name in SIDES:
-        assert session.runs[name].diverged is None
-        assert off_path(session, name) < 2e-4
+        assert simulation.runs[name].diverged is None
+        assert off_path(simulation, name) < 2e-4
     do(lab, c.Hold(True))
     run_lab(lab, 1.0)
     do(lab, c.Hold(False))
-    follower, tracker = (session.runs[name] for name in (FOLLOWER, TRACKER))
+    follower, tracker = (simulation.runs[name] for name in (FOLLOWER, TRACKER))
     assert follower.diverged is None, "stopped while held"
     if tracker.diverged is None:
         assert follower.max_distance < tracker.max_distance / 3
@@ -111,31 +111,31 @@ def test_it_follows_the_circle_in_the_lab_and_waits_when_held(entry: RobotEntry)
 @pytest.mark.thorough
 def test_a_pull_moves_it_and_it_comes_back(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.5)
-    session = lab.session
-    target = session.robot.place(y(session, FOLLOWER) + 0.01)
+    simulation = lab.simulation
+    target = simulation.robot.position(y(simulation, FOLLOWER) + 0.01)
     do(lab, c.Grab(FOLLOWER, target))
     run_lab(lab, 0.5)
     assert_sound(lab)
     do(lab, c.Release(FOLLOWER))
     run_lab(lab, 1.5)
-    assert session.runs[FOLLOWER].diverged is None
-    assert off_path(session, FOLLOWER) < 2e-3
+    assert simulation.runs[FOLLOWER].diverged is None
+    assert off_path(simulation, FOLLOWER) < 2e-3
 
 
 def test_bars_join_joints_and_end_at_the_end_point_also_in_the_scene(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.3)
-    session = lab.session
-    robot, stage = session.robot, stage_of(session.robot)
+    simulation = lab.simulation
+    robot, stage = simulation.robot, stage_of(simulation.robot)
     snapshot = take_snapshot(lab, 1.0)
     assert_drawable(snapshot)
     views = [snapshot.robots[name] for name in stage.bases]
     poses = poses_of(stage, snapshot.motion)
-    q = [session.runs[name].fields()["q"] for name in stage.bases]
+    q = [simulation.runs[name].fields()["q"] for name in stage.bases]
     for i, (view, configuration) in enumerate(zip(views, q, strict=True)):
-        ends, last = view.bars.reshape(-1, 3), robot.place(robot.endpoint(configuration))
+        ends, last = view.bars.reshape(-1, 3), robot.position(robot.endpoint(configuration))
         np.testing.assert_allclose(view.tip, last, atol=1e-9)
-        logged = session.runs[list(stage.bases)[i]].shown()["y"]
-        np.testing.assert_allclose(view.end, robot.place(logged), atol=1e-12)
+        logged = simulation.runs[list(stage.bases)[i]].shown()["y"]
+        np.testing.assert_allclose(view.end, robot.position(logged), atol=1e-12)
         for joint in view.joints:
             assert np.linalg.norm(ends - joint, axis=1).min() < 1e-9
         links, strip = view.counts.links, view.counts.strip
@@ -163,16 +163,18 @@ def test_one_function_gives_points_and_poses(entry: RobotEntry) -> None:
 
 def test_bars_and_path_lie_in_what_the_camera_shows(entry: RobotEntry) -> None:
     lab = lab_with(entry)
-    session = lab.session
-    stage = stage_of(session.robot)
+    simulation = lab.simulation
+    stage = stage_of(simulation.robot)
     for design in presets().values():
-        if curve_faults(session.robot.margin, design.curve):
+        if curve_faults(simulation.robot.margin, design.curve):
             continue
         z = design.curve.at(np.linspace(-np.pi, np.pi, 60))
-        places = session.robot.place(session.robot.frame.lift(z))
+        places = simulation.robot.position(simulation.robot.frame.lift(z))
         low, high = (np.array(corner) for corner in (stage.low, stage.high))
         assert (places >= low - 1e-9)[:, [0, 2]].all() and (places <= high + 1e-9)[:, [0, 2]].all()
-    view = robot_views(session.robot, session.editor.curve, session.instant())[FOLLOWER]
+    view = robot_snapshots(simulation.robot, simulation.editor.curve, simulation.instant())[
+        FOLLOWER
+    ]
     assert view.bars[..., 2].min() >= stage.floor  # a base may stand on it
     assert stage.title[2] > view.bars[..., 2].max()
 
@@ -202,43 +204,43 @@ def test_a_sketch_shows_the_plane_of_the_outputs_wherever_it_is() -> None:
 @pytest.mark.thorough
 def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.3)
-    session = lab.session
-    history = session.history.all()
-    head = csv_bytes(session.robot, history).decode().splitlines()[0]
-    assert all(name in head for name in session.robot.system.coordinate_names)
-    assert picture_file(entry.name, session.parameters, session.history.copy(), "en").startswith(
-        b"\x89PNG"
-    )
+    simulation = lab.simulation
+    history = simulation.history.all()
+    head = csv_bytes(simulation.robot, history).decode().splitlines()[0]
+    assert all(name in head for name in simulation.robot.system.coordinate_names)
+    assert picture_file(
+        entry.name, simulation.parameters, simulation.history.copy(), "en"
+    ).startswith(b"\x89PNG")
 
 
 @pytest.mark.thorough
 def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.1)
-    session = lab.session
+    simulation = lab.simulation
     do(lab, c.SetParameter("K1", 350.0), c.ChoosePath("ellipse"))
     own = next(n for n, spec in specs(entry.parameters).items() if spec.group == "realism")
     do(lab, c.SetParameter(own, specs(entry.parameters)[own].on or 100))
-    session.editor.advance(1.0)
-    setup = capture(session)
-    again = Session(store())
+    simulation.editor.advance(1.0)
+    setup = capture(simulation)
+    again = Simulation(loop_cache())
     restore(again, decode(encode(setup)))
-    assert again.entry is entry and again.parameters == session.parameters
+    assert again.entry is entry and again.parameters == simulation.parameters
     assert again.editor.design.name == "ellipse" and capture(again) == setup
 
 
 def test_a_drag_leads_as_far_as_the_hand_in_the_lab(entry: RobotEntry) -> None:
     lab = lab_with(entry)
-    robot = lab.session.robot
+    robot = lab.simulation.robot
     box = stage_of(robot).reachable
     for corner in (box.lower, box.upper):
-        target = robot.unplace(corner)
+        target = robot.output_at(corner)
         do(lab, c.Grab(FOLLOWER, target))
-        hand = robot.place(lab.session.forces.hands[FOLLOWER])
-        np.testing.assert_allclose(hand, robot.place(target), atol=1e-12)
-        beyond = robot.unplace(corner + 0.3 * np.sign(corner - (box.lower + box.upper) / 2))
+        hand = robot.position(lab.simulation.forces.hands[FOLLOWER])
+        np.testing.assert_allclose(hand, robot.position(target), atol=1e-12)
+        beyond = robot.output_at(corner + 0.3 * np.sign(corner - (box.lower + box.upper) / 2))
         do(lab, c.Grab(FOLLOWER, beyond))
         np.testing.assert_allclose(
-            robot.place(lab.session.forces.hands[FOLLOWER]), hand, atol=1e-12
+            robot.position(lab.simulation.forces.hands[FOLLOWER]), hand, atol=1e-12
         )
 
 

@@ -45,7 +45,7 @@ def own(**path: Any) -> Setup:
 def followable(setup: Setup) -> bool:
     """Whether a new lab takes it."""
     try:
-        restore(new_lab().session, setup)
+        restore(new_lab().simulation, setup)
     except ValueError as error:
         assert "cannot follow this path" in str(error)
         return False
@@ -54,31 +54,31 @@ def followable(setup: Setup) -> bool:
 
 def everything(lab: Lab) -> list[Any]:
     """What restoring touches, and what it must not."""
-    editor = lab.session.editor
+    editor = lab.simulation.editor
     kept = [
-        lab.session.entry,
-        lab.session.parameters,
-        lab.session.robot,
+        lab.simulation.entry,
+        lab.simulation.parameters,
+        lab.simulation.robot,
         editor,
         editor.design,
         editor.curve,
     ]
     kept += [
         editor.version,
-        lab.session.rate,
-        lab.session.copy,
-        lab.session.exaggeration,
-        lab.session.time,
+        lab.simulation.rate,
+        lab.simulation.copy,
+        lab.simulation.exaggeration,
+        lab.simulation.time,
     ]
-    kept += [id(run) for run in lab.session.runs.values()] + [
-        len(lab.session.history),
-        lab.session.running,
+    kept += [id(run) for run in lab.simulation.runs.values()] + [
+        len(lab.simulation.history),
+        lab.simulation.running,
     ]
-    return [*kept, dict(lab.session.earlier), lab.session.forces.held.copy(), lab.message]
+    return [*kept, dict(lab.simulation.earlier), lab.simulation.forces.held.copy(), lab.message]
 
 
 def test_a_new_lab_has_nothing_to_tell() -> None:
-    assert capture(new_lab().session) == Setup()
+    assert capture(new_lab().simulation) == Setup()
     assert to_data(Setup()) == {"defaults": DEFAULTS}
 
 
@@ -88,22 +88,24 @@ def test_a_new_lab_has_nothing_to_tell() -> None:
 def test_what_is_restored_is_captured_again(setup: Setup) -> None:
     lab = new_lab(0.1)
     if followable(setup):
-        restore(lab.session, setup)
+        restore(lab.simulation, setup)
         run(lab, 0.1)
-        assert lab.session.time > 0
+        assert lab.simulation.time > 0
         asked = setup.robots.get(setup.robot, RobotSetup()).parameters
-        if asked.get("across") == LEVEL_SET and not has_level_set(lab.session.editor.curve):
-            assert lab.session.parameters.across == "distance"
+        if asked.get("across") == LEVEL_SET and not has_level_set(lab.simulation.editor.curve):
+            assert lab.simulation.parameters.across == "distance"
         else:
-            assert capture(lab.session) == setup
+            assert capture(lab.simulation) == setup
 
 
 def test_what_a_parameter_takes_for_nothing_is_kept_as_nothing() -> None:
     for gain in (NOTHING, NOTHING / 2, 2 * NOTHING):
         lab = new_lab()
-        restore(lab.session, Setup(robots={"five_bar": RobotSetup({"K1": gain})}))
-        value = lab.session.parameters.K1
-        assert value == kept(specs(lab.session.parameters)["K1"], gain) == (gain > NOTHING) * gain
+        restore(lab.simulation, Setup(robots={"five_bar": RobotSetup({"K1": gain})}))
+        value = lab.simulation.parameters.K1
+        assert (
+            value == kept(specs(lab.simulation.parameters)["K1"], gain) == (gain > NOTHING) * gain
+        )
 
 
 @CALM
@@ -116,14 +118,14 @@ def test_data_round_trip(setup: Setup) -> None:
 @given(designs)
 def test_a_path_comes_back_where_it_was(design: PathDesign) -> None:
     lab = new_lab()
-    if lab.session.editor.commit(design):
+    if lab.simulation.editor.commit(design):
         other = new_lab()
-        restore(other.session, capture(lab.session))
-        back, theta = other.session.editor.design, design.curve.sample()
+        restore(other.simulation, capture(lab.simulation))
+        back, theta = other.simulation.editor.design, design.curve.sample()
         assert back.curve.closed == design.curve.closed
         assert np.abs(back.curve.at(theta) - design.curve.at(theta)).max() < 2e-5
         assert np.abs(back.points - design.points).max() < 2e-5
-        np.testing.assert_array_equal(other.session.editor.curve.series, back.curve.series)
+        np.testing.assert_array_equal(other.simulation.editor.curve.series, back.curve.series)
 
 
 @pytest.mark.parametrize("closed", [True, False])
@@ -133,39 +135,39 @@ def test_a_stroke_keeps_its_number_of_control_points(closed: bool) -> None:
 
 def test_robots_start_on_the_new_path_and_undo_brings_the_old() -> None:
     lab = new_lab(0.5)
-    restore(lab.session, own(name="ellipse"))
-    assert (lab.session.time == 0 and lab.session.editor.curve is PRESETS["ellipse"].curve) or (
-        lab.session.editor.curve is lab.session.presets["ellipse"].curve
-    )
+    restore(lab.simulation, own(name="ellipse"))
+    assert (
+        lab.simulation.time == 0 and lab.simulation.editor.curve is PRESETS["ellipse"].curve
+    ) or (lab.simulation.editor.curve is lab.simulation.presets["ellipse"].curve)
     run(lab, 1.0)
-    assert lab.session.runs[FOLLOWER].max_distance < 1e-4
+    assert lab.simulation.runs[FOLLOWER].max_distance < 1e-4
     do(lab, Undo())
-    assert lab.session.editor.design.name == "circle"
+    assert lab.simulation.editor.design.name == "circle"
 
 
 def test_every_side_is_kept_and_those_not_named_are_as_new() -> None:
     lab = new_lab()
     do(lab, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
     do(lab, ChoosePath("segment"))
-    kept = capture(lab.session)
+    kept = capture(lab.simulation)
     assert kept.robot == FLEXIBLE and set(kept.robots) == {RIGID, FLEXIBLE}
-    restore(lab.session, Setup())
-    assert capture(lab.session) == Setup()
-    restore(lab.session, kept)
-    assert lab.session.entry.name == FLEXIBLE and lab.session.parameters.K3 == 0.0
+    restore(lab.simulation, Setup())
+    assert capture(lab.simulation) == Setup()
+    restore(lab.simulation, kept)
+    assert lab.simulation.entry.name == FLEXIBLE and lab.simulation.parameters.K3 == 0.0
     do(lab, ChooseRobot(RIGID))
-    assert lab.session.parameters.K3 == 100.0
-    assert capture(lab.session).robots == kept.robots
+    assert lab.simulation.parameters.K3 == 100.0
+    assert capture(lab.simulation).robots == kept.robots
 
 
 def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
     lab = new_lab()
     do(lab, SetParameter("target", math.pi), SetParameter("K1", 0.1 + 0.2))
     do(lab, SetParameter("payload", 1e-300))
-    kept = capture(lab.session)
+    kept = capture(lab.simulation)
     assert kept.robots[RIGID].parameters == {"K1": 0.3, "target": 3.14159}
-    restore(lab.session, kept)
-    assert capture(lab.session) == kept
+    restore(lab.simulation, kept)
+    assert capture(lab.simulation) == kept
 
 
 BAD: dict[str, tuple[Setup, str]] = {
@@ -215,7 +217,7 @@ def test_a_bad_setup_is_refused_in_words_and_changes_nothing(case: str) -> None:
     do(lab, ChooseRobot(FLEXIBLE), ChooseRobot(RIGID), SelectPoint(2), AddPoint())
     before = everything(lab)
     with pytest.raises(ValueError, match=words):
-        restore(lab.session, setup)
+        restore(lab.simulation, setup)
     assert everything(lab) == before
 
 
@@ -228,16 +230,16 @@ def test_strange_data_is_refused(data: Any) -> None:
 def test_presets_that_are_offered_can_be_restored() -> None:
     lab = new_lab()
     for name in FOLLOWABLE:
-        assert not curve_faults(lab.session.robot.margin, PRESETS[name].curve)
+        assert not curve_faults(lab.simulation.robot.margin, PRESETS[name].curve)
         assert capture_path(PRESETS[name], PRESETS) == Path(name)
-        restore(lab.session, own(name=name))
-        assert lab.session.editor.design is lab.session.presets[name]
+        restore(lab.simulation, own(name=name))
+        assert lab.simulation.editor.design is lab.simulation.presets[name]
 
 
 def test_no_point_is_selected_after_a_set_up() -> None:
     """Else the ball that was taken in one step of a lesson would still be marked in the next."""
     lab = new_lab()
     do(lab, SelectPoint(2))
-    assert lab.session.editor.selected == 2
-    restore(lab.session, capture(lab.session))
-    assert lab.session.editor.selected is None
+    assert lab.simulation.editor.selected == 2
+    restore(lab.simulation, capture(lab.simulation))
+    assert lab.simulation.editor.selected is None

@@ -33,8 +33,8 @@ def drawn_lab() -> Setup:
     points = wave(0.7, 1.0, closed=True).curve.at(wave(0.0, 0.0, True).curve.sample(80))
     do(lab, DrawPath(points))
     do(lab, SetParameter("K3", 150.0))
-    assert lab.session.editor.design.name == "drawn"
-    return capture(lab.session)
+    assert lab.simulation.editor.design.name == "drawn"
+    return capture(lab.simulation)
 
 
 def forged(plain: Any) -> str:
@@ -60,7 +60,7 @@ def test_round_trip(setup: Setup) -> None:
 
 def test_codes_are_short() -> None:
     assert len(encode(Setup())) < 40
-    assert len(encode(capture(new_lab().session))) < 60
+    assert len(encode(capture(new_lab().simulation))) < 60
     assert len(encode(drawn_lab())) < 300
 
 
@@ -261,7 +261,7 @@ def test_session_codes_are_forgiving_and_unambiguous() -> None:
     "text", ["", "abc", "k7mf-2xqa-9tz0", "k7mf-2xqa-9tzrr", "é" * 12, "x" * 10**7]
 )
 def test_an_invalid_session_code_is_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="session code"):
+    with pytest.raises(ValueError, match="lab code"):
         normalised(text)
 
 
@@ -271,4 +271,4 @@ def test_who_sets_up_a_lab_is_told_so_and_a_lab_s_code_is_called_one() -> None:
     assert "code of a lab" in lab.message
     code = encode(drawn_lab())
     do(lab, UseShared(code))
-    assert encode(capture(lab.session)) == code and "set up from the code" in lab.message
+    assert encode(capture(lab.simulation)) == code and "set up from the code" in lab.message

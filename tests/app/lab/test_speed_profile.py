@@ -32,7 +32,7 @@ def lab_with(shape: str, seconds: float = 0.0, **parameters: Any) -> Lab:
 
 
 def wanted(lab: Lab, count: int) -> np.ndarray:
-    profile = profile_of(lab.session.parameters)
+    profile = profile_of(lab.simulation.parameters)
     assert profile is not None
     return np.array([profile.leg(tick, 1e-3).at(tick) for tick in range(count)])
 
@@ -40,7 +40,7 @@ def wanted(lab: Lab, count: int) -> np.ndarray:
 @pytest.mark.parametrize("shape", SHAPES)
 def test_both_robots_follow_the_profile_and_stay_on_the_path(shape: str) -> None:
     lab = lab_with(shape, 4.0)
-    for log in replayed(lab.session).values():
+    for log in replayed(lab.simulation).values():
         expected = wanted(lab, len(log.t))
         assert log.fields["speed_ref"][:, 0] == pytest.approx(expected, abs=1e-9)
         late = log.t > 1.5
@@ -53,27 +53,27 @@ def test_the_lab_and_the_command_line_compute_the_same() -> None:
     values = {"speed_profile": "stop_and_go", "profile_period": 1.3, "duration": 2.0}
     known = experiments()["obstruction"].with_values({**values, "hold_from": 0, "hold_to": 0})
     for side, law in ((FOLLOWER, "path_following"), (TRACKER, "trajectory_tracking")):
-        here, there = replayed(lab.session)[side], run_experiment(known, law)
+        here, there = replayed(lab.simulation)[side], run_experiment(known, law)
         count = len(here.t)
         assert here.fields["q"] == pytest.approx(there.fields["q"][:count], abs=1e-9)
 
 
 def test_a_profile_is_the_same_however_its_time_is_cut_into_frames() -> None:
     coarse, fine = lab_with("sine"), lab_with("sine")
-    coarse.session.simulate(1000)
+    coarse.simulation.simulate(1000)
     for _ in range(500):
-        fine.session.simulate(2)
-    for side, state in states(coarse.session).items():
-        assert np.array_equal(state, states(fine.session)[side])
+        fine.simulation.simulate(2)
+    for side, state in states(coarse.simulation).items():
+        assert np.array_equal(state, states(fine.simulation)[side])
 
 
 def test_the_history_replays_to_the_present_and_beyond_a_branch() -> None:
     lab = lab_with("sine", 3.0)
-    before = replayed(lab.session)
+    before = replayed(lab.simulation)
     do(lab, c.LookAt(1.0), c.GoOn())
-    at = round(lab.session.time / 1e-3)
+    at = round(lab.simulation.time / 1e-3)
     run(lab, 0.5)
-    for side, log in replayed(lab.session).items():
+    for side, log in replayed(lab.simulation).items():
         count = min(len(log.t), at + 400)
         expected = before[side].fields["theta"][:count]
         assert log.fields["theta"][:count] == pytest.approx(expected, abs=1e-9)
@@ -82,43 +82,43 @@ def test_the_history_replays_to_the_present_and_beyond_a_branch() -> None:
 def test_the_slider_scales_the_profile_at_once_while_it_runs() -> None:
     lab = lab_with("sine", 2.0, speed=4.0)
     do(lab, c.SetParameter("speed", 8.0))
-    lab.session.simulate(1)
-    reference = lab.session.runs[FOLLOWER].shown()["speed_ref"][0]
-    assert reference == pytest.approx(wanted(lab, round(lab.session.time / 1e-3))[-1], rel=1e-9)
+    lab.simulation.simulate(1)
+    reference = lab.simulation.runs[FOLLOWER].shown()["speed_ref"][0]
+    assert reference == pytest.approx(wanted(lab, round(lab.simulation.time / 1e-3))[-1], rel=1e-9)
 
 
 def test_without_a_profile_the_speed_is_that_of_the_slider_again() -> None:
     lab = lab_with("stop_and_go", 1.2)
     do(lab, c.SetParameter("speed_profile", "constant"))
     run(lab, 1.0)
-    shown = lab.session.runs[FOLLOWER].shown()
-    assert shown["speed_ref"][0] == lab.session.parameters.speed
-    assert shown["theta_rate"][0] == pytest.approx(lab.session.parameters.speed, abs=1e-2)
+    shown = lab.simulation.runs[FOLLOWER].shown()
+    assert shown["speed_ref"][0] == lab.simulation.parameters.speed
+    assert shown["theta_rate"][0] == pytest.approx(lab.simulation.parameters.speed, abs=1e-2)
 
 
 def test_a_profile_needs_no_other_loop() -> None:
     lab = lab_with("constant", 0.1)
-    kinds = {side: run.kind for side, run in lab.session.runs.items()}
-    loops = {side: run.loop() for side, run in lab.session.runs.items()}
+    kinds = {side: run.kind for side, run in lab.simulation.runs.items()}
+    loops = {side: run.loop() for side, run in lab.simulation.runs.items()}
     for shape in SHAPES:
         do(lab, c.SetParameter("speed_profile", shape))
         run(lab, 4 * FRAME)
-        for side, own in lab.session.runs.items():
+        for side, own in lab.simulation.runs.items():
             assert own.kind == kinds[side] and own.loop() is loops[side]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_set_ups_and_share_codes_carry_it(shape: str) -> None:
     lab = lab_with(shape, 0.2)
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     assert decode(encode(setup)) == setup == from_data(to_data(setup))
     other = new_lab()
-    restore(other.session, decode(encode(setup)))
-    assert other.session.parameters == lab.session.parameters
+    restore(other.simulation, decode(encode(setup)))
+    assert other.simulation.parameters == lab.simulation.parameters
     run(other, 0.5)
     assert wanted(lab, 600).std() > 0
-    reference = other.session.runs[FOLLOWER].shown()["speed_ref"][0]
-    assert reference == pytest.approx(wanted(lab, 1000)[round(other.session.time / 1e-3) - 1])
+    reference = other.simulation.runs[FOLLOWER].shown()["speed_ref"][0]
+    assert reference == pytest.approx(wanted(lab, 1000)[round(other.simulation.time / 1e-3) - 1])
 
 
 def test_a_lesson_may_set_it_and_nothing_else_by_that_name() -> None:
@@ -144,9 +144,9 @@ def test_a_lesson_may_set_it_and_nothing_else_by_that_name() -> None:
 )
 def test_an_invalid_profile_is_refused_and_changes_nothing(name: str, value: Any) -> None:
     lab = lab_with("sine", 0.1)
-    before = lab.session.parameters
+    before = lab.simulation.parameters
     do(lab, c.SetParameter(name, value))
-    assert lab.session.parameters is before
+    assert lab.simulation.parameters is before
     assert lab.message_level == "warning" and name in lab.message
     with pytest.raises(ValueError):
         from_data({"defaults": 2, "benches": {"five_bar": {"parameters": {name: value}}}})
@@ -158,4 +158,4 @@ def test_whoever_chooses_to_ramp_up_in_a_run_is_told_when_it_will() -> None:
     assert "start of a run" in lab.message
     do(lab, c.Reset())
     run(lab, 1.0)
-    assert lab.session.runs[FOLLOWER].shown()["speed_ref"][0] == pytest.approx(np.pi, rel=0.01)
+    assert lab.simulation.runs[FOLLOWER].shown()["speed_ref"][0] == pytest.approx(np.pi, rel=0.01)

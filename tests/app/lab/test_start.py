@@ -44,7 +44,7 @@ def at(start: Start, robot: str = "five_bar") -> Any:
     do(lab, c.ChooseRobot(robot))
     values = {name: getattr(start, name) for name in BOUNDS}
     do(lab, *[c.SetStart(name, value) for name, value in values.items()], c.Reset())
-    assert lab.message == "" and lab.session.start == start
+    assert lab.message == "" and lab.simulation.start == start
     return lab
 
 
@@ -52,20 +52,20 @@ def at(start: Start, robot: str = "five_bar") -> Any:
 @given(robot=st.sampled_from(list(ROBOTS)))
 def test_it_starts_where_and_as_it_is_told(robot: str) -> None:
     lab = at(OFF, robot)
-    session = lab.session
-    curve, frame = session.editor.curve, session.robot.frame
+    simulation = lab.simulation
+    curve, frame = simulation.editor.curve, simulation.robot.frame
     first = curve.at(np.array(0.7), 1)[:2]
     along = first / np.linalg.norm(first)
     left = np.array([-along[1], along[0]])
-    for name, state in session.runs.items():
-        z = frame.planar(y(session, name)) - curve.at(np.array(0.7))[:2]
+    for name, state in simulation.runs.items():
+        z = frame.planar(y(simulation, name)) - curve.at(np.array(0.7))[:2]
         assert (z @ along, z @ left) == pytest.approx((0.0, -0.012), abs=1e-6)
         assert state.fields()["theta_ref"][0] == pytest.approx(0.7 + 0.4, abs=1e-3)
-    before = {name: frame.planar(y(session, name)) for name in SIDES}
-    session.simulate(1)
-    if session.robot.system.n == session.robot.system.m:  # a beam bends at once
+    before = {name: frame.planar(y(simulation, name)) for name in SIDES}
+    simulation.simulate(1)
+    if simulation.robot.system.n == simulation.robot.system.m:  # a beam bends at once
         for name, z in before.items():
-            step = (frame.planar(y(session, name)) - z) / 1e-3
+            step = (frame.planar(y(simulation, name)) - z) / 1e-3
             assert (step @ along, step @ left) == pytest.approx((0.2, -0.1), abs=0.02)
     assert_sound(lab)
 
@@ -76,7 +76,7 @@ def test_it_is_the_start_of_an_experiment() -> None:
     z = OFF.place(circle)
     lab = at(OFF)
     run(lab, 0.5)
-    mine = replayed(lab.session)
+    mine = replayed(lab.simulation)
     values = {
         "start_z1": z[0],
         "start_z2": z[1],
@@ -88,7 +88,7 @@ def test_it_is_the_start_of_an_experiment() -> None:
         "duration": 0.4,
     }
     experiment = experiments()["obstruction"].with_values(values)
-    for name, law in lab.session.laws.items():
+    for name, law in lab.simulation.laws.items():
         there = run_experiment(experiment, law)
         here = mine[name].fields["y"][: len(there.t)]
         assert np.abs(here - there.fields["y"]).max() < 1e-6, law
@@ -99,31 +99,31 @@ def test_on_the_path_with_velocity_along_it_the_follower_stays_on_it() -> None:
     for along in (-0.5, 0.2, 0.5):
         lab = at(Start(theta=1.0, along=along, clock_offset=1.0))
         run(lab, 1.0)
-        assert lab.session.runs[FOLLOWER].max_distance < 2e-6
-        assert lab.session.runs[TRACKER].max_distance > 5e-3
+        assert lab.simulation.runs[FOLLOWER].max_distance < 2e-6
+        assert lab.simulation.runs[TRACKER].max_distance > 5e-3
 
 
 def test_a_new_lab_starts_as_ever() -> None:
     lab = new_lab()
-    before = states(lab.session)
+    before = states(lab.simulation)
     do(lab, c.SetStart("beside", 0.02), c.Reset(), c.StartOnPath(), c.Reset())
-    for name, state in states(lab.session).items():
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[name])
 
 
 def test_it_takes_effect_at_reset_and_stays() -> None:
     lab = new_lab(0.3)
-    before = states(lab.session)
+    before = states(lab.simulation)
     do(lab, c.SetStart("beside", 0.02))
-    for name, state in states(lab.session).items():
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[name])
     for _ in range(2):
         do(lab, c.Reset())
-        assert lab.session.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
+        assert lab.simulation.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
     do(lab, c.ChooseRobot("two_link_arm"))
-    assert lab.session.start == ON_PATH
+    assert lab.simulation.start == ON_PATH
     do(lab, c.ChooseRobot("five_bar"))
-    assert lab.session.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
+    assert lab.simulation.runs[FOLLOWER].distance == pytest.approx(0.02, abs=1e-9)
 
 
 @settings(max_examples=60, deadline=None)
@@ -157,43 +157,45 @@ def test_a_drag_takes_it_to_the_mouse(name: str, z1: float, z2: float) -> None:
 )
 def test_what_is_not_possible_is_refused_and_changes_nothing(command: c.Command) -> None:
     lab = new_lab(0.2)
-    before, start = states(lab.session), lab.session.start
+    before, start = states(lab.simulation), lab.simulation.start
     do(lab, command)
     assert lab.message and lab.message_level == "warning"
-    assert lab.session.start is start
-    for name, state in states(lab.session).items():
+    assert lab.simulation.start is start
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[name])
 
 
 def test_a_start_that_another_path_puts_out_of_reach_is_refused_at_reset() -> None:
     lab = new_lab()
     do(lab, c.SetStart("beside", -0.09), c.Reset())  # 90 mm outside the circle, still in reach
-    assert lab.message == "" and lab.session.runs[FOLLOWER].distance == pytest.approx(0.09)
+    assert lab.message == "" and lab.simulation.runs[FOLLOWER].distance == pytest.approx(0.09)
     do(lab, c.ChoosePath("clover"))
     run(lab, 0.5)
-    before = states(lab.session)
+    before = states(lab.simulation)
     do(lab, c.Reset())
-    assert "cannot start there" in lab.message and lab.session.time == pytest.approx(0.5, abs=0.02)
-    for name, state in states(lab.session).items():
+    assert "cannot start there" in lab.message and lab.simulation.time == pytest.approx(
+        0.5, abs=0.02
+    )
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[name])
-    setup = capture(lab.session)  # can be restored: without that start
+    setup = capture(lab.simulation)  # can be restored: without that start
     assert setup.robots["five_bar"].start == {}
-    restore(new_lab().session, setup)
+    restore(new_lab().simulation, setup)
     do(lab, c.ChooseRobot("two_link_arm"), c.ChooseRobot("five_bar"))
-    assert lab.session.runs[FOLLOWER].distance < 1e-9
+    assert lab.simulation.runs[FOLLOWER].distance < 1e-9
 
 
 def test_set_ups_and_share_codes_carry_it_and_old_ones_start_as_ever() -> None:
     lab = at(OFF)
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     other = new_lab()
-    restore(other.session, decode(encode(setup)))
-    assert other.session.start == OFF and capture(other.session) == setup
+    restore(other.simulation, decode(encode(setup)))
+    assert other.simulation.start == OFF and capture(other.simulation) == setup
     for name in SIDES:
-        assert y(other.session, name) == pytest.approx(y(at(OFF).session, name), abs=1e-9)
-    restore(other.session, from_data({"benches": {"five_bar": {"parameters": {"K1": 300.0}}}}))
-    assert other.session.start == ON_PATH
-    assert other.session.runs[FOLLOWER].distance < 1e-12
+        assert y(other.simulation, name) == pytest.approx(y(at(OFF).simulation, name), abs=1e-9)
+    restore(other.simulation, from_data({"benches": {"five_bar": {"parameters": {"K1": 300.0}}}}))
+    assert other.simulation.start == ON_PATH
+    assert other.simulation.runs[FOLLOWER].distance < 1e-12
 
 
 @pytest.mark.parametrize(
@@ -201,11 +203,11 @@ def test_set_ups_and_share_codes_carry_it_and_old_ones_start_as_ever() -> None:
 )
 def test_a_set_up_with_an_impossible_start_is_refused_as_a_whole(start: dict[str, Any]) -> None:
     lab = new_lab(0.2)
-    before = capture(lab.session), states(lab.session)
+    before = capture(lab.simulation), states(lab.simulation)
     with pytest.raises(ValueError):
-        restore(lab.session, Setup(robots={"five_bar": RobotSetup({"K1": 100.0}, start=start)}))
-    assert capture(lab.session) == before[0]
-    for name, state in states(lab.session).items():
+        restore(lab.simulation, Setup(robots={"five_bar": RobotSetup({"K1": 100.0}, start=start)}))
+    assert capture(lab.simulation) == before[0]
+    for name, state in states(lab.simulation).items():
         np.testing.assert_array_equal(state, before[1][name])
 
 
@@ -214,8 +216,8 @@ def test_it_is_drawn_where_it_is_and_follows_the_path() -> None:
     for path in ("circle", "clover"):
         do(lab, c.ChoosePath(path))
         run(lab, 0.5)
-        session = lab.session
-        z = OFF.place(session.editor.curve)
+        simulation = lab.simulation
+        z = OFF.place(simulation.editor.curve)
         drawn = take_snapshot(lab, 1.0).start
-        assert drawn[0] == pytest.approx(session.robot.place(session.robot.frame.lift(z)))
+        assert drawn[0] == pytest.approx(simulation.robot.position(simulation.robot.frame.lift(z)))
         assert np.linalg.norm(drawn[1] - drawn[0]) == pytest.approx(math.hypot(0.2, 0.1))

@@ -1,4 +1,4 @@
-"""Snapshots of a session show the past with the path of that time."""
+"""Snapshots of a simulation show the past with the path of that time."""
 
 from __future__ import annotations
 
@@ -45,19 +45,19 @@ def test_looking_back_shows_the_path_of_that_time() -> None:
 def test_an_instant_is_the_same_object_until_something_changes() -> None:
     lab = new_lab()
     run(lab, 0.5)
-    before = lab.session.instant()
-    assert lab.session.instant() is before
+    before = lab.simulation.instant()
+    assert lab.simulation.instant() is before
     do(lab, c.SetParameter("K1", 500.0))
-    assert lab.session.instant() is not before
-    changed = lab.session.instant()
+    assert lab.simulation.instant() is not before
+    changed = lab.simulation.instant()
     run(lab, 0.1)
-    assert lab.session.instant() is not changed
+    assert lab.simulation.instant() is not changed
     do(lab, c.LookAt(0.3), c.GoOn())
-    again = lab.session.instant()
+    again = lab.simulation.instant()
     assert again.time < changed.time + 0.1
-    np.testing.assert_allclose(again.sample, lab.session.sample())
+    np.testing.assert_allclose(again.sample, lab.simulation.sample())
     do(lab, c.Reset())
-    np.testing.assert_allclose(lab.session.instant().sample, lab.session.sample())
+    np.testing.assert_allclose(lab.simulation.instant().sample, lab.simulation.sample())
 
 
 @pytest.mark.thorough
@@ -67,14 +67,14 @@ def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str)
     lab = new_lab()
     do(lab, c.ChooseRobot(robot), c.ChoosePath(path))
     run(lab, 2.0)
-    own, curve = lab.session.robot, lab.session.editor.curve
-    tip = own.place(lab.session.runs[FOLLOWER].shown()["y"])
-    do(lab, c.Grab(FOLLOWER, own.unplace(tip + [0.02, 0.0, 0.01])))
+    own, curve = lab.simulation.robot, lab.simulation.editor.curve
+    tip = own.position(lab.simulation.runs[FOLLOWER].shown()["y"])
+    do(lab, c.Grab(FOLLOWER, own.output_at(tip + [0.02, 0.0, 0.01])))
     run(lab, 0.1)
     for name, view in take_snapshot(lab, 1.0).robots.items():
-        row = {field: value.copy() for field, value in lab.session.runs[name].shown().items()}
+        row = {field: value.copy() for field, value in lab.simulation.runs[name].shown().items()}
         aim = row["theta" if name == FOLLOWER else "theta_ref"]
-        place, origin = own.place, own.place(np.zeros(own.system.p))
+        place, origin = own.position, own.position(np.zeros(own.system.p))
         for drawn, meant in {
             "end": place(row["y"]),
             "marker": place(own.frame.lift(curve.at(aim)[0])),
@@ -82,7 +82,7 @@ def test_points_are_drawn_where_robot_and_curve_have_them(robot: str, path: str)
         }.items():
             np.testing.assert_allclose(getattr(view, drawn), meant, rtol=1e-6, atol=1e-12)
         assert np.linalg.norm(view.force) > 0.01
-        bars, joints = drawn_skeleton(own.skeleton, lab.session.runs[name].fields()["q"], 1.0)
+        bars, joints = drawn_skeleton(own.skeleton, lab.simulation.runs[name].fields()["q"], 1.0)
         np.testing.assert_allclose(view.bars, bars, atol=1e-12)
         np.testing.assert_allclose(view.joints, joints, atol=1e-12)
         np.testing.assert_array_equal(view.tip, view.bars[-1, 1])  # and not where it was a tick ago

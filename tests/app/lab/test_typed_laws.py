@@ -41,7 +41,7 @@ from onpath.models.systems.catalogue import FLEXIBLE
 from tests.support.lab import FRAME, assert_sound, do, run, states
 from tests.support.some_setups import CALM
 
-STORE = LoopCache(at_once=True)
+LOOP_CACHE = LoopCache(at_once=True)
 SLOW = "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed/2)"
 CHASING = "across = -K1*min(xi, 1) - K2*dxi; along = -9*(theta - theta_r) - 6*(dtheta - speed)"
 TORQUES = "u1 = -0.02*v1; u2 = 0.01*sin(t)"
@@ -49,7 +49,7 @@ TORQUES = "u1 = -0.02*v1; u2 = 0.01*sin(t)"
 
 def typed(left: str = "", right: str = "", seconds: float = 0.3) -> Lab:
     """A lab under typed laws that has run for some time."""
-    lab = Lab(STORE)
+    lab = Lab(LOOP_CACHE)
     run(lab, 0.3)
     do(lab, *[c.TypeLaw(side, law) for side, law in ((LEFT, left), (RIGHT, right)) if law])
     run(lab, seconds)
@@ -58,15 +58,15 @@ def typed(left: str = "", right: str = "", seconds: float = 0.3) -> Lab:
 
 
 def test_typed_path_following_moves_the_robot_as_path_following_does() -> None:
-    lab, other = typed(left=PATH_FOLLOWING.replace("; ", "\n")), Lab(STORE)
+    lab, other = typed(left=PATH_FOLLOWING.replace("; ", "\n")), Lab(LOOP_CACHE)
     run(other, 0.3)
     do(other, c.ChooseLaw(LEFT, "path_following"))
     run(other, 0.3)
-    assert lab.session.laws == {**DEFAULT_LAWS, LEFT: PATH_FOLLOWING}
+    assert lab.simulation.laws == {**DEFAULT_LAWS, LEFT: PATH_FOLLOWING}
     for each in (lab, other):
         do(each, c.Hold(on=True), c.SetParameter("K1", 700.0))
         run(each, 0.5)
-    mine, known = (each.session.runs[LEFT].fields() for each in (lab, other))
+    mine, known = (each.simulation.runs[LEFT].fields() for each in (lab, other))
     for name, value in known.items():
         assert np.array_equal(mine[name], value), name
     assert_sound(lab)
@@ -93,21 +93,21 @@ def test_typed_path_following_moves_the_robot_as_path_following_does() -> None:
 )
 def test_a_wrong_text_is_told_and_changes_nothing(text: str, said: str) -> None:
     lab = typed(left=SLOW, seconds=0.1)
-    before, time = capture(lab.session), lab.session.time
+    before, time = capture(lab.simulation), lab.simulation.time
     do(lab, c.TypeLaw(LEFT, text))
     assert said in lab.law_refusals[LEFT] and said in lab.message
     assert len(lab.message) < 300 and lab.message_level == "warning"
     assert take_snapshot(lab, 1.0).run.law_refusals == lab.law_refusals
-    assert capture(lab.session) == before and lab.session.chosen_laws[LEFT] == SLOW
+    assert capture(lab.simulation) == before and lab.simulation.chosen_laws[LEFT] == SLOW
     run(lab, 0.1)
-    assert lab.session.time > time
+    assert lab.simulation.time > time
     do(lab, c.TypeLaw(LEFT, PATH_FOLLOWING))
     assert lab.law_refusals == {} and lab.message == ""
-    assert lab.session.laws[LEFT] == PATH_FOLLOWING
+    assert lab.simulation.laws[LEFT] == PATH_FOLLOWING
 
 
 def test_an_unknown_side_is_refused() -> None:
-    lab = Lab(STORE)
+    lab = Lab(LOOP_CACHE)
     do(lab, c.TypeLaw("middle", PATH_FOLLOWING))
     assert "unknown side" in lab.message and lab.law_refusals == {}
 
@@ -115,12 +115,12 @@ def test_an_unknown_side_is_refused() -> None:
 def test_a_law_that_gives_no_number_stops_the_robot_and_says_so() -> None:
     lab = typed(left="across = -K1*xi - K2*dxi; along = sqrt(0.1 - t)")
     assert "typed law" in lab.message and "Own law" in lab.message
-    assert lab.session.runs[LEFT].diverged is not None
-    assert lab.session.runs[RIGHT].diverged is None
+    assert lab.simulation.runs[LEFT].diverged is not None
+    assert lab.simulation.runs[RIGHT].diverged is None
     assert_sound(lab)
     do(lab, c.ChooseLaw(LEFT, "path_following"), c.Reset())
     run(lab, 0.2)
-    assert lab.session.runs[LEFT].diverged is None
+    assert lab.simulation.runs[LEFT].diverged is None
 
 
 def test_titles_labels_and_texts() -> None:
@@ -136,17 +136,19 @@ def test_titles_labels_and_texts() -> None:
 
 def test_an_event_tells_that_a_law_was_typed_and_not_its_text() -> None:
     lab = typed(left=SLOW)
-    event = lab.session.events.last
+    event = lab.simulation.events.last
     assert event is not None
     assert (event.name, event.detail, event.sides) == ("law", "own", (LEFT,))
 
 
 def test_the_marker_is_what_the_law_aims_at() -> None:
     lab = typed(left=SLOW, right=CHASING)
-    session, shown = lab.session, take_snapshot(lab, 1.0)
+    simulation, shown = lab.simulation, take_snapshot(lab, 1.0)
     for side, aim in ((LEFT, "theta"), (RIGHT, "theta_ref")):
-        at = session.runs[side].shown()[aim]
-        place = session.robot.place(session.robot.frame.lift(session.editor.curve.at(at)))
+        at = simulation.runs[side].shown()[aim]
+        place = simulation.robot.position(
+            simulation.robot.frame.lift(simulation.editor.curve.at(at))
+        )
         assert shown.robots[side].points[MARKER] == pytest.approx(place[0], abs=1e-6)
 
 
@@ -155,16 +157,16 @@ def test_the_marker_is_what_the_law_aims_at() -> None:
 
 def test_a_set_up_carries_it_by_code_and_by_the_kept_lab() -> None:
     lab = typed(left=SLOW, right=TORQUES)
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     assert setup.laws == {LEFT: SLOW, RIGHT: TORQUES}
     assert decode(encode(setup)) == setup == from_data(to_data(setup))
-    other, kept = Lab(STORE), list[Any]()
+    other, kept = Lab(LOOP_CACHE), list[Any]()
     do(other, c.UseShared(encode(setup)))
     keep(lab, kept.append)
-    back = Lab(STORE)
+    back = Lab(LOOP_CACHE)
     put_back(back, msgspec.json.decode(msgspec.json.encode(kept[0]())))
     for each in (other, back):
-        assert each.session.laws == setup.laws and capture(each.session) == setup
+        assert each.simulation.laws == setup.laws and capture(each.simulation) == setup
         run(each, 0.2)
         assert_sound(each)
 
@@ -183,13 +185,13 @@ def test_the_code_of_the_longest_laws_can_be_pasted() -> None:
 )
 def test_hostile_data_is_refused_and_changes_nothing(law: Any) -> None:
     lab = typed(left=SLOW, seconds=0.0)
-    before = capture(lab.session)
+    before = capture(lab.simulation)
     with pytest.raises(ValueError, match=r"."):
         from_data({"defaults": 2, "laws": {LEFT: law}})
     if law != "own":  # a name like that of a law that is not here any more
         with pytest.raises(ValueError, match=r"."):
             put_back(lab, {"setup": {"defaults": 2, "laws": {LEFT: law}}, "lessons": {}})
-    assert capture(lab.session) == before
+    assert capture(lab.simulation) == before
 
 
 def test_a_set_up_of_several_lines_is_put_on_one() -> None:
@@ -198,36 +200,36 @@ def test_a_set_up_of_several_lines_is_put_on_one() -> None:
 
 
 def test_history_replay_and_files() -> None:
-    lab = Lab(STORE)
+    lab = Lab(LOOP_CACHE)
     seen: list[tuple[float, np.ndarray]] = []
     for law in (CHASING, "set_point", SLOW):
-        lab.session.change_law(LEFT, law)
+        lab.simulation.change_law(LEFT, law)
         for _ in range(15):
             run(lab, FRAME)
-            seen.append((lab.session.time, lab.session.runs[LEFT].shown()["u"].copy()))
-    history = lab.session.history.all()
-    parts = replay(lab.session.robot, history)[LEFT]
+            seen.append((lab.simulation.time, lab.simulation.runs[LEFT].shown()["u"].copy()))
+    history = lab.simulation.history.all()
+    parts = replay(lab.simulation.robot, history)[LEFT]
     assert [part.law for part in parts] == [CHASING, "set_point", SLOW]
     u = np.concatenate([part.fields["u"] for part in parts])
     for time, torque in seen:
         assert np.array_equal(u[round(time * 1e3) - 1], torque)
-    rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.session.robot, history).decode())))
+    rows = list(csv.DictReader(io.StringIO(csv_bytes(lab.simulation.robot, history).decode())))
     names = dict.fromkeys(row["law"] for row in rows if row["side"] == LEFT)
     assert list(names) == [CHASING, "set_point", SLOW]
-    assert draw_history(replay(lab.session.robot, history)).startswith(b"\x89PNG")
-    assert record_scene(lab.session.robot, history).rstrip().endswith(b"</html>")
+    assert draw_history(replay(lab.simulation.robot, history)).startswith(b"\x89PNG")
+    assert record_scene(lab.simulation.robot, history).rstrip().endswith(b"</html>")
 
 
 def test_going_on_from_before_a_typed_law_and_back() -> None:
     lab = typed(left=SLOW)
-    end = states(lab.session)
+    end = states(lab.simulation)
     do(lab, c.LookAt(0.4))
     assert take_snapshot(lab, 1.0).laws == DEFAULT_LAWS
     do(lab, c.GoOn())
-    assert lab.session.laws[LEFT] == SLOW
+    assert lab.simulation.laws[LEFT] == SLOW
     run(lab, 0.2)
     do(lab, c.UndoGoOn())
-    for side, state in states(lab.session).items():
+    for side, state in states(lab.simulation).items():
         assert np.array_equal(state, end[side])
     assert_sound(lab)
 
@@ -235,7 +237,7 @@ def test_going_on_from_before_a_typed_law_and_back() -> None:
 def test_it_goes_with_the_robot_if_it_suits_and_else_the_usual_law_comes() -> None:
     lab = typed(left=SLOW, right=TORQUES)
     do(lab, c.ChooseRobot(FLEXIBLE.name))
-    assert lab.session.laws == {LEFT: SLOW, RIGHT: DEFAULT_LAWS[RIGHT]}
+    assert lab.simulation.laws == {LEFT: SLOW, RIGHT: DEFAULT_LAWS[RIGHT]}
     assert "Own law" in lab.message
     run(lab, 0.2)
     assert_sound(lab)
@@ -243,16 +245,16 @@ def test_it_goes_with_the_robot_if_it_suits_and_else_the_usual_law_comes() -> No
 
 def test_torques_for_an_output_that_takes_none() -> None:
     """Composite control takes accelerations alone; the parameter can be changed under a law."""
-    lab, law = Lab(STORE), "u1 = -xi; u2 = 0; u3 = 0"
+    lab, law = Lab(LOOP_CACHE), "u1 = -xi; u2 = 0; u3 = 0"
     do(lab, c.ChooseRobot(FLEXIBLE.name), c.SetParameter("output", "redefined"))
     do(lab, c.TypeLaw(LEFT, law))
     run(lab, 0.05)
-    assert lab.session.laws[LEFT] == law
+    assert lab.simulation.laws[LEFT] == law
     do(lab, c.SetParameter("output", "composite"))
     run(lab, 0.1)
-    assert lab.session.laws == DEFAULT_LAWS and "not possible" in lab.message
+    assert lab.simulation.laws == DEFAULT_LAWS and "not possible" in lab.message
     do(lab, c.TypeLaw(LEFT, law))
-    assert "not possible" in lab.law_refusals[LEFT] and lab.session.chosen_laws == DEFAULT_LAWS
+    assert "not possible" in lab.law_refusals[LEFT] and lab.simulation.chosen_laws == DEFAULT_LAWS
     assert_sound(lab)
 
 
@@ -262,53 +264,53 @@ def test_lessons_take_it() -> None:
     wrong = StepSetup(laws=Laws(left="across = -K1*xii; along = 1"))
     (fault,) = scene_faults(wrong, "five_bar")
     assert "did you mean xi" in fault
-    lab = Lab(STORE)
+    lab = Lab(LOOP_CACHE)
     do(lab, ScriptLaws(scene.laws))
-    assert lab.session.laws[LEFT] == "across = -K1*xi - K2*dxi; along = 1"
+    assert lab.simulation.laws[LEFT] == "across = -K1*xi - K2*dxi; along = 1"
     run(lab, 0.1)
     assert_sound(lab)
 
 
 def test_a_set_up_begins_with_it_even_if_its_loop_has_to_be_made() -> None:
-    store = LoopCache()
-    lab, wanted = Lab(store), "across = -K1*xi - 41*dxi; along = 1"
+    loop_cache = LoopCache()
+    lab, wanted = Lab(loop_cache), "across = -K1*xi - 41*dxi; along = 1"
     run(lab, 0.2)
     do(lab, c.UseShared(encode(Setup(laws={LEFT: wanted}))))
-    assert lab.session.chosen_laws[LEFT] == wanted
-    while lab.session.time == 0:
+    assert lab.simulation.chosen_laws[LEFT] == wanted
+    while lab.simulation.time == 0:
         run(lab, FRAME)
-    assert lab.session.laws[LEFT] == wanted
-    other = Lab(STORE)
+    assert lab.simulation.laws[LEFT] == wanted
+    other = Lab(LOOP_CACHE)
     do(other, c.UseShared(encode(Setup(laws={LEFT: wanted}))))
     for each in (lab, other):
-        run(each, 0.5 - each.session.time)
-        assert not [event for event in each.session.events if event.name == "law"]
-    ticks = min(lab.session.time, other.session.time)
+        run(each, 0.5 - each.simulation.time)
+        assert not [event for event in each.simulation.events if event.name == "law"]
+    ticks = min(lab.simulation.time, other.simulation.time)
     assert ticks == pytest.approx(0.5, abs=2 * FRAME)
-    store.close()
+    loop_cache.close()
 
 
 def test_a_start_with_a_lead_of_the_clock_is_that_of_the_law() -> None:
-    store, start = LoopCache(), Start(theta=1.0, beside=0.01, along=0.1, clock_offset=0.4)
+    loop_cache, start = LoopCache(), Start(theta=1.0, beside=0.01, along=0.1, clock_offset=0.4)
     wanted = "across = -K1*e1 - 42*dxi; along = -9*(theta - theta_r)"
-    lab, known = Lab(store), Lab(STORE)
+    lab, known = Lab(loop_cache), Lab(LOOP_CACHE)
     for each in (lab, known):
-        each.session.start = start
-        each.session.reset({LEFT: wanted})
-    while lab.session.laws[LEFT] != wanted:
+        each.simulation.start = start
+        each.simulation.reset({LEFT: wanted})
+    while lab.simulation.laws[LEFT] != wanted:
         run(lab, FRAME)
-        assert lab.session.time == 0 or lab.session.laws[LEFT] == wanted
-    known.session.simulate(round(1e3 * lab.session.time))
-    assert np.array_equal(lab.session.runs[LEFT].state, known.session.runs[LEFT].state)
-    assert known.session.runs[LEFT].fields()["theta_ref"][0] > 1.39
-    store.close()
+        assert lab.simulation.time == 0 or lab.simulation.laws[LEFT] == wanted
+    known.simulation.simulate(round(1e3 * lab.simulation.time))
+    assert np.array_equal(lab.simulation.runs[LEFT].state, known.simulation.runs[LEFT].state)
+    assert known.simulation.runs[LEFT].fields()["theta_ref"][0] > 1.39
+    loop_cache.close()
 
 
 def test_a_teacher_sends_it() -> None:
-    lab, setup = Lab(STORE), Setup(laws={RIGHT: CHASING})
+    lab, setup = Lab(LOOP_CACHE), Setup(laws={RIGHT: CHASING})
     do(lab, c.TakeSetup(from_data(to_data(setup))))
-    assert lab.session.laws == {**DEFAULT_LAWS, RIGHT: CHASING}
-    assert capture(lab.session) == setup
+    assert lab.simulation.laws == {**DEFAULT_LAWS, RIGHT: CHASING}
+    assert capture(lab.simulation) == setup
 
 
 def test_every_name_is_explained() -> None:
@@ -335,17 +337,17 @@ TEXTS = st.one_of(
 @given(TEXTS)
 def test_any_text_is_a_law_or_is_refused(text: str) -> None:
     lab = FUZZED
-    before = lab.session.chosen_laws
+    before = lab.simulation.chosen_laws
     do(lab, c.TypeLaw(LEFT, text))
     run(lab, 2 * FRAME)
     if LEFT in lab.law_refusals:
-        assert lab.session.chosen_laws == before and lab.law_refusals[LEFT]
+        assert lab.simulation.chosen_laws == before and lab.law_refusals[LEFT]
     else:
-        law = lab.session.laws[LEFT]
-        assert decode(encode(capture(lab.session))).laws.get(LEFT, law) == law
-    assert lab.session.laws[RIGHT] == DEFAULT_LAWS[RIGHT]
+        law = lab.simulation.laws[LEFT]
+        assert decode(encode(capture(lab.simulation))).laws.get(LEFT, law) == law
+    assert lab.simulation.laws[RIGHT] == DEFAULT_LAWS[RIGHT]
     assert_sound(lab)
     do(lab, c.ChooseLaw(LEFT, DEFAULT_LAWS[LEFT]), c.Reset())
 
 
-FUZZED = Lab(STORE)
+FUZZED = Lab(LOOP_CACHE)

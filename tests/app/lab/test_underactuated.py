@@ -79,7 +79,7 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
     do(lab, c.SetRunning(True))
     run(lab, 0.3)
     for side in SIDES:
-        stopped = lab.session.runs[side].diverged
+        stopped = lab.simulation.runs[side].diverged
         assert stopped is not None
         assert f"Likely cause: the {SINGULAR}" in str(stopped.reason)
     assert SINGULAR in lab.message and lab.message_level == "error"
@@ -91,14 +91,14 @@ def test_a_stop_has_the_forecast_as_its_cause(lab: Lab) -> None:
 def test_it_runs_under_every_law_that_suits_it(robot: str, law: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
-    if not lab.session.suits(law):
+    if not lab.simulation.suits(law):
         with pytest.raises(CodedError, match="not possible with this robot"):
             onpath.simulate(robot, law=law)
         return
     do(lab, c.ChooseLaw(FOLLOWER, law))
     run(lab, 0.5)
     assert_sound(lab)
-    assert lab.session.runs[FOLLOWER].diverged is None
+    assert lab.simulation.runs[FOLLOWER].diverged is None
     assert onpath.simulate(robot, law=law, duration=0.5).stopped_at is None
 
 
@@ -173,20 +173,18 @@ def test_the_command_line_says_it_and_refuses(
 def test_the_export_of_a_figure_says_it_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    own = ["export", "figure", str(tmp_path / "gantry.html"), "--robot", GANTRY.name, "--set"]
+    own = ["figure", str(tmp_path / "gantry.html"), "--robot", GANTRY.name, "--set"]
     assert run_command([*own, "alpha=1.1"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("onpath: ") and UNSTABLE in line
 
 
-def test_a_figure_warns_refuses_and_tells_the_cause_on_its_page(tmp_path: Path) -> None:
-    file = tmp_path / "gantry.html"
+def test_a_figure_warns_refuses_and_tells_the_cause_on_its_page() -> None:
     with pytest.raises(CodedError, match=SINGULAR):
-        onpath.figure(file, GANTRY.name, paths=["circle"], alpha=1.0)
-    assert not file.exists()
+        onpath.figure(GANTRY.name, "circle", alpha=1.0)
     with pytest.warns(UserWarning, match=UNSTABLE):
-        onpath.figure(file, GANTRY.name, paths=["circle"], alpha=1.1)
-    assert UNSTABLE in file.read_text("utf-8")
+        shown = onpath.figure(GANTRY.name, "circle", alpha=1.1)
+    assert UNSTABLE in shown.html
     for alpha, told in ((1.1, True), (0.9, False)):
         figure = chosen(GANTRY.name, paths={"circle": circle(0.05)}, values={"alpha": alpha})
         texts = stop_texts(figure, figure.laws[0], circle(0.05), False, Words("en"))

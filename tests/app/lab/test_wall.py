@@ -42,16 +42,16 @@ def walled(seconds: float, wall: Wall, robot: str = "five_bar") -> Lab:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot), c.SetWall(True))
     do(lab, c.PlaceWall(wall.z1, wall.z2, wall.angle))
-    assert lab.session.wall is not None
+    assert lab.simulation.wall is not None
     run(lab, seconds)
     return lab
 
 
 def depths(lab: Lab, y: np.ndarray) -> np.ndarray:
     """How deep end-points are in the wall, shape (n, p) -> (n,), [m]."""
-    wall = lab.session.wall
+    wall = lab.simulation.wall
     assert wall is not None
-    place, normal = wall.lifted(lab.session.robot.frame)
+    place, normal = wall.lifted(lab.simulation.robot.frame)
     return (place - y) @ normal
 
 
@@ -61,9 +61,9 @@ def depths(lab: Lab, y: np.ndarray) -> np.ndarray:
 def test_a_wall_pushes_out_and_nowhere_else(robot: str) -> None:
     """F is along the normal, never inwards, and only where the end-point is in the wall."""
     lab = walled(1.5, Wall(0.0, 0.03, -math.pi / 2), robot)
-    _, normal = lab.session.wall.lifted(lab.session.robot.frame)  # type: ignore[union-attr]
+    _, normal = lab.simulation.wall.lifted(lab.simulation.robot.frame)  # type: ignore[union-attr]
     pushed = 0.0
-    for record in replayed(lab.session).values():
+    for record in replayed(lab.simulation).values():
         force, deep = record.fields["force"], depths(lab, record.fields["y"])
         out = force @ normal
         assert np.abs(force - out[:, None] * normal).max() < SLACK and out.min() >= 0
@@ -82,13 +82,13 @@ def test_a_wall_that_nobody_reaches_changes_nothing(z1: float, z2: float, angle:
     z = -0.06 * ahead + (z1 + z2) * aside
     lab, free = walled(0.4, Wall(float(z[0]), float(z[1]), angle)), new_lab(0.4)
     for name in SIDES:
-        np.testing.assert_array_equal(y(lab.session, name), y(free.session, name))
+        np.testing.assert_array_equal(y(lab.simulation, name), y(free.simulation, name))
 
 
 def test_the_follower_waits_at_a_wall_and_the_tracker_goes_round() -> None:
     """A path is not a timetable: the clock drags its robot along the wall, and on behind it."""
     lab = walled(4.0, Wall(0.0, 0.04, -math.pi / 2))
-    ways = replayed(lab.session)
+    ways = replayed(lab.simulation)
     theta = {name: np.unwrap(way.fields["theta"][-1500:, 0]) for name, way in ways.items()}
     assert np.ptp(theta[FOLLOWER]) < 0.05 < 2 * math.pi < np.ptp(theta[TRACKER])
     state = take_snapshot(lab, 1.0).obstacle
@@ -99,9 +99,9 @@ def test_the_follower_waits_at_a_wall_and_the_tracker_goes_round() -> None:
 
 def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None:
     lab = walled(0.1, Wall(0.01, 0.02, 0.3))
-    robot = lab.session.robot
+    robot = lab.simulation.robot
     place, along, normal = take_snapshot(lab, 1.0).wall
-    assert place == pytest.approx(robot.place(robot.frame.lift(np.array([0.01, 0.02]))))
+    assert place == pytest.approx(robot.position(robot.frame.lift(np.array([0.01, 0.02]))))
     assert normal == pytest.approx([math.cos(0.3), 0, math.sin(0.3)])
     assert abs(along @ normal) < 1e-12 and np.linalg.norm(along) == pytest.approx(1)
     do(lab, c.SetWall(False))
@@ -114,9 +114,9 @@ def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None
 @given(robot=st.sampled_from(list(ROBOTS)))
 def test_the_drawn_surface_is_where_the_force_begins(robot: str) -> None:
     lab = walled(0.05, Wall(0.01, 0.02, 2.2), robot)
-    snapshot, made = take_snapshot(lab, 1.0), lab.session.robot
+    snapshot, made = take_snapshot(lab, 1.0), lab.simulation.robot
     place, along, _ = snapshot.wall
-    points = made.unplace(place + np.linspace(-0.1, 0.1, 5)[:, None] * along)
+    points = made.output_at(place + np.linspace(-0.1, 0.1, 5)[:, None] * along)
     assert np.abs(depths(lab, points)).max() < 1e-12
     in_plane = made.frame.lift(made.frame.planar(points))
     assert np.abs(in_plane - points).max() < 1e-12
@@ -124,13 +124,19 @@ def test_the_drawn_surface_is_where_the_force_begins(robot: str) -> None:
 
 def test_it_stays_from_run_to_run_and_belongs_to_its_robot() -> None:
     lab = walled(0.2, Wall(0.0, 0.04, 1.0))
-    wall = lab.session.wall
+    wall = lab.simulation.wall
     do(lab, c.Reset())
-    assert lab.session.wall == wall and all(p.wall for p in lab.session.forces.pushes.values())
+    assert lab.simulation.wall == wall and all(
+        p.wall for p in lab.simulation.forces.pushes.values()
+    )
     do(lab, c.ChooseRobot("flexible"))
-    assert lab.session.wall is None and not any(p.acts for p in lab.session.forces.pushes.values())
+    assert lab.simulation.wall is None and not any(
+        p.acts for p in lab.simulation.forces.pushes.values()
+    )
     do(lab, c.ChooseRobot("five_bar"))
-    assert lab.session.wall == wall and all(p.wall for p in lab.session.forces.pushes.values())
+    assert lab.simulation.wall == wall and all(
+        p.wall for p in lab.simulation.forces.pushes.values()
+    )
 
 
 def test_hands_and_brakes_come_and_go_and_the_wall_stays() -> None:
@@ -141,29 +147,29 @@ def test_hands_and_brakes_come_and_go_and_the_wall_stays() -> None:
     ):
         do(lab, command)
         run(lab, 0.1)
-        assert all(push.wall is not None for push in lab.session.forces.pushes.values())
+        assert all(push.wall is not None for push in lab.simulation.forces.pushes.values())
         assert_sound(lab)
     do(lab, c.Release())
-    for push in lab.session.forces.pushes.values():
+    for push in lab.simulation.forces.pushes.values():
         assert push.hand is None and push.hold is None and push.hold_normal is None
 
 
 def test_mouse_and_keys_move_and_turn_it() -> None:
     lab = new_lab(0.1)
     do(lab, c.NudgeWall(right=0.01))  # there is none: this places one
-    first = lab.session.wall
+    first = lab.simulation.wall
     assert first is not None and first.angle == pytest.approx(-math.pi / 2)
-    top = lab.session.editor.curve.at(lab.session.editor.curve.sample())[:, 1].max()
+    top = lab.simulation.editor.curve.at(lab.simulation.editor.curve.sample())[:, 1].max()
     assert 0 < first.z2 < top
     do(lab, c.NudgeWall(right=0.01, up=-0.004), c.NudgeWall(turn=0.1))
     moved = replace(first, z1=first.z1 + 0.01, z2=first.z2 - 0.004, angle=first.angle + 0.1)
-    assert lab.session.wall == moved
+    assert lab.simulation.wall == moved
     do(lab, c.MoveWall(np.array([0.03, 0.0])))
     for end in (1, -1):  # solid where the end's turn to the left is
         do(lab, c.SwingWall(end, np.array([0.03, 0.0]) + end * np.array([0.0, 0.1])))
-        assert lab.session.wall.normal == pytest.approx([1.0, 0.0], abs=1e-9)  # type: ignore[union-attr]
+        assert lab.simulation.wall.normal == pytest.approx([1.0, 0.0], abs=1e-9)  # type: ignore[union-attr]
     do(lab, c.MoveWall(np.array([9.0, -9.0])))
-    assert (lab.session.wall.z1, lab.session.wall.z2) == (FARTHEST, -FARTHEST)  # type: ignore[union-attr]
+    assert (lab.simulation.wall.z1, lab.simulation.wall.z2) == (FARTHEST, -FARTHEST)  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(
@@ -182,10 +188,10 @@ def test_mouse_and_keys_move_and_turn_it() -> None:
 )
 def test_nonsense_is_refused_and_changes_nothing(bad: c.Command) -> None:
     lab = walled(0.1, Wall(0.0, 0.04, 1.0))
-    wall = lab.session.wall
+    wall = lab.simulation.wall
     do(lab, bad)
     assert lab.message and lab.message_level == "warning"
-    assert lab.session.wall == wall and lab.session.hold_direction == "along"
+    assert lab.simulation.wall == wall and lab.simulation.hold_direction == "along"
 
 
 def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_present_one() -> None:
@@ -200,9 +206,11 @@ def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_presen
     do(lab, c.LookAt(0.7))
     assert take_snapshot(lab, 1.0).wall[0][0] == pytest.approx(then[0][0] + 0.02)
     do(lab, c.GoOn())
-    assert lab.session.wall is None and not any(p.acts for p in lab.session.forces.pushes.values())
+    assert lab.simulation.wall is None and not any(
+        p.acts for p in lab.simulation.forces.pushes.values()
+    )
     do(lab, c.SetWall(True), c.UndoGoOn())
-    assert all(push.wall is not None for push in lab.session.forces.pushes.values())
+    assert all(push.wall is not None for push in lab.simulation.forces.pushes.values())
 
 
 def test_a_film_shows_the_wall_while_it_stands() -> None:
@@ -210,14 +218,14 @@ def test_a_film_shows_the_wall_while_it_stands() -> None:
     drawn = take_snapshot(lab, 1.0).wall
     do(lab, c.SetWall(False))
     run(lab, 0.3)
-    history = lab.session.history.all()
-    np.testing.assert_allclose(wall_then(lab.session.robot, history[0]), drawn, atol=1e-12)
-    assert not len(wall_then(lab.session.robot, history[-1]))
+    history = lab.simulation.history.all()
+    np.testing.assert_allclose(wall_then(lab.simulation.robot, history[0]), drawn, atol=1e-12)
+    assert not len(wall_then(lab.simulation.robot, history[-1]))
 
 
 def test_a_table_tells_the_force_of_the_wall() -> None:
     lab = walled(1.5, Wall(0.0, 0.04, -math.pi / 2))
-    rows = csv_bytes(lab.session.robot, lab.session.history.all()).decode().splitlines()
+    rows = csv_bytes(lab.simulation.robot, lab.simulation.history.all()).decode().splitlines()
     column = rows[0].split(",").index("force2_N")
     assert min(float(row.split(",")[column]) for row in rows[1:]) < -0.1
 
@@ -228,18 +236,18 @@ def test_a_table_tells_the_force_of_the_wall() -> None:
 def test_set_ups_and_share_codes_carry_wall_and_direction() -> None:
     lab = walled(0.1, Wall(0.0123456, -0.04, 2.5))
     do(lab, c.SetHoldDirection("across"), c.ChooseRobot("flexible"), c.SetWall(True))
-    setup = capture(lab.session)
+    setup = capture(lab.simulation)
     other = new_lab()
-    restore(other.session, decode(encode(setup)))
-    assert capture(other.session) == setup
-    assert other.session.hold_direction == "across"
-    assert other.session.wall is not None and lab.session.wall is not None
-    assert astuple(other.session.wall) == pytest.approx(astuple(lab.session.wall), rel=1e-5)
+    restore(other.simulation, decode(encode(setup)))
+    assert capture(other.simulation) == setup
+    assert other.simulation.hold_direction == "across"
+    assert other.simulation.wall is not None and lab.simulation.wall is not None
+    assert astuple(other.simulation.wall) == pytest.approx(astuple(lab.simulation.wall), rel=1e-5)
     do(other, c.ChooseRobot("five_bar"))
-    assert other.session.wall == Wall(0.0123456, -0.04, 2.5)
-    assert all(push.wall is not None for push in other.session.forces.pushes.values())
-    restore(other.session, Setup())
-    assert capture(other.session) == Setup()
+    assert other.simulation.wall == Wall(0.0123456, -0.04, 2.5)
+    assert all(push.wall is not None for push in other.simulation.forces.pushes.values())
+    restore(other.simulation, Setup())
+    assert capture(other.simulation) == Setup()
 
 
 @pytest.mark.parametrize(
@@ -261,21 +269,21 @@ def test_a_hold_acts_in_the_directions_chosen_and_is_free_in_the_others(directio
     do(lab, c.SetParameter("speed", 2.0))
     run(lab, 0.6)
     do(lab, c.SetHoldDirection(direction), c.Hold(True))
-    push = lab.session.forces.pushes[FOLLOWER]
+    push = lab.simulation.forces.pushes[FOLLOWER]
     assert push.hold is not None
-    curve, theta = lab.session.editor.curve, lab.session.runs[FOLLOWER].shown()["theta"]
+    curve, theta = lab.simulation.editor.curve, lab.simulation.runs[FOLLOWER].shown()["theta"]
     along = curve.at(theta, 1)[0] / np.linalg.norm(curve.at(theta, 1)[0])
     left = np.array([-along[1], along[0]])
-    begun = lab.session.time
+    begun = lab.simulation.time
     run(lab, 0.5)
-    record = replayed(lab.session)[FOLLOWER]
+    record = replayed(lab.simulation)[FOLLOWER]
     force = record.fields["force"][record.t > begun + 0.01]
     assert (np.abs(force @ along).max() > 0.3) == (direction != "across")
     assert (
         direction == "both"
         or np.abs(force @ (left if direction == "along" else along)).max() < 1e-9
     )
-    moved = np.abs((y(lab.session, FOLLOWER) - push.hold[0]) @ np.stack([along, left], axis=1))
+    moved = np.abs((y(lab.simulation, FOLLOWER) - push.hold[0]) @ np.stack([along, left], axis=1))
     assert (moved[0] < 2e-3) == (direction != "across")
     assert moved[1] < 2e-3 or direction == "along"
 
@@ -285,5 +293,5 @@ def test_another_direction_is_taken_at_once_by_a_hold_that_is_on() -> None:
     do(lab, c.Hold(True))
     run(lab, 0.2)
     do(lab, c.SetHoldDirection("both"))
-    assert lab.session.forces.held == set(SIDES)
-    assert all(push.hold_normal is not None for push in lab.session.forces.pushes.values())
+    assert lab.simulation.forces.held == set(SIDES)
+    assert all(push.hold_normal is not None for push in lab.simulation.forces.pushes.values())

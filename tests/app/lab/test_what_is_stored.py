@@ -25,7 +25,7 @@ from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
 from tests.support.fullest_state import fullest_state, size
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.lesson_texts import LESSON, write_lesson
 
 MORE = """
@@ -100,7 +100,7 @@ CASES = [(name, field) for name, each in page_commands().items() for field in na
 def test_a_name_that_does_not_exist_is_answered_and_not_stored(
     course: Course, name: str, field: str, text: str, index: int, in_lesson: bool
 ) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     if in_lesson:
         do(lab, c.OpenLesson("01-a"), c.GoToStep(1))
     before, told = state_of(lab), lab.messages
@@ -126,7 +126,7 @@ ACTIONS = {
 def test_an_action_that_names_what_does_not_exist_is_answered_and_not_stored(
     course: Course, kind: str, text: str
 ) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     before, told = state_of(lab), lab.messages
     message = {"do": "Act", "actions": [ACTIONS[kind](text)]}
     do(lab, command_from(msgspec.json.encode(message).decode()))
@@ -239,7 +239,7 @@ ANY = st.one_of(
 
 
 def bounded_after(course: Course, sequence: list[c.Command]) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.OpenLesson("01-a"))
     for command in sequence:
         do(lab, command)
@@ -254,7 +254,7 @@ def test_what_is_stored_stays_below_its_bound(course: Course, sequence: list[c.C
 
 
 @pytest.mark.thorough
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(st.lists(ANY, min_size=20, max_size=120))
 def test_what_is_stored_stays_below_its_bound_for_long(
     course: Course, sequence: list[c.Command]

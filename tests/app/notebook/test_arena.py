@@ -34,12 +34,14 @@ def test_it_gives_the_numbers_of_the_command(tmp_path: Path, capsys: Any) -> Non
     assert run_command(["arena", *laws, *given, *files]) == 0
     shown = capsys.readouterr().out
     html, table = tmp_path / "b.html", tmp_path / "b.csv"
-    result = onpath.arena(laws, **FEW, seed=4, html=html, csv=str(table), figures=False)
+    result = onpath.arena(law=laws, **FEW, seed=4, html=html, csv=str(table), figures=False)
     assert isinstance(result, ArenaResult) and repr(result) == shown.rstrip("\n")
     assert table.read_bytes() == (tmp_path / "a.csv").read_bytes()
     pages = [path.read_text("utf-8").splitlines() for path in (html, tmp_path / "a.html")]
     different = [(a, b) for a, b in zip(*pages, strict=True) if a != b]
-    assert len(different) == 1 and "onpath.arena([" in different[0][0]  # the line with the command
+    assert (
+        len(different) == 1 and "onpath.arena(law=[" in different[0][0]
+    )  # the line with the command
     rows = list(csv.DictReader(table.open(encoding="utf-8", newline="")))
     assert len(result.runs) == len(rows) == 20
     for run, row in zip(result.runs, rows, strict=True):
@@ -47,7 +49,7 @@ def test_it_gives_the_numbers_of_the_command(tmp_path: Path, capsys: Any) -> Non
 
 
 def test_its_table_has_the_worst_value_of_the_runs() -> None:
-    result = onpath.arena("path_following", **FEW, seed=2)
+    result = onpath.arena(law="path_following", **FEW, seed=2)
     assert [(row["law"], row["at_limit"]) for row in result.table] == [
         ("path_following", "cut"),
         ("path_following", "remedy"),
@@ -71,7 +73,9 @@ def test_a_law_of_this_process_has_the_numbers_that_it_has_in_a_file(tmp_path: P
     names: dict[str, Any] = {"onpath": onpath}
     exec(source, names)
     html = tmp_path / "a.html"
-    result = onpath.arena([f"{tmp_path / 'here.py'}:Here", names["Here"], softly], **FEW, html=html)
+    result = onpath.arena(
+        law=[f"{tmp_path / 'here.py'}:Here", names["Here"], softly], **FEW, html=html
+    )
     laws = list(dict.fromkeys(run["law"] for run in result.runs))
     assert laws == ["Here", "Here_2", "softly"]
     filed, here, called = ([r for r in result.runs if r["law"] == law] for law in laws)
@@ -103,7 +107,7 @@ def test_a_file_may_have_changed_since_its_law_was_added(tmp_path: Path) -> None
     for gain, value in (("stiff_here", 800), ("soft_here", 50)):
         changing.write_text(TEXT.format(gain, value), "utf-8")
         onpath.simulate(law=f"{changing}:Law", duration=0.1)
-        result = onpath.arena([f"{changing}:Law", f"{other}:Law"], **FEW)
+        result = onpath.arena(law=[f"{changing}:Law", f"{other}:Law"], **FEW)
         assert all(row["stops"] == 0 for row in result.table)
         worst += [result.table[0]["force_N"], result.table[2]["force_N"]]
     assert worst[0] > worst[1] == worst[3] > worst[2]
@@ -116,7 +120,7 @@ def test_two_laws_cannot_have_different_gains_of_one_name(tmp_path: Path) -> Non
         (tmp_path / f"pull_{value}.py").write_text(TEXT.format("both_here", value), "utf-8")
         laws.append(f"{tmp_path / f'pull_{value}.py'}:Law")
     with pytest.raises(ValueError, match=r"Law_\d+ has another gain 'both_here' than Law"):
-        onpath.arena(laws, **FEW)
+        onpath.arena(law=laws, **FEW)
 
 
 def test_an_interrupted_arena_returns_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,7 +131,7 @@ def test_an_interrupted_arena_returns_what_it_has(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(Arena, "run", lambda self: run(self, interrupted))
     with pytest.warns(UserWarning, match="interrupted"):
-        result = onpath.arena("path_following", **given)
+        result = onpath.arena(law="path_following", **given)
     assert len(result.runs) == 10 and "5 trials" in repr(result)
 
 
@@ -143,12 +147,12 @@ def test_an_interrupted_arena_returns_what_it_has(monkeypatch: pytest.MonkeyPatc
 )
 def test_an_impossible_argument_is_refused(given: dict[str, Any], words: str) -> None:
     with pytest.raises(ValueError, match=words):
-        onpath.arena(given.pop("law", ()), **given)
+        onpath.arena(**given)
 
 
 def test_a_robot_may_be_given_as_it_is() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        result = onpath.arena("path_following", **{**FEW, "robot": ROBOTS["two_link_arm"]})
+        result = onpath.arena(law="path_following", **{**FEW, "robot": ROBOTS["two_link_arm"]})
     (row, _) = result.table
     assert row["robot"] == "two_link_arm" and math.isfinite(row["distance_m"])

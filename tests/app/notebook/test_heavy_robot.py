@@ -39,7 +39,7 @@ from onpath.models.studies.experiments import Experiment, on_path
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.robots import RobotEntry
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.robot_files import HEAVY, urdf
 
 STATED = "3000 N m, 3000 N m, 2000 N m, 1000 N m, 1000 N m, 500 N m"
@@ -135,7 +135,7 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
 
 
 def test_the_lab_says_so_once_in_a_run(heavy: RobotEntry) -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     do(lab, c.ChooseRobot(heavy.name), c.SetParameter("speed", 10.0))
     said = lab.messages
     run(lab, 0.5)

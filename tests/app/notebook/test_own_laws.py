@@ -7,6 +7,7 @@ import random
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -82,6 +83,73 @@ def test_python_keeps_its_memory_as_a_compiled_law_does_also_where_a_run_looks_a
     runs = [onpath.simulate(law=law, **values) for law in (Summed, SummedHere, Summed)]
     np.testing.assert_allclose(runs[0].y, runs[1].y, atol=1e-9)
     assert np.array_equal(runs[0].y, runs[2].y)  # each run has a memory of its own
+
+
+def test_an_object_begins_each_run_as_it_was_given() -> None:
+    law, fresh = Summed(), onpath.simulate(law=Summed, **HELD)
+    runs = [onpath.simulate(law=law, **HELD) for _ in range(3)]
+    assert all(np.array_equal(run.y, fresh.y) for run in runs) and law.sum == 0.0
+    bound = [onpath.simulate(law=law.__call__, **HELD) for _ in range(2)]
+    assert all(np.array_equal(run.y, fresh.y) for run in bound) and law.sum == 0.0
+    law.sum = 1e-4  # as the user has it now
+    other = onpath.simulate(law=law, **HELD)
+    assert not np.array_equal(other.y, fresh.y) and law.sum == 1e-4
+
+
+def test_a_compiled_object_acts_as_it_is_now() -> None:
+    class Pulling:
+        factor = 1.0
+
+        def command(self, view: View) -> ControlAction:
+            across = -self.factor * view.gains.k1 * view.output.xi - 40 * view.output.xi_rate
+            return followed(view, tangential(view), across)
+
+    law = Pulling()
+    before = [onpath.simulate(law=law, **HELD) for _ in range(2)]
+    law.factor = 3.0
+    after = onpath.simulate(law=law, **HELD)
+    assert before[0].law == before[1].law != after.law
+    assert after.max_distance < 0.7 * before[0].max_distance
+
+
+def test_what_cannot_be_copied_is_named() -> None:
+    class Logging(Summed):
+        def __init__(self) -> None:
+            super().__init__()
+            self.log = open(__file__, encoding="utf-8")  # noqa: SIM115
+
+    law = Logging()
+    try:
+        with pytest.raises(ValueError, match=r"copy of it, but its log, of type TextIOWrapper"):
+            onpath.simulate(law=law)
+    finally:
+        law.log.close()
+
+
+@pytest.mark.parametrize(
+    "returned",
+    [("0", "0"), (1j, 0), (0, 1 + 0j), (np.zeros(1), 0), (np.zeros(1), np.zeros(1)), (1, 2, 3)]
+    + [0.0, None, "ab", b"ab", (True, False), (0, float("nan")), [[0, 0]], {0: 1, 1: 2}, (0, None)],
+    ids=repr,
+)
+def test_what_a_law_returns_is_checked_before_the_first_run(returned: object) -> None:
+    calls = list[float]()
+
+    def odd(now: Now) -> object:
+        calls.append(now.t)
+        return returned
+
+    with pytest.raises(ValueError, match=r"odd.* it returned .* \(test_own_laws.py, line \d+\)"):
+        onpath.simulate(law=odd, duration=0.1)
+    assert calls == [0.0]
+
+
+@pytest.mark.parametrize("kind", [tuple, list, np.array, np.float32])
+def test_any_two_real_numbers_are_a_command(kind: Any) -> None:
+    def fine(now: Now) -> object:
+        return kind([-now.K5 * (now.theta_rate - now.speed), 0])
+
+    assert onpath.simulate(law=fine, duration=0.1).stopped_at is None
 
 
 @pytest.mark.parametrize("limit", [0.0, 0.7])
@@ -231,10 +299,10 @@ def test_a_lab_begins_with_the_law_and_a_fault_in_it_stops_its_own_robot() -> No
         memory = (("age", 1),)
 
     lab = new_lab(LoopCache(at_once=True), built_in_course(), law=compiled_law(Roots))
-    assert lab.session.laws == {"left": "trajectory_tracking", "right": "Roots"}
-    lab.session.simulate(600)
-    assert lab.session.faults == ["right"]
-    stop = lab.session.runs["right"].diverged
+    assert lab.simulation.laws == {"left": "trajectory_tracking", "right": "Roots"}
+    lab.simulation.simulate(600)
+    assert lab.simulation.faults == ["right"]
+    stop = lab.simulation.runs["right"].diverged
     assert stop is not None and "(test_own_laws.py, line" in str(stop.reason)
 
 
@@ -244,7 +312,7 @@ def test_the_command_line_takes_a_law_of_a_file(
     page = tmp_path / "own.html"
     assert run_command(["experiment", "obstruction", "--law", f"path_following,{EXAMPLE}"]) == 0
     assert "SlidingMode" in capsys.readouterr().out
-    assert run_command(["export", "figure", str(page), "--law", EXAMPLE, "--path", "circle"]) == 0
+    assert run_command(["figure", str(page), "--law", EXAMPLE, "--path", "circle"]) == 0
     assert page.stat().st_size > 1e5
     compared = ["compare", "--law", EXAMPLE, "--obstruction", "brake"]
     assert run_command(compared) == 0 and "SlidingMode" in capsys.readouterr().out

@@ -19,7 +19,6 @@ from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.lab.setups.restore import restore
 from onpath.app.lab.setups.setup import Path as SetupPath
 from onpath.app.lab.setups.setup import RobotSetup, Setup
-from onpath.app.notebook import figure as figures
 from onpath.app.server.new_lab import new_lab as newcomers_lab
 from onpath.lessons.course import NO_LESSONS
 from onpath.models.control.laws.registry import LAWS, law_named
@@ -28,7 +27,7 @@ from onpath.models.control.sides import LEFT, RIGHT
 from onpath.models.systems.catalogue import ROBOTS
 from tests.support.cases import some
 from tests.support.figure_runs import PythonFigure
-from tests.support.lab import do, new_lab, store
+from tests.support.lab import do, loop_cache, new_lab
 from tests.support.some_setups import CALM
 
 SECONDS = 0.2
@@ -103,29 +102,21 @@ def in_the_lab(robot: str, path: str, law: str, own: dict[str, Any]) -> np.ndarr
     """The last end-point."""
     lab = new_lab()
     laws = {LEFT: law, RIGHT: law}
-    restore(lab.session, Setup(robot, {robot: RobotSetup(own, SetupPath(path))}, laws=laws))
+    restore(lab.simulation, Setup(robot, {robot: RobotSetup(own, SetupPath(path))}, laws=laws))
     return last_in_the_lab(lab, own)
 
 
 def last_in_the_lab(lab: Any, own: dict[str, Any]) -> np.ndarray:
-    lab.session.simulate(ticks(own))
-    both = [run.shown()["y"] for run in lab.session.runs.values()]
+    lab.simulation.simulate(ticks(own))
+    both = [run.shown()["y"] for run in lab.simulation.runs.values()]
     return both[1]
 
 
-def figure_of(
-    monkeypatch: pytest.MonkeyPatch, folder: Path, robot: str, law: str, **given: Any
-) -> FigureChoice:
+def figure_of(robot: str, path: Any, law: str, **given: Any) -> FigureChoice:
     """What `onpath.figure` shows with these arguments; its loops are not compiled."""
-    shown = list[FigureChoice]()
-
-    def page(choice: FigureChoice, *_: Any) -> str:
-        shown.append(choice)
-        return ""
-
-    monkeypatch.setattr(figures, "figure_page", page)
-    onpath.figure(folder / "figure.html", robot, law, sliders=(), **given)
-    return shown[0]
+    choice = onpath.figure(robot, path, law, sliders=(), **given).choice
+    assert choice is not None
+    return choice
 
 
 def in_a_figure(choice: FigureChoice, own: dict[str, Any]) -> np.ndarray:
@@ -135,9 +126,7 @@ def in_a_figure(choice: FigureChoice, own: dict[str, Any]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
-def test_same_arguments_same_motion(
-    robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_same_arguments_same_motion(robot: str, tmp_path: Path) -> None:
     @FEW
     @given(arguments(robot))
     def check(drawn: tuple[str, str, dict[str, Any]]) -> None:
@@ -147,7 +136,7 @@ def test_same_arguments_same_motion(
         assert here == pytest.approx(there, abs=1e-9)  # digits of the file
         assert np.array_equal(here[-1], in_the_lab(robot, path, law, own))
         named = own if own.keys() & NEWCOMER.keys() else {**own, "speed": 3.0}
-        given = figure_of(monkeypatch, tmp_path, robot, law, paths=path, **named)
+        given = figure_of(robot, path, law, **named)
         expected = in_python(robot, path, law, named)[-1]
         assert np.array_equal(in_a_figure(given, own), expected)
 
@@ -155,32 +144,28 @@ def test_same_arguments_same_motion(
 
 
 @pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
-def test_the_newcomers_motion_has_a_name(
-    robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_newcomers_motion_has_a_name(robot: str) -> None:
     from onpath.app.lab import commands as c
 
     assert dict(onpath.NEWCOMER) == {"speed": 2.0, "ramp": 4.0}
     run = onpath.simulate(robot, duration=SECONDS, **onpath.NEWCOMER)
-    lab = newcomers_lab(store(), NO_LESSONS)
+    lab = newcomers_lab(loop_cache(), NO_LESSONS)
     do(lab, c.ChooseRobot(robot))
     assert np.array_equal(last_in_the_lab(lab, {}), run.y[-1])
-    choice = figure_of(monkeypatch, tmp_path, robot, "path_following", paths="circle")
+    choice = figure_of(robot, "circle", "path_following")
     assert np.array_equal(in_a_figure(choice, {}), run.y[-1])
-    assert choice.parameters == lab.session.parameters == run.experiment.parameters
+    assert choice.parameters == lab.simulation.parameters == run.experiment.parameters
 
 
 @pytest.mark.parametrize("robot", some(ROBOTS, QUICK))
-def test_a_robot_has_one_set_of_defaults(
-    robot: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_robot_has_one_set_of_defaults(robot: str) -> None:
     usual = ROBOTS[robot].parameters()
     lab = new_lab()
-    restore(lab.session, Setup(robot))
-    assert lab.session.parameters == usual
+    restore(lab.simulation, Setup(robot))
+    assert lab.simulation.parameters == usual
     assert onpath.simulate(robot, duration=0.01).experiment.parameters == usual
     own = {"speed": usual.speed}
-    shown = figure_of(monkeypatch, tmp_path, robot, "path_following", paths="circle", **own)
+    shown = figure_of(robot, "circle", "path_following", **own)
     assert shown.parameters == usual
 
 

@@ -8,11 +8,14 @@ import re
 import subprocess
 import sys
 import warnings
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import onpath
 from onpath.app.cli.main import run_command
@@ -21,6 +24,7 @@ from onpath.models.studies.experiments import experiments
 from onpath.models.systems.catalogue import FLEXIBLE
 from tests.support import stranger
 from tests.support.checkout import ROOT
+from tests.support.robot_files import PLANAR, urdf
 
 LAWS = ("trajectory_tracking", "path_following")  # of onpath.laws()
 
@@ -132,12 +136,25 @@ def test_every_parameter_is_listed_with_its_range_and_can_be_set(robot: str) -> 
     ("values", "words"),
     [
         ({"robot": "fivebar"}, "did you mean five_bar"),
-        ({"robot": ["five_bar"]}, "did you mean five_bar"),
+        ({"robot": ["five_bar"]}, "robot: expected one, got several, which onpath.sweep takes"),
+        ({"path": ["circle", "clover"]}, "path: expected one, got several, which onpath.sweep"),
+        ({"K1": [400, 900]}, "K1: expected one, got several, which onpath.sweep takes"),
         ({"path": "elipse"}, "did you mean ellipse"),
         ({"path": onpath.circle(0.3)}, "leaves the workspace"),
         ({"path": onpath.circle(0.005)}, "bends too sharply"),
         ({"law": "folowing"}, "path_following"),
-        ({"law": LAWS}, "a law is a name of onpath.laws()"),
+        ({"law": LAWS}, "law: expected one, got several, which onpath.sweep takes"),
+        ({"law": 3}, "a law is a name of onpath.laws()"),
+        ({"law": "zzz"}, "(onpath.laws() lists all)"),
+        ({"path": "zzz"}, "(onpath.paths() lists all)"),
+        ({"robot": "zzz"}, "(onpath.robots() lists all)"),
+        ({"zzz": 1}, "(onpath.parameters('five_bar') lists all)"),
+        ({"path": "my logo.svg fit=0.1"}, "a file is given as '@my logo.svg fit=0.1'"),
+        ({"law": "my_law.py"}, "expected FILE.py:NAME"),
+        ({"path": "circle 50"}, "50 m: did you mean 0.05?"),
+        ({"start": (50, 0)}, "50 m: did you mean 0.05?"),
+        ({"duration": "8"}, "duration: '8' is not a number"),
+        ({"K1": "900"}, "K1: '900' is not a number"),
         ({"k1": 3}, "did you mean K1"),
         ({"durations": 3}, "did you mean duration"),
         ({"r": 0.03}, "unknown parameter 'r'"),
@@ -167,6 +184,73 @@ def test_complaint_names_what_was_expected(values: dict[str, Any], words: str) -
         onpath.simulate(**values)
 
 
+@given(
+    st.floats(0.02, 0.12), st.sampled_from([onpath.circle, lambda r: onpath.ellipse(r, 0.9 * r)])
+)
+def test_a_path_in_millimetres_is_asked_about(radius: float, made: Callable[[float], Any]) -> None:
+    with pytest.warns(UserWarning, match=r"\d m: did you mean 0\.\d+\?"):
+        path = made(1000 * radius)
+    with pytest.raises(ValueError, match="did you mean"):
+        onpath.simulate(path=path)
+
+
+@pytest.mark.parametrize(
+    "read",
+    [
+        lambda: onpath.robot("no.urdf"),
+        lambda: onpath.simulate("no.urdf"),
+        lambda: onpath.simulate(path="@no.svg"),
+        lambda: onpath.simulate(path=Path("no.svg")),
+        lambda: onpath.simulate(law="no.py:Law"),
+        lambda: onpath.check_path("no.urdf"),
+        lambda: onpath.path_from("no.csv"),
+        lambda: onpath.identify("five_bar", "no.csv"),
+    ],
+)
+def test_a_missing_file_is_one_kind_of_error(read: Callable[[], Any]) -> None:
+    with pytest.raises(FileNotFoundError, match=r"no\.\w+: there is no such file"):
+        read()
+
+
+def test_files_are_read_wherever_a_robot_a_path_or_a_law_is_given(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "arm.urdf").write_text(urdf("own", PLANAR), "utf-8")
+    (tmp_path / "way.csv").write_text("50,0\n0,40\n-50,0\n0,-40\n", "utf-8")
+    (tmp_path / "law.py").write_text("def same(now):\n    return 0, -400 * now.xi[0]\n", "utf-8")
+    way = "@~/way.csv unit=mm"
+    run = onpath.simulate("~/arm.urdf", way, "~/law.py:same", duration=0.02)
+    assert run.law == "same" and len(run.q[0]) == 3
+    run.to_csv("~/run.csv")
+    run.plot("~/run.png")
+    assert {"run.csv", "run.png"} < {each.name for each in tmp_path.iterdir()}
+    assert onpath.check_path("five_bar", way).ok
+    assert "K1" in onpath.parameters("~/arm.urdf")
+
+
+WAY_FIRST = onpath.circle(0.05), "five_bar"
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (
+            lambda: cast("Any", onpath.check_path)(onpath.circle(0.05), "five_bar"),
+            "robot comes first",
+        ),
+        (lambda: onpath.check_path("clover"), "robot comes first"),
+        (lambda: onpath.identify("arm.csv"), "identify(robot, file)"),
+        (lambda: onpath.identify("arm.csv", "five_bar"), "identify(robot, file)"),
+    ],
+)
+def test_the_former_order_is_answered_with_the_right_one(
+    call: Callable[[], Any], told: str
+) -> None:
+    with pytest.raises(TypeError, match=re.escape(told)):
+        call()
+
+
 @pytest.mark.filterwarnings("error")
 @pytest.mark.parametrize("start", [(1e300, 0.0), (0.0, 1e160), (-1e308, 1e308), (1e154, 1e154)])
 @pytest.mark.parametrize("robot", onpath.robots())
@@ -194,7 +278,7 @@ def test_an_invalid_path_is_refused() -> None:
         (lambda: onpath.through([[0, 0], [1]]), "points: expected"),  # type: ignore[list-item]
         (lambda: onpath.simulate(path=np.eye(2)), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
         (lambda: onpath.simulate(path=[(0, 1)]), "path: onpath.through(points) makes"),  # type: ignore[arg-type]
-        (lambda: onpath.figure("a.html", paths=[[(0, 1)]]), "paths: onpath.through"),  # type: ignore[list-item]
+        (lambda: onpath.figure(path=[[(0, 1)]]), "path: onpath.through"),  # type: ignore[list-item]
         (lambda: onpath.simulate(law=3), "but nothing of type int"),
     ):
         with pytest.raises(ValueError, match=re.escape(words)):

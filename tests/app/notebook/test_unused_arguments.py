@@ -71,15 +71,13 @@ def test_what_contradicts_itself_is_refused(given: dict[str, Any], words: str) -
 
 
 def test_a_figure_names_what_no_law_of_it_uses(tmp_path: Path) -> None:
-    file, circle = tmp_path / "a.html", {"paths": ["circle"], "sliders": ()}
+    file, circle = tmp_path / "a.html", {"path": "circle", "sliders": ()}
     with pytest.warns(UserWarning, match="no effect under trajectory tracking, .*: K4$"):
-        onpath.figure(file, K4=30.0, K5=3.0, **circle)
+        onpath.figure(K4=30.0, K5=3.0, **circle)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        onpath.figure(file, "flexible", output="redefined", alpha=0.3, **circle)
-    with pytest.raises(ValueError, match="unknown parameter 'law': did you mean output"):
-        onpath.figure(file, "flexible", law="redefined", **circle)
-    command = ["export", "figure", str(file), "--robot=flexible", "--set=output=redefined"]
+        onpath.figure("flexible", output="redefined", alpha=0.3, **circle)
+    command = ["figure", str(file), "--robot=flexible", "--set=output=redefined"]
     assert run_command(command) == 0
 
 

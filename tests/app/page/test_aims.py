@@ -47,7 +47,7 @@ def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
         with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()
             student.read(lambda: student.code)
-            lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+            lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
             lab.post(TakeStep("01-a", 0))
             student.read(lambda: student.sees("Step 1 of") and student.sees(TEXTS["goals"]))
             assert student.sees(ENGLISH("lesson.needs")) and student.sees(TEXTS["needs"])

@@ -96,7 +96,7 @@ def wait_for_queue(server: LabServer, count: int) -> None:
 
 
 def wait_for_views(server: LabServer, count: int) -> None:
-    wait_for(lambda: len(server._views) == count, 60)
+    wait_for(lambda: len(server._feeds) == count, 60)
 
 
 class Comer(threading.Thread):
@@ -127,7 +127,7 @@ def test_pages_are_built_one_at_a_time(server: LabServer, builds: Builds) -> Non
         wait_for_views(server, CROWD)
         assert builds.done == CROWD and builds.most == 1
         assert builds.rests == (CROWD - 1) * [REST * LONG]  # between two pages
-        for lab in server.simulation.labs:  # a teacher opens a lesson for all
+        for lab in server.thread.labs:  # a teacher opens a lesson for all
             lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done >= 2 * CROWD, 60)
         assert builds.most == 1
@@ -175,9 +175,9 @@ def test_a_file_that_is_being_made_does_not_delay_the_page(
     with comer.student:
         comer.run()
         wait_for_views(server, 1)
-        (view,), (lab,) = server._views.values(), server.simulation.labs
-        wait_for(lambda: lab.session.time > 0, 60)  # its loops are compiled first
-        view.page.exporter.csv()
+        (feed,), (lab,) = server._feeds.values(), server.thread.labs
+        wait_for(lambda: lab.simulation.time > 0, 60)  # its loops are compiled first
+        feed.page.exporter.csv()
         assert begun.wait(60)
         lab.lab.post(c.OpenLesson(next(iter(lab.lab.lessons.course.lessons))))
         wait_for(lambda: builds.done == 2, 60)
@@ -204,8 +204,8 @@ def test_no_page_is_built_for_a_client_that_leaves_while_waiting(
     for comer in inside:
         comer.student.__exit__()
     wait_for_views(server, 0)
-    assert all(lab.view is None for lab in server.simulation.labs)
-    assert not server.sessions.held()
+    assert all(lab.display is None for lab in server.thread.labs)
+    assert not server.registry.held()
 
 
 def held_up(
@@ -262,16 +262,16 @@ def test_a_key_works_while_the_page_is_built_anew(
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.has_widget(ENGLISH("controls.help")))
-        (scheduled,) = server.simulation.labs
+        (scheduled,) = server.thread.labs
         lab = scheduled.lab
         begun, over = held_up(monkeypatch, Keys, "renew")
         lab.post(c.SetLanguage("de"))
         student.read(begun.is_set)
         student.press("N")
-        student.read(lambda: lab.session.editor.selected == 0)
+        student.read(lambda: lab.simulation.editor.selected == 0)
         over.set()
         student.read(lambda: student.has_widget(Words("de")("controls.help")))
         student.press("N")
-        student.read(lambda: lab.session.editor.selected == 1)
+        student.read(lambda: lab.simulation.editor.selected == 1)
         keys = [w for w in student.widgets.values() if w.get("hotkey") == "N"]
         student.read(lambda: [key["label"] for key in keys] == [Words("de")("key.next")])

@@ -22,7 +22,7 @@ from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 
 COURSE = built_in_course()[0]
 ASKED = questions(COURSE.lesson(BEFORE, "en"))
@@ -30,7 +30,7 @@ LESSON = "01-path-or-timetable"
 
 
 def lab_with_lessons() -> Lab:
-    return Lab(store(), FIVE_BAR, COURSE)
+    return Lab(loop_cache(), FIVE_BAR, COURSE)
 
 
 def sit(lab: Lab, name: str, option: int = 0) -> None:
@@ -48,10 +48,10 @@ def test_nothing_moves_while_a_test_is_open() -> None:
     do(lab, c.OpenLesson(BEFORE), c.SetRunning(True))
     assert "test" in lab.message
     run(lab, 0.5)
-    assert lab.session.time == 0 and not lab.session.running
+    assert lab.simulation.time == 0 and not lab.simulation.running
     do(lab, c.CloseLesson())
     run(lab, 0.5)
-    assert lab.session.time > 0
+    assert lab.simulation.time > 0
 
 
 def test_an_answer_can_be_changed_until_the_test_is_handed_in_and_not_after_it() -> None:
@@ -125,4 +125,4 @@ def test_an_open_test_and_one_that_is_handed_in_are_kept() -> None:
     other = lab_with_lessons()
     put_back(other, states[0])
     assert other.lessons.progress == lab.lessons.progress
-    assert other.lessons.locked is not None and not other.session.running
+    assert other.lessons.locked is not None and not other.simulation.running

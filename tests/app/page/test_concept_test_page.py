@@ -40,7 +40,7 @@ def student(server: LabServer) -> Iterator[Student]:
 def test_both_tests_are_in_the_overview_and_open_from_it(
     server: LabServer, student: Student
 ) -> None:
-    lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+    lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
     student.set(ENGLISH("lesson.lessons"), True)
     title = TEST.front.title
     for key in ("test.title_before", "test.title_after"):
@@ -54,7 +54,7 @@ def test_both_tests_are_in_the_overview_and_open_from_it(
 def test_a_student_answers_is_told_nothing_and_hands_in(
     server: LabServer, student: Student
 ) -> None:
-    lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+    lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
     lab.post(TakeStep(BEFORE, 11))
     block = questions(TEST)["11.0"]
     order = option_order(4, f"{BEFORE} 11.0", student.code)

@@ -16,7 +16,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import first_minute
 from onpath.app.page.first_minute import INVITATIONS, FirstMinute
 from onpath.app.server.built_in_course import built_in_course
-from tests.support.lab import do, new_lab, run, store
+from tests.support.lab import do, loop_cache, new_lab, run
 
 
 class Guest:
@@ -51,7 +51,7 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
     guest: Callable[[str], Guest],
 ) -> None:
     course = built_in_course()
-    lab, new = Lab(store(), course=course), guest("")
+    lab, new = Lab(loop_cache(), course=course), guest("")
     assert new.after(lab, 0.2) == "hold"
     do(lab, c.Hold(True))
     assert new.after(lab, 0.5) == ""
@@ -63,7 +63,7 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
     assert new.after(lab, 0.5) == ""
     do(lab, c.Release())
     assert new.after(lab, 4.0) == "bend"
-    do(lab, c.MovePoint(2, 1.2 * lab.session.editor.points()[2]))
+    do(lab, c.MovePoint(2, 1.2 * lab.simulation.editor.points()[2]))
     assert new.after(lab, 4.0) == "lesson"
     do(lab, c.OpenLesson(next(iter(course.lessons))))
     assert new.after(lab, 4.0) == "" and new.kept == str(len(INVITATIONS))

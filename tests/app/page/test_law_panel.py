@@ -49,7 +49,7 @@ def test_the_box_is_there_for_an_own_law_alone() -> None:
         assert shown.box.visible and shown.use.visible
         assert shown.box.value == PATH_FOLLOWING.replace("; ", "\n")
         shown.follow()
-        assert shown.menu.value == OWN and shown.lab.session.laws == DEFAULT_LAWS
+        assert shown.menu.value == OWN and shown.lab.simulation.laws == DEFAULT_LAWS
     shown.menu.set("Path following")
     shown.follow(4)
     assert not shown.box.visible and shown.menu.value == "Path following"
@@ -62,11 +62,11 @@ def test_the_law_in_the_box_is_used_and_a_refusal_stands_beside_it() -> None:
     shown.use.set(True)
     shown.follow()
     assert "did you mean xi?" in shown.why.content and shown.why.visible
-    assert shown.lab.session.chosen_laws == DEFAULT_LAWS and shown.menu.value == OWN
+    assert shown.lab.simulation.chosen_laws == DEFAULT_LAWS and shown.menu.value == OWN
     shown.box.value = SLOW.replace("; ", "\n")
     shown.use.set(True)
     shown.follow()
-    assert shown.lab.session.laws == {**DEFAULT_LAWS, LEFT: SLOW}
+    assert shown.lab.simulation.laws == {**DEFAULT_LAWS, LEFT: SLOW}
     assert shown.why.content == "" and shown.menu.value == OWN
     assert any(SLOW in html.content for html in shown.gui.html)
 
@@ -88,7 +88,7 @@ def test_an_own_law_right_after_another_one_keeps_its_box() -> None:
     shown = Shown()
     shown.menu.set("Waiting clock")
     shown.menu.set(OWN)
-    while shown.lab.session.laws[LEFT] != "waiting_clock":
+    while shown.lab.simulation.laws[LEFT] != "waiting_clock":
         shown.follow()
     shown.follow()
     assert shown.box.visible and shown.menu.value == OWN

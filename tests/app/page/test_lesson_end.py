@@ -16,7 +16,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.course import read_course
 from onpath.lessons.progress import Answer, Truth
-from tests.support.lab import do, new_lab, store
+from tests.support.lab import do, loop_cache, new_lab
 from tests.support.lesson_texts import LESSON, write_lesson
 from tests.support.student import PATIENCE, Student
 from tests.support.waiting import wait_for
@@ -50,7 +50,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
         student.open()
         student.read(lambda: student.code)
-        found = wait_for(lambda: server.sessions.find(student.code), PATIENCE)
+        found = wait_for(lambda: server.registry.find(student.code), PATIENCE)
         yield Site(student, found.scheduled.lab)
     server.stop()
 
@@ -109,7 +109,7 @@ def test_it_leads_back_and_to_the_next_lesson(site: Site) -> None:
 def test_pages_are_turned_to_the_end_and_back(tmp_path: Path) -> None:
     write_lesson(tmp_path)
     course, _ = read_course([tmp_path])
-    lab = Lab(store(), new_lab().session.entry, course)
+    lab = Lab(loop_cache(), new_lab().simulation.entry, course)
     do(lab, TakeStep("01-a", 7), c.GoToStep(1))
     assert lab.lessons.ended and lab.lessons.index == 7
     do(lab, c.GoToStep(1))

@@ -25,7 +25,7 @@ from onpath.lessons.schema import KINDS, Choice, NumberQuestion, OpenQuestion, Q
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 
 COURSE = built_in_course()[0]
 STEPS = [
@@ -38,7 +38,7 @@ TRUTH = Truth("distance", (0.0, 0.5, 2.0), (0.0, 47.0, 1.0), (0.0, 2.0, 0.5))
 
 @pytest.fixture(scope="module")
 def lab() -> Lab:
-    return Lab(store(), FIVE_BAR, COURSE)
+    return Lab(loop_cache(), FIVE_BAR, COURSE)
 
 
 def view(lab: Lab, student: str = "") -> LessonView:
@@ -50,7 +50,7 @@ def view(lab: Lab, student: str = "") -> LessonView:
 def told(lab: Lab, student: str = "") -> dict[str, Any]:
     """The message, as the page reads it."""
     return json.loads(
-        msgspec.json.encode(lesson_message(view(lab, student), lab.session.robot), enc_hook=str)
+        msgspec.json.encode(lesson_message(view(lab, student), lab.simulation.robot), enc_hook=str)
     )
 
 

@@ -14,7 +14,7 @@ from onpath.app.page.preferences import DEFAULTS
 from onpath.app.scene.captions import Captions
 from onpath.lessons.words import ENGLISH
 from tests.support.built_in import built_in_course
-from tests.support.lab import do, new_lab, run, store
+from tests.support.lab import do, loop_cache, new_lab, run
 
 
 class Heard:
@@ -34,7 +34,7 @@ class Heard:
             self._narration.follow(snapshot)
             voice = self._narration.said.voice
             if not self.sentences or voice != self.sentences[-1][1]:
-                self.sentences.append((self._lab.session.time, voice))
+                self.sentences.append((self._lab.simulation.time, voice))
 
 
 def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once() -> None:
@@ -59,7 +59,7 @@ def test_numbers_are_renewed_once_a_second_and_another_sentence_at_once() -> Non
 
 def test_in_a_lesson_a_stop_does_not_offer_settings() -> None:
     """Settings that went well may be the answer to the lesson's task."""
-    lab, label = Lab(store(), course=built_in_course()[0]), "Reset with K1 across = 300"
+    lab, label = Lab(loop_cache(), course=built_in_course()[0]), "Reset with K1 across = 300"
     for opened in ("", "07-flexible-link"):
         if opened:
             do(lab, c.OpenLesson(opened))

@@ -74,7 +74,7 @@ def test_a_letter_means_the_option_that_stands_beside_it(
     with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
         student.open()
         student.read(lambda: student.code)
-        entry = wait_for(lambda: server.sessions.find(student.code))
+        entry = wait_for(lambda: server.registry.find(student.code))
         lab = entry.scheduled.lab
         lab.post(TakeStep(NAME, step))
         student.read(lambda: student.sees(f"Step {step + 1} of"))

@@ -42,7 +42,7 @@ from onpath.models.systems.robots import RobotEntry
 from onpath.models.systems.two_link_arm import TWO_LINK_ARM
 from tests.support.built_in import built_in_course
 from tests.support.drawing import drawn_length
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -64,9 +64,9 @@ class Shown:
     """A lab, and the overlays that follow it; `sent` are the messages since it was last read."""
 
     def __init__(self, entry: RobotEntry, scene: Any) -> None:
-        self.lab = Lab(store(), entry)
+        self.lab = Lab(loop_cache(), entry)
         run(self.lab, 0.1)
-        robot, self.messages = self.lab.session.robot, list[Any]()
+        robot, self.messages = self.lab.simulation.robot, list[Any]()
         stage = stage_of(robot)
         self.overlays = Overlays(scene, stage, robot, Switches(), lambda work: work())
 
@@ -183,7 +183,9 @@ def test_only_labels_move_with_the_robots(shown: Shown) -> None:
     shown.follow()
     run(shown.lab, 0.2)
     moves = {"SetPositionMessage"}
-    if shown.lab.session.robot.chain is None:  # the joints of chains have labels, which do not turn
+    if (
+        shown.lab.simulation.robot.chain is None
+    ):  # the joints of chains have labels, which do not turn
         moves.add("SceneNodeUpdateMessage")
     assert set(shown.follow()) == moves
 
@@ -197,7 +199,7 @@ def test_a_path_makes_the_tube_anew_and_a_parameter_of_the_plant_the_map(shown: 
     tube, rank = overlays.shape, overlays.rank_map
     do(shown.lab, c.SetParameter("K1", 350.0))
     assert shown.follow() == []
-    of_plant = "rho" if shown.lab.session.entry.flexible_link else "payload"
+    of_plant = "rho" if shown.lab.simulation.entry.flexible_link else "payload"
     do(shown.lab, c.SetParameter(of_plant, 0.15))
     shown.follow()
     assert overlays.rank_map is not rank and overlays.shape is tube
@@ -209,14 +211,14 @@ def test_a_path_makes_the_tube_anew_and_a_parameter_of_the_plant_the_map(shown: 
 
 @ENTRIES
 def test_the_tube_is_that_of_the_path_that_is_drawn(entry: RobotEntry) -> None:
-    lab = Lab(store(), entry)
+    lab = Lab(loop_cache(), entry)
     do(lab, c.SetRunning(False), c.ChoosePath("ellipse"))
-    lab.session.editor.advance(10.0)
+    lab.simulation.editor.advance(10.0)
     snapshot = take_page_snapshot(lab, 1.0)
-    robot, curve = lab.session.robot, lab.session.editor.curve
+    robot, curve = lab.simulation.robot, lab.simulation.editor.curve
     assert np.allclose(drawn_curve(robot, snapshot.path).series, curve.series, atol=1e-10)
     shape = tube_shape(robot, snapshot.path)
-    z = robot.frame.planar(robot.unplace(shape.offsets[:, 0]))
+    z = robot.frame.planar(robot.output_at(shape.offsets[:, 0]))
     _, distance = curve.plan.nearest(z)
     steps = distance / shape.step
     assert np.abs(steps - np.round(steps)).max() < 1e-6 and steps.max() >= 2.9
@@ -225,30 +227,30 @@ def test_the_tube_is_that_of_the_path_that_is_drawn(entry: RobotEntry) -> None:
 
 @pytest.mark.parametrize("name", presets())
 def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     do(lab, c.SetRunning(False), c.ChoosePath(name))
-    lab.session.editor.advance(10.0)
-    shape = tube_shape(lab.session.robot, take_page_snapshot(lab, 1.0).path)
-    crosses = bool(ambiguities(lab.session.editor.design.curve))
+    lab.simulation.editor.advance(10.0)
+    shape = tube_shape(lab.simulation.robot, take_page_snapshot(lab, 1.0).path)
+    crosses = bool(ambiguities(lab.simulation.editor.design.curve))
     for points in (shape.fill.vertices, shape.normals, shape.offsets):
         assert (len(points) or crosses) and np.isfinite(points).all()
     assert (shape.width < 5e-3) == crosses  # there is no tube at a crossing
-    is_straight = lab.session.editor.design.name == "segment"
+    is_straight = lab.simulation.editor.design.name == "segment"
     assert np.isinf(shape.width) == is_straight
     assert ("straight" in tube_numbers(shape, True, ENGLISH)) == is_straight
 
 
 def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
     entry = ROBOTS["spatial_arm"]
-    lab = Lab(store(), entry)
+    lab = Lab(loop_cache(), entry)
     do(lab, c.SetRunning(False), c.SetParameter("rise", 0.03))
-    lab.session.editor.advance(10.0)
-    robot, path = lab.session.robot, take_page_snapshot(lab, 1.0).path
+    lab.simulation.editor.advance(10.0)
+    robot, path = lab.simulation.robot, take_page_snapshot(lab, 1.0).path
     curve = drawn_curve(robot, path)
-    flat = lab.session.editor.design.curve
+    flat = lab.simulation.editor.design.curve
     assert np.allclose(curve.series, saddle(flat, 0.03).series, atol=1e-10)
     shape = tube_shape(robot, path)
-    around = robot.unplace(shape.fill.vertices)
+    around = robot.output_at(shape.fill.vertices)
     gaps = around[:, None] - curve.at(curve.sample(2000))
     distance = np.linalg.norm(gaps, axis=-1).min(axis=1)
     assert np.ptp(distance) < 1e-6 and 0.9 * shape.width < distance.mean() < shape.width
@@ -296,7 +298,7 @@ def test_a_picture_that_is_encoded_beforehand_is_sent_as_viser_sends_one(
 
 def test_a_robot_without_names_has_axes_alone(server: viser.ViserServer) -> None:
     entry = ROBOTS["two_link_arm"]
-    motion = take_motion(Lab(store(), entry))
+    motion = take_motion(Lab(loop_cache(), entry))
     stage, nameless = stage_of(TWO_LINK_ARM), replace(TWO_LINK_ARM, drawing=Drawing())
     labels = RobotLabels(server.scene, stage, nameless, motion)
     labels.update(motion)
@@ -314,7 +316,7 @@ def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
     assert f"{largest(grid.values):.3g}" in legend and "(m/s²)/(N m)" in legend
     assert "α = 0.5" in legend and "α" not in rank_legend(grid, None, ENGLISH)
     assert rank_legend(None, None, ENGLISH) == "" == tube_numbers(None, True, ENGLISH)
-    shape = tube_shape(robot, take_page_snapshot(Lab(store(), entry), 1.0).path)
+    shape = tube_shape(robot, take_page_snapshot(Lab(loop_cache(), entry), 1.0).path)
     assert "50.0 mm" in tube_numbers(shape, False, ENGLISH)
     assert "every" in tube_numbers(shape, True, ENGLISH)
 
@@ -331,7 +333,7 @@ def test_a_projector_shows_it_in_a_lesson_too(lessons: LabServer) -> None:
     with Student(f"ws://127.0.0.1:{lessons.server.get_port()}", channel=True) as student:
         student.open()
         student.read(lambda: student.code)
-        lab = wait_for(lambda: lessons.sessions.find(student.code), 30.0).scheduled.lab
+        lab = wait_for(lambda: lessons.registry.find(student.code), 30.0).scheduled.lab
         for command in (c.OpenLesson("01-path-or-timetable"), c.SetPresenting(True)):
             lab.post(command)
         student.read(lambda: student.sees("Step 1 of") and not student.has_widget("Undo"))

@@ -13,7 +13,7 @@ from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.words import Words
 from tests.support.built_in import built_in_course
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 
 COURSE = built_in_course()[0]
 
@@ -54,7 +54,7 @@ def test_a_plot_and_a_control_that_a_text_names_are_on_its_page() -> None:
             marks = [each for each in step.behaviours if each.verb in ("plot", "control")]
             if not marks:
                 continue
-            first = take_page_snapshot(lab_at(lesson, step, store()), 1.0)
+            first = take_page_snapshot(lab_at(lesson, step, loop_cache()), 1.0)
             for words in map(Words, COURSE.languages()):
                 shown = labels(lesson.scene_at(index), first, words)
                 for said in marks:

@@ -21,7 +21,7 @@ from onpath.lessons.record import QUANTITIES
 from onpath.lessons.words import ENGLISH, Words, languages
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.robots import RobotEntry
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 
 
 def over_time(name: str) -> plots.TimePlot:
@@ -33,7 +33,7 @@ def over_time(name: str) -> plots.TimePlot:
 
 def test_a_reset_empties_the_plot(monkeypatch: pytest.MonkeyPatch) -> None:
     """Else a step would begin with the curves of the one before, which may tell the answer."""
-    lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
+    lab, shown = Lab(loop_cache()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
     plot = plots.LivePlot(gui, ENGLISH, first.key.fields, over_time("across"))
@@ -60,14 +60,14 @@ def test_a_plot_has_the_unit_that_texts_and_checks_have(language: str) -> None:
 
 
 def test_the_speed_is_plotted_in_millimetres_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
-    lab, shown = Lab(store()), list[tuple[np.ndarray, ...]]()
+    lab, shown = Lab(loop_cache()), list[tuple[np.ndarray, ...]]()
     first = take_page_snapshot(lab, 1.0)
     gui: Any = SimpleNamespace(add_uplot=lambda data, *_, **__: shown.append(data))
     plot = plots.LivePlot(gui, ENGLISH, first.key.fields, over_time("speed"))
     monkeypatch.setattr(plots, "update_gui", lambda _, __, data: shown.append(data))
     run(lab, 2.0)
     plot.follow(take_page_snapshot(lab, 1.0))
-    omega, radius = lab.session.parameters.speed, 50.0  # [rad/s], of the circle [mm]
+    omega, radius = lab.simulation.parameters.speed, 50.0  # [rad/s], of the circle [mm]
     assert shown[-1][2][-1] == pytest.approx(omega * radius, rel=0.02)
 
 
@@ -77,7 +77,7 @@ def test_of_two_lines_that_coincide_both_are_seen_and_no_number_is_cut() -> None
     def add_uplot(_: object, series: Sequence[uplot.Series], **options: Any) -> None:
         made.append({"series": series, **options})
 
-    fields = take_page_snapshot(Lab(store()), 1.0).key.fields
+    fields = take_page_snapshot(Lab(loop_cache()), 1.0).key.fields
     for name in ("speed", "across"):
         gui: Any = SimpleNamespace(add_uplot=add_uplot)
         plots.LivePlot(gui, ENGLISH, fields, over_time(name))
@@ -91,7 +91,7 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     """uPlot's legend has colours only."""
     made = list[Sequence[uplot.Series]]()
     gui: Any = SimpleNamespace(add_uplot=lambda _, series, **__: made.append(series))
-    fields = take_page_snapshot(Lab(store()), 1.0).key.fields
+    fields = take_page_snapshot(Lab(loop_cache()), 1.0).key.fields
     plots.LivePlot(gui, ENGLISH, fields, over_time("torques"))
     plots.LivePlot(gui, ENGLISH, fields, over_time("speed"))
     labels = [series.get("label", "") for series in made[0][1:]]
@@ -111,7 +111,7 @@ def test_a_symbol_means_one_thing_in_all_plots(entry: RobotEntry, language: str)
         return SimpleNamespace()
 
     gui: Any = SimpleNamespace(add_uplot=add_uplot)
-    fields = take_page_snapshot(Lab(store(), entry), 1.0).key.fields
+    fields = take_page_snapshot(Lab(loop_cache(), entry), 1.0).key.fields
     of = dict[str, set[str]]()
     for name in "across", "across_rate":
         shown.clear()

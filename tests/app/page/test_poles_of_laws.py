@@ -62,7 +62,7 @@ def test_the_place_is_read_once_a_second_and_at_once_where_time_stands_still() -
     run(lab, 10 * FRAME)
     do(lab, c.SetRunning(False))
     still = take_page_snapshot(lab, 1.0, before)
-    theta = lab.session.runs[RIGHT].shown()["theta"][0]
+    theta = lab.simulation.runs[RIGHT].shown()["theta"][0]
     assert still.places.of[RIGHT].theta == pytest.approx(theta)
     assert take_page_snapshot(lab, 1.0, still).places is still.places
 

@@ -26,7 +26,7 @@ def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> N
         with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()
             student.read(lambda: student.code)
-            lab = wait_for(lambda: server.sessions.find(student.code)).scheduled.lab
+            lab = wait_for(lambda: server.registry.find(student.code)).scheduled.lab
             student.set(ENGLISH("lesson.lessons"), True)
             student.read(lambda: student.has_widget(ENGLISH("route.follow")))
             assert student.sees("A lesson, steps 2 to 3, 5 min") and student.sees("11.5 min")

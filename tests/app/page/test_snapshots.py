@@ -33,7 +33,7 @@ from onpath.lessons.schema import Sketch
 from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support import waiting
 from tests.support.built_in import built_in_course
-from tests.support.lab import FOLLOWER, FRAME, store
+from tests.support.lab import FOLLOWER, FRAME, loop_cache
 from tests.support.student import Student
 
 wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that would hang
@@ -45,9 +45,9 @@ def client() -> Iterator[viser.ClientHandle]:
     server = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and server._views)
-        server.simulation.stop()
-        (number,) = wait_for(lambda: list(server._views))
+        student.read(lambda: student.has_widget("Path") and server._feeds)
+        server.thread.stop()
+        (number,) = wait_for(lambda: list(server._feeds))
         yield server.server.get_clients()[number]
     server.stop()
 
@@ -129,7 +129,7 @@ def filmed(lab: Lab, *commands: c.Command) -> Iterator[PageSnapshot | Motion]:
         lab.post(command)
         for _ in range(15):
             lab.drain()
-            lab.advance(lab.session.rate * FRAME)
+            lab.advance(lab.simulation.rate * FRAME)
         yield take_motion(lab)
         yield take_page_snapshot(lab, 0.9, nickname="Ada <b>" if number else "")
 
@@ -146,8 +146,8 @@ def assert_draws_the_same(drawing: Drawing, snapshots: list[PageSnapshot | Motio
 @pytest.mark.thorough
 @pytest.mark.parametrize("robot", ["five_bar", "flexible", "seven_axes"])
 def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) -> None:
-    lab = Lab(store(), ROBOTS[robot], course)
-    y = lab.session.runs[FOLLOWER].shown()["y"].copy()
+    lab = Lab(loop_cache(), ROBOTS[robot], course)
+    y = lab.simulation.runs[FOLLOWER].shown()["y"].copy()
     film = filmed(
         lab,
         *(c.Hold(True), c.SetCopy(False), c.Hold(False), c.SetParameter("K1", 90.0)),
@@ -164,7 +164,7 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
 def test_a_page_is_told_nothing_while_nothing_changes(
     robot: str, drawing: Drawing, course: Course
 ) -> None:
-    lab = Lab(store(), ROBOTS[robot], course)
+    lab = Lab(loop_cache(), ROBOTS[robot], course)
     lab.post(c.Hold(True))
     *_, last = filmed(lab, c.SetExaggeration(2.0), c.SetRunning(False))
     told = drawing.of([last, last, take_motion(lab)])
@@ -179,7 +179,7 @@ def test_a_lesson_is_drawn_from_data(drawing: Drawing, course: Course) -> None:
         for number, step in enumerate(course.lesson(name, "en").steps)
         if any(isinstance(block, Sketch) for block in step.blocks)
     )
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     lab.post(c.OpenLesson(name))
     lab.drain()
     on = [c.GoToStep(1)] * step
@@ -189,7 +189,7 @@ def test_a_lesson_is_drawn_from_data(drawing: Drawing, course: Course) -> None:
 
 
 def test_what_has_not_changed_is_shared_with_the_snapshot_before() -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     lab.drain()
     lab.advance(FRAME)
     one = take_page_snapshot(lab, 1.0)

@@ -21,11 +21,11 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import RobotEntry
 from tests.support.gui import Gui
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 
 
 def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
-    lab, posted = Lab(store()), list[Command]()
+    lab, posted = Lab(loop_cache()), list[Command]()
     before, gui = take_page_snapshot(lab, 1.0), Gui()
     fake: Any = gui
     widgets = ParameterWidgets(fake, ENGLISH, posted.append, ["K1"], before)
@@ -46,14 +46,14 @@ def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
 @settings(max_examples=3)
 @given(entry=st.sampled_from(list(ROBOTS.values())))
 def test_a_slider_stops_at_multiples_of_its_step(entry: RobotEntry) -> None:
-    lab, gui = Lab(store()), Gui()
+    lab, gui = Lab(loop_cache()), Gui()
     fake: Any = gui
     ChooseRobot(entry.name).apply(lab)
     names = [name for name, spec in declared(entry.parameters).items() if not spec.options]
     for end in ("low", "high"):
         for name in names:
             limit = getattr(declared(entry.parameters)[name], end)
-            lab.session.parameters = changed(lab.session.parameters, name, limit)
+            lab.simulation.parameters = changed(lab.simulation.parameters, name, limit)
         ParameterWidgets(fake, ENGLISH, lambda _: None, names, take_page_snapshot(lab, 0.0))
     made = [(heading, slider) for heading, sliders in gui.named.items() for slider in sliders]
     assert len(made) == 2 * len(names)
@@ -65,7 +65,7 @@ def test_a_slider_stops_at_multiples_of_its_step(entry: RobotEntry) -> None:
 
 
 def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
-    lab, gui = Lab(store()), Gui()
+    lab, gui = Lab(loop_cache()), Gui()
     fake: Any = gui
     widgets = OwnGainWidgets(fake, ENGLISH, lambda _: None, take_page_snapshot(lab, 0.0))
     shown = {heading.partition(" [")[0]: slider for heading, (slider,) in gui.named.items()}
@@ -75,11 +75,11 @@ def test_the_sliders_of_own_gains_are_those_of_the_laws_in_use() -> None:
         return {label for label, slider in shown.items() if slider.visible}
 
     assert len(shown) == len(OWN_GAINS) and visible() == set()
-    lab.session.change_law(LEFT, "waiting_clock")
+    lab.simulation.change_law(LEFT, "waiting_clock")
     assert visible() == {"Clock waits"}
-    lab.session.change_law(RIGHT, "contouring")
+    lab.simulation.change_law(RIGHT, "contouring")
     assert visible() == {"Clock waits", "Along / across"}
-    lab.session.change_law(LEFT, "path_following")
+    lab.simulation.change_law(LEFT, "path_following")
     assert visible() == {"Along / across"}
 
 

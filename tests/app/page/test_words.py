@@ -52,7 +52,7 @@ from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import AT_A_LIMIT, RobotEntry
 from tests.support.catalogues import COMPLETE, arguments, counts, messages
 from tests.support.checkout import ROOT
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 
 SOURCES = sorted(file for folder in ("app", "lessons") for file in (ROOT / folder).rglob("*.py"))
 CODED = [*SOURCES, *sorted((ROOT / "models").rglob("*.py"))]
@@ -541,7 +541,7 @@ def test_numbers_are_written_plainly_in_every_language() -> None:
 
 
 def test_a_german_lab_speaks_german() -> None:
-    lab = Lab(store(), FLEXIBLE)
+    lab = Lab(loop_cache(), FLEXIBLE)
     do(lab, c.SetLanguage("de"), c.ChoosePath("figure of eight"))
     assert lab.message.startswith("Hinweis: die Bahn kreuzt sich selbst")
     do(lab, c.Undo(), c.Undo())

@@ -37,7 +37,7 @@ def test_what_a_hold_does_is_said_of_the_law_that_has_a_clock_and_of_the_one_wit
     assert seen(lab, captions, 0.5) == {TRACKER: "", FOLLOWER: ""}
     do(lab, c.Hold(True))
     held = seen(lab, captions, 2.0)
-    most = {side: round(1e3 * run.max_distance) for side, run in lab.session.runs.items()}
+    most = {side: round(1e3 * run.max_distance) for side, run in lab.simulation.runs.items()}
     assert held[TRACKER] == f"torn off: up to {most[TRACKER]} mm" and most[TRACKER] > 40
     assert held[FOLLOWER].startswith("waits: ") and number(held[FOLLOWER]) <= 5
     do(lab, c.Hold(False))
@@ -46,7 +46,7 @@ def test_what_a_hold_does_is_said_of_the_law_that_has_a_clock_and_of_the_one_wit
 
 def test_captions_follow_the_law_not_the_side() -> None:
     lab, captions = new_lab(), Captions(ENGLISH)
-    lab.session.change_law(TRACKER, "path_following")
+    lab.simulation.change_law(TRACKER, "path_following")
     run(lab, 1.0)
     do(lab, c.Hold(True))
     held = seen(lab, captions, 1.0)
@@ -72,7 +72,7 @@ def test_only_the_robot_that_is_held_back_is_said_to_be() -> None:
 
 def test_a_stopped_robot_is_said_to_be_stopped() -> None:
     lab, captions = new_lab(0.5), Captions(ENGLISH)
-    lab.session.runs[FOLLOWER].fields()["v"][:] = 500.0
+    lab.simulation.runs[FOLLOWER].fields()["v"][:] = 500.0
     run(lab, 0.5)
     assert captions.follow(take_page_snapshot(lab, 1.0))[FOLLOWER] == "stopped"
 

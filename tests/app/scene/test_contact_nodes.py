@@ -58,7 +58,7 @@ def test_guides_and_forces_come_and_go(
     lab = new_lab(0.5)
     first = take_snapshot(lab, 1.0)
     client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
-    scene = Scene(client, stage_of(lab.session.robot))
+    scene = Scene(client, stage_of(lab.simulation.robot))
     scene.build(first)
     handle: Any = server.scene.get_handle_by_name
     assert handle("/brakes/left") is None and not handle("/force_labels/left").visible

@@ -49,7 +49,7 @@ def test_the_straight_blade_ends_at_the_rigid_tip(
     run(lab, seconds)
     shown = take_snapshot(lab, 1.0)
     client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
-    scene = Scene(client, stage_of(lab.session.robot))
+    scene = Scene(client, stage_of(lab.simulation.robot))
     scene.build(shown)
     begins, tips = ends(shown, scene)
     for i, (side, view) in enumerate(shown.robots.items()):
@@ -69,5 +69,5 @@ def test_the_straight_blade_ends_at_the_rigid_tip(
 def test_a_rigid_robot_has_no_blade(server: viser.ViserServer) -> None:
     lab = new_lab()
     client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
-    Scene(client, stage_of(lab.session.robot)).build(take_snapshot(lab, 1.0))
+    Scene(client, stage_of(lab.simulation.robot)).build(take_snapshot(lab, 1.0))
     assert server.scene.get_handle_by_name("/straight") is None

@@ -53,7 +53,7 @@ def test_a_hand_is_at_each_end_point_that_is_pulled(
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
     run(lab, 0.5)
-    stage = stage_of(lab.session.robot)
+    stage = stage_of(lab.simulation.robot)
     client: Any = SimpleNamespace(scene=server.scene, atomic=server.atomic)
     scene = Scene(client, stage)
     scene.build(take_snapshot(lab, 1.0))
@@ -63,7 +63,7 @@ def test_a_hand_is_at_each_end_point_that_is_pulled(
         show(scene, lab)
     assert not node.visible and sent == []
     for together in (True, False):
-        do(lab, c.SetCopy(together), c.Grab(LEFT, lab.session.runs[LEFT].shown()["y"] + 0.02))
+        do(lab, c.SetCopy(together), c.Grab(LEFT, lab.simulation.runs[LEFT].shown()["y"] + 0.02))
         for _ in range(3):
             run(lab, 0.1)
             show(scene, lab)

@@ -32,7 +32,7 @@ def labels(robot: Robot, q: Array) -> tuple[Array, Array]:
     """The lines in a configuration, (n, 2, 3), and the ends of the bars."""
     ends = drawn(robot.skeleton, q, 1.0)[0].reshape(-1, 3)
     found = label_function(robot, len(ends) // 2)
-    points = np.array(found.function(ends.T, robot.place(robot.endpoint(q)))).T
+    points = np.array(found.function(ends.T, robot.position(robot.endpoint(q)))).T
     return points[len(found.names) :].reshape(-1, 2, 3), ends
 
 
@@ -119,7 +119,7 @@ def test_the_name_of_every_joint_of_a_chain_stands_before_it(text: str, tmp_path
     for each in q:
         ends = drawn(robot.skeleton, each, 1.0)[0].reshape(-1, 3)
         found = label_function(robot, len(ends) // 2)
-        points = np.array(found.function(ends.T, robot.place(robot.endpoint(each)))).T
+        points = np.array(found.function(ends.T, robot.position(robot.endpoint(each)))).T
         at = dict(zip(found.names, points, strict=False))
         assert ", ".join(found.names).split(", ") == [f"q{'₁₂₃₄₅₆₇'[i]}" for i in range(chain.n)]
         for i, origin in enumerate(places(each).full().T):
@@ -132,7 +132,7 @@ def test_the_name_of_every_joint_of_a_chain_stands_before_it(text: str, tmp_path
 def test_axes_begin_where_the_output_is_0_and_point_where_it_grows(entry: RobotEntry) -> None:
     robot = entry.make(entry.parameters())
     for number, (begin, end) in enumerate(axes_of(robot)):
-        y = robot.unplace(np.array([begin, end]))
+        y = robot.output_at(np.array([begin, end]))
         assert np.allclose(y[0], 0.0)
         assert y[1] == pytest.approx(y[1][number] * np.eye(robot.system.p)[number])
         assert y[1][number] > 0

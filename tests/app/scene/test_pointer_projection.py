@@ -99,7 +99,7 @@ def test_pointer_anywhere_on_the_ray_means_the_same_point(x, z, share, base):
 @pytest.mark.parametrize("place", [(50.0, 0.0, 80.0), (-70.0, 0.0, 60.0), (40.0, 0.0, -90.0)])
 def test_far_pointer_stays_within_the_robot_s_reach(name, place):
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
-    stage, home = stage_of(robot), robot.place(robot.frame.lift(np.zeros(2)))
+    stage, home = stage_of(robot), robot.position(robot.frame.lift(np.zeros(2)))
     plane = DragPlane(home, np.array([0.0, 1.0, 0.0]))
     camera = home + [0.0, -1.0, 0.0]
     far = pointer_on_plane(camera, home + place, np.zeros(3), plane, stage.reachable)
@@ -113,5 +113,5 @@ def test_far_pointer_stays_within_the_robot_s_reach(name, place):
 def test_coordinates_of_the_path_s_plane_are_those_a_point_was_drawn_from(name, z):
     robot = ROBOTS[name].make(ROBOTS[name].parameters())
     np.testing.assert_allclose(
-        plane_coordinates(robot, robot.place(robot.frame.lift(z))), z, atol=1e-15
+        plane_coordinates(robot, robot.position(robot.frame.lift(z))), z, atol=1e-15
     )

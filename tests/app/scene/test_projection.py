@@ -28,5 +28,5 @@ def test_a_point_is_projected_along_the_ray_through_it(name):
             half = np.tan(fov / 2)  # of the picture's height, at distance 1
             seen = np.array([2 * half * across, 2 * half * down, depth])
             np.testing.assert_allclose(
-                position + turn.as_matrix() @ seen, origin + robot.place(y), atol=1e-12
+                position + turn.as_matrix() @ seen, origin + robot.position(y), atol=1e-12
             )

@@ -17,8 +17,8 @@ from onpath.app.lab.snapshots.part_poses import bar_quaternions, waist_angle
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, path_place
 from onpath.app.lab.snapshots.snapshot import (
     TIP,
-    PathView,
-    RobotView,
+    PathSnapshot,
+    RobotSnapshot,
     Snapshot,
 )
 from onpath.app.scene import meshes
@@ -46,7 +46,7 @@ def robot(
     q2: float,
     force: tuple[float, float, float] = (0.0, 0.0, 0.0),
     law: str = DEFAULT_LAWS[RIGHT],
-) -> RobotView:
+) -> RobotSnapshot:
     """A rigid five-bar."""
     q, pull = np.array([q1, q2]), (force[0], force[2])
     seen = np.concatenate([FIVE_BAR.endpoint(q), pull, [0.0]])
@@ -58,14 +58,14 @@ def robot(
     points, poses = np.split(flat, [3 * counts.points])
     points = points.reshape(-1, 3)
     trace = np.linspace(np.zeros(3), points[TIP], 50)
-    return RobotView(law, points, poses, counts, trace, 0.0, 0.0, 0.0, np.zeros(2))
+    return RobotSnapshot(law, points, poses, counts, trace, 0.0, 0.0, 0.0, np.zeros(2))
 
 
-def path(version: int = 0, n_points: int = 6) -> PathView:
+def path(version: int = 0, n_points: int = 6) -> PathSnapshot:
     """A circle with control points on it."""
     turn = np.linspace(0.0, 2.0 * np.pi, 101)[:, None]
     circle = np.array([0.2, 0.0, 0.2]) + 0.05 * np.hstack([np.cos(turn), 0 * turn, np.sin(turn)])
-    return PathView(version, circle, circle[:n_points], None, np.zeros((0, 3)))
+    return PathSnapshot(version, circle, circle[:n_points], None, np.zeros((0, 3)))
 
 
 def snapshot(q1: float = 1.5, q2: float = 3.0, **changes: Any) -> Snapshot:

@@ -34,11 +34,11 @@ class Page:
     """One tab of a real lab whose frames are counted out here; notes what is told of the line."""
 
     def __init__(self, lab: LabServer) -> None:
-        (self.number,) = wait_for(lambda: list(lab._views))
-        self.view: Any = lab._views[self.number]
+        (self.number,) = wait_for(lambda: list(lab._feeds))
+        self.view: Any = lab._feeds[self.number]
         self.client = lab.server.get_clients()[self.number]
-        self.lab = next(iter(lab.sessions._entries.values())).scheduled.lab
-        lab.simulation.stop()
+        self.lab = next(iter(lab.registry._entries.values())).scheduled.lab
+        lab.thread.stop()
         self.frame, self._showing = 0, False
         self.told: list[int] = []  # points of each drawing
         self.told_by_mouse = 0
@@ -92,7 +92,7 @@ def page() -> Iterator[Page]:
     lab = LabServer("127.0.0.1", 0, LoopCache())
     with Student(f"ws://127.0.0.1:{lab.server.get_port()}") as student:
         student.open()
-        student.read(lambda: student.has_widget("Path") and lab._views)
+        student.read(lambda: student.has_widget("Path") and lab._feeds)
         yield Page(lab)
     lab.stop()
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathView
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_ways
+from onpath.app.lab.snapshots.snapshot import Counts, Motion, PageKey, PathSnapshot
+from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.models.arrays import Array
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.file_chain import Options
@@ -28,13 +28,13 @@ TWO_LINKS = {"five_bar", "flexible", "two_link_arm", "spatial_arm"}
 def meant(symbol: str, robot: Robot, q: Array) -> tuple[Array, Array]:
     """The points of a symbol on a robot in a configuration, and the ends of its bars."""
     ends, joints = (each.reshape(-1, 3) for each in drawn(robot.skeleton, q, 1.0))
-    tip = robot.place(robot.endpoint(q))
+    tip = robot.position(robot.endpoint(q))
     counts = Counts(bars=len(ends) // 2, joints=len(joints), marks=0)
     points = np.concatenate([ends, joints, [tip, tip, tip, tip]])
-    path = PathView(0, np.zeros((2, 3)), np.zeros((0, 3)), None, np.zeros((0, 3)))
+    path = PathSnapshot(0, np.zeros((2, 3)), np.zeros((0, 3)), None, np.zeros((0, 3)))
     motion = Motion(PageKey(), path, counts, points.reshape(1, -1))
-    (way,) = symbol_ways(symbol, robot, motion)
-    return robot.place(way), ends
+    (line,) = symbol_lines(symbol, robot, motion)
+    return robot.position(line), ends
 
 
 def poses(robot: Robot) -> Array:
@@ -58,11 +58,11 @@ def test_the_arc_of_a_joint_turns_by_its_angle_and_ends_at_its_link(entry: Robot
             continue
         place = names.index(symbol.replace("_", ""))
         for q in poses(robot):
-            way, ends = meant(symbol, robot, q)
+            line, ends = meant(symbol, robot, q)
             if robot.chain is not None:
-                assert np.abs(ends - way).max(axis=1).min() < 1e-9  # a joint
+                assert np.abs(ends - line).max(axis=1).min() < 1e-9  # a joint
                 continue
-            link, centre, *arc = way
+            link, centre, *arc = line
             assert turned(np.array(arc), centre) == pytest.approx(abs(q[place]), abs=1e-6)
             ray = (arc[-1] - centre) / np.linalg.norm(arc[-1] - centre)
             assert ray @ (link - centre) == pytest.approx(np.linalg.norm(link - centre))
@@ -101,5 +101,5 @@ def test_the_joints_of_a_robot_from_a_file_are_shown(tmp_path: Path) -> None:
     origins = ca.Function("origins", [symbols], [frame_poses(robot.chain, symbols)[0]])
     for q in robot.rest(robot.frame.lift(np.array([[0.01, 0.02], [-0.02, 0.01]]))):
         for i, symbol in enumerate(("q_1", "q_2")):
-            way, _ = meant(symbol, robot, q)
-            assert way == pytest.approx(origins(q).full().T[[i]], abs=1e-9)
+            line, _ = meant(symbol, robot, q)
+            assert line == pytest.approx(origins(q).full().T[[i]], abs=1e-9)

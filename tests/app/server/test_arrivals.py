@@ -64,8 +64,8 @@ def test_silent_tabs_hold_no_thread_no_lab_and_no_place(lab: LabServer) -> None:
         newcomer.read(lambda: newcomer.has_widget("Path"))
         insider.set("Lessons", True)
         insider.read(lambda: insider.has_widget("Open lesson 1"))
-        wait_for(lambda: len(lab._views) == 2)
-        assert len(lab.sessions) == 2
+        wait_for(lambda: len(lab._feeds) == 2)
+        assert len(lab.registry) == 2
         assert [is_closed(tab) for tab in tabs] == [True] * MOST_EACH + [False] * MOST_EACH
 
 
@@ -80,7 +80,7 @@ def test_a_late_answer_returns_to_the_same_lab(lab: LabServer) -> None:
         wait_for(lab.server.get_clients)
         assert all_threads_are_free(lab.server)
         student.read(lambda: student.has_widget("Path"))
-        assert student.code == code and len(lab.sessions) == 1
+        assert student.code == code and len(lab.registry) == 1
 
 
 def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabServer) -> None:
@@ -91,7 +91,7 @@ def test_a_browser_that_opens_a_lab_by_its_code_remembers_its_own_too(lab: LabSe
             student.read(lambda student=student: student.code and student.has_widget("Path"))
         codes = [other.code, one.code]
         other.close()
-        wait_for(lambda: len(lab._views) == 1)  # the lab is free then
+        wait_for(lambda: len(lab._feeds) == 1)  # the lab is free then
         (client,) = lab.server.get_clients().values()
         lab._enter(client, codes[0])
         one.read(lambda: one.code == codes[0])

@@ -1,4 +1,4 @@
-"""Which class a page belongs to, and what somebody at the place of another one is told."""
+"""Which class a page belongs to, and what somebody under the prefix of another one is told."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ KEYS = ["k7mf2xqa9tzr", "bn4ws8cd3vyp"]
 
 
 def directory(rooms: list[Classroom]) -> ClassDirectory:
-    def serve(room: Classroom, place: str) -> Any:
-        return SimpleNamespace(room=room, place=place)
+    def serve(room: Classroom, prefix: str) -> Any:
+        return SimpleNamespace(room=room, prefix=prefix)
 
     return ClassDirectory(rooms, serve)
 
@@ -29,18 +29,18 @@ def test_each_class_is_at_its_place_only() -> None:
     found = directory(rooms)
     for room in rooms:
         service: Any = found.at(f"c/{room.code}")
-        assert service.room is room and service.place == f"c/{room.code}"
-    for place in ("", "l/abc", "c/nobody", f"l/{rooms[0].code}"):
-        assert found.at(place) is None
+        assert service.room is room and service.prefix == f"c/{room.code}"
+    for prefix in ("", "l/abc", "c/nobody", f"l/{rooms[0].code}"):
+        assert found.at(prefix) is None
     assert directory([]).at("") is None and directory([]).seat_elsewhere("", "lab") is None
 
 
 def test_who_is_elsewhere_is_told_the_address() -> None:
     rooms = open_classes(KEYS)
-    for place, code in (("c/nobody", "nobody"), ("l/abc", ""), ("", "")):
-        seat = directory(rooms).seat_elsewhere(place, "lab")
+    for prefix, code in (("c/nobody", "nobody"), ("l/abc", ""), ("", "")):
+        seat = directory(rooms).seat_elsewhere(prefix, "lab")
         assert seat is not None and seat.code == code
-        page = f"https://school.example/folder/{f'{place}/' if place else ''}"
+        page = f"https://school.example/folder/{f'{prefix}/' if prefix else ''}"
         for room, key in zip(rooms, KEYS, strict=True):
             led = [seat.join(f" {room.code.upper()}", ""), seat.teach(shown(key))]
             there = f"https://school.example/folder/c/{room.code}/"

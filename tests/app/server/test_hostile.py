@@ -60,7 +60,7 @@ class Guest:
 
     def __init__(self, server: LabServer, inside: bool = True) -> None:
         self.told: list[dict[str, Any]] = []
-        before = set(server._views)
+        before = set(server._feeds)
         self.socket = websockets.sync.client.connect(
             f"ws://127.0.0.1:{server.server.get_port()}",
             subprotocols=[Subprotocol(SUBPROTOCOL)],
@@ -72,9 +72,9 @@ class Guest:
         self.send("ViewerCameraMessage", **CAMERA)
         if not inside:
             return
-        (self.id,) = wait_for(lambda: set(server._views) - before)
+        (self.id,) = wait_for(lambda: set(server._feeds) - before)
         self.client = server.server.get_clients()[self.id]
-        entries = server.sessions._entries.values()
+        entries = server.registry._entries.values()
         self.scheduled = next(entry.scheduled for entry in entries if entry.client == self.id)
 
     def send(self, kind: str, **fields: Any) -> None:
@@ -194,7 +194,7 @@ def attacker(server: LabServer) -> Iterator[Guest]:
     guest = Guest(server)
     yield guest
     guest.socket.close()
-    wait_for(lambda: guest.id not in server._views)
+    wait_for(lambda: guest.id not in server._feeds)
 
 
 @pytest.fixture
@@ -237,7 +237,7 @@ def test_no_widget_of_the_lab_takes_an_impossible_value(
             assert (low is None or low <= value) and (high is None or value <= high)
         elif getattr(handle, "options", None):
             assert value in handle.options
-    assert attacker.id in server._views  # it may go on
+    assert attacker.id in server._feeds  # it may go on
 
 
 def test_widgets_of_another_client_cannot_be_changed(
@@ -245,11 +245,11 @@ def test_widgets_of_another_client_cannot_be_changed(
 ) -> None:
     victim = Guest(server)
     before = {uuid: handle.value for uuid, handle in victim.handles.items()}
-    parameters = victim.scheduled.session.parameters
+    parameters = victim.scheduled.simulation.parameters
     with witness.served():
         attacker.pour(before, (True, 1, 1.0, "ellipse"))
-    assert victim.scheduled.session.parameters == parameters and victim.scheduled.lab.asked == 0
-    assert victim.scheduled.session.editor.design.name == "circle"
+    assert victim.scheduled.simulation.parameters == parameters and victim.scheduled.lab.asked == 0
+    assert victim.scheduled.simulation.editor.design.name == "circle"
     moving = ("GuiProgressBarHandle",)
     after = victim.handles
     changed = [u for u in before if after[u].value != before[u]]
@@ -368,7 +368,7 @@ def memory() -> int:
 def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     server: LabServer, witness: Witness, quiet_log: None
 ) -> None:
-    before, sockets = set(server._views), server.server._websock_server._live_connections
+    before, sockets = set(server._feeds), server.server._websock_server._live_connections
     known = set(sockets.values())
     raw = socket.socket()
     raw.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
@@ -386,7 +386,7 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
     )
     silent.send(packed("ViewerCameraMessage", **CAMERA))
     answer_questions(silent)
-    (deaf,) = wait_for(lambda: set(server._views) - before)
+    (deaf,) = wait_for(lambda: set(server._feeds) - before)
     client = server.server.get_clients()[deaf]
     buffer = client._websock_connection._state.message_buffer
     wait_for(lambda: connection.transport.get_write_buffer_size() > 0)
@@ -398,7 +398,7 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
             witness.watch(3)
     assert max(waiting[-10:]) <= max(waiting[:20]) + 20  # what is late is merged
     raw.close()
-    wait_for(lambda: deaf not in server._views)
+    wait_for(lambda: deaf not in server._feeds)
 
 
 def test_a_client_that_answers_nothing_is_closed() -> None:
@@ -426,7 +426,7 @@ def test_800_connections_in_a_row(server: LabServer, witness: Witness, quiet_log
     """Some leave at once, some during the handshake, some after it, politely or not."""
     port = server.server.get_port()
     camera = frames(packed("ViewerCameraMessage", **CAMERA))
-    labs, threads, used = len(server.simulation.labs), threading.active_count(), memory()
+    labs, threads, used = len(server.thread.labs), threading.active_count(), memory()
     with witness.served():
         for number in range(800):
             way = number % 4
@@ -439,7 +439,7 @@ def test_800_connections_in_a_row(server: LabServer, witness: Witness, quiet_log
             raw.close()
     assert threading.active_count() < threads + 50
     wait_for(lambda: _let_in(server)).socket.close()
-    wait_for(lambda: len(server.simulation.labs) <= labs + 3)
+    wait_for(lambda: len(server.thread.labs) <= labs + 3)
     wait_for(lambda: len(server.server._websock_server._live_connections) <= 2)
     assert memory() - used < 30e6
 
@@ -457,17 +457,17 @@ def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_plac
             for guest in late:
                 said = wait_for(lambda guest=guest: [m for m in guest.told if "markdown" in str(m)])
                 assert "All 2 places are taken" in str(said)
-            assert len(server.simulation.labs) == 2
+            assert len(server.thread.labs) == 2
         leaving.socket.close()
-        wait_for(lambda: len(server._views) == 2 and leaving.id not in server._views)
-        (entered,) = [number for number in server._views if number != 0]
+        wait_for(lambda: len(server._feeds) == 2 and leaving.id not in server._feeds)
+        (entered,) = [number for number in server._feeds if number != 0]
         wait_for(lambda: any(guest.let_in for guest in late))
         outside = [guest for guest in late if not guest.let_in]
         clients = len(server.server.get_clients())
         outside[0].socket.close()  # who waits and leaves frees nothing
         wait_for(lambda: len(server.server.get_clients()) < clients)
         inside.watch(LEAST)
-        assert set(server._views) == {0, entered}
+        assert set(server._feeds) == {0, entered}
         assert len(outside) == 2 and not any(guest.let_in for guest in outside)
         inside.close()
     finally:
@@ -481,16 +481,16 @@ def test_a_clock_that_jumps_is_not_noticed(
     server: LabServer, witness: Witness, quiet_log: None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     genuine = time.time
-    labs = set(server.simulation.labs)
+    labs = set(server.thread.labs)
     with witness.served():
         for jump in (86400.0, -86400.0, 3e9, 0.0):
             monkeypatch.setattr(time, "time", lambda jump=jump: genuine() + jump)
             witness.watch(10)
             newcomer = Guest(server)
-            begun = newcomer.scheduled.session.time
-            wait_for(lambda n=newcomer, b=begun: n.scheduled.session.time > b + 0.1)
+            begun = newcomer.scheduled.simulation.time
+            wait_for(lambda n=newcomer, b=begun: n.scheduled.simulation.time > b + 0.1)
             newcomer.socket.close()
-    assert labs <= set(server.simulation.labs)
+    assert labs <= set(server.thread.labs)
 
 
 SUSPENDED = """
@@ -500,8 +500,8 @@ from onpath.app.server.lab_server import LabServer
 server = LabServer("127.0.0.1", 0, LoopCache())
 print("told", server.server.get_port(), flush=True)
 for _ in sys.stdin:
-    (lab,) = server.simulation.labs
-    print("told", lab.session.time, server.simulation.frames.count, flush=True)
+    (lab,) = server.thread.labs
+    print("told", lab.simulation.time, server.thread.frames.count, flush=True)
 """
 
 

@@ -45,7 +45,7 @@ class Tab:
 
     @property
     def gain(self) -> float:
-        return self.lab.session.parameters.K2
+        return self.lab.simulation.parameters.K2
 
     def settle(self) -> None:
         """Return when everything that was sent has been handled."""
@@ -73,7 +73,7 @@ def tab() -> Iterator[Tab]:
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.moving > 3 and student.has_widget("K2"))
-        (entry,) = server.sessions._entries.values()
+        (entry,) = server.registry._entries.values()
         yield Tab(student, server, entry.scheduled.lab)
     server.stop()
 
@@ -161,7 +161,7 @@ def hit_every_node(tab: Tab) -> None:
 @pytest.mark.parametrize("path", ["circle", "clover", "segment"])
 def test_every_node_with_every_index(tab: Tab, path: str) -> None:
     tab.lab.post(c.ChoosePath(path))
-    wait_for(lambda: tab.lab.session.editor.design.name == path, WAIT)
+    wait_for(lambda: tab.lab.simulation.editor.design.name == path, WAIT)
     hit_every_node(tab)
 
 
@@ -174,8 +174,8 @@ def test_a_sheet_to_draw_on_with_every_index(tab: Tab) -> None:
 
 @pytest.mark.thorough
 def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
-    (view,) = tab.server._views.values()
-    scene: Any = view.page._scene
+    (feed,) = tab.server._feeds.values()
+    scene: Any = feed.page._scene
     scene.show_start(True)
     tab.lab.post(c.SetWall(True))
     wait_for(lambda: {"/wall/body", "/wall/ends", "/start/ball"} <= set(tab.nodes()), WAIT)

@@ -35,7 +35,7 @@ def come_in(running: Running, key: str) -> Iterator[Class]:
     quiet(running)
     for ended in [each for each in running.site.processes if each.process.poll() is not None]:
         ended.start_again()
-        return_to(ended, running, klass.place)
+        return_to(ended, running, klass.prefix)
 
 
 def move(klass: Class, who: Student, seconds: float) -> dict[float, float]:

@@ -88,7 +88,7 @@ def test_pages_do_not_all_take_the_same_turn() -> None:
 
 
 def test_a_hand_is_followed_in_every_frame_of_a_thread_at_ease() -> None:
-    target = y(new_lab(FRAME).session, FOLLOWER) + 0.01
+    target = y(new_lab(FRAME).simulation, FOLLOWER) + 0.01
     paper = shown(AT_EASE, 0, c.Grab(FOLLOWER, target))
     assert sorted(paper.moved + paper.whole) == list(range(FRAMES))
 
@@ -132,17 +132,17 @@ def test_the_data_channel_waits_until_a_lab_that_is_followed_anew_has_been_shown
 def test_a_page_can_be_built_while_a_robot_is_made(name: str) -> None:
     """That takes long, and another thread reads the lab."""
     lab, seen = new_lab(FRAME), list[PageSnapshot]()
-    session, entry = lab.session, ROBOTS[name]
+    simulation, entry = lab.simulation, ROBOTS[name]
 
     def slowly(parameters: Any) -> Any:
         seen.append(take_page_snapshot(lab, 1.0))
         return entry.make(parameters)
 
     before = take_page_snapshot(lab, 1.0)
-    session.choose_robot(replace(entry, make=slowly))
+    simulation.choose_robot(replace(entry, make=slowly))
     first = len(seen)
     assert first and all(each.key == before.key for each in seen)
     assert all(each.parameters == before.parameters for each in seen)
     chosen = take_page_snapshot(lab, 1.0)
-    session.set_parameters(changed(session.parameters, "payload", 0.05))
+    simulation.set_parameters(changed(simulation.parameters, "payload", 0.05))
     assert seen[first].key == chosen.key and seen[first].parameters == chosen.parameters

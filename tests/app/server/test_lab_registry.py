@@ -27,12 +27,12 @@ from tests.support.lab import do, new_lab
 
 
 class Desk:
-    """Sessions under a clock that stands still, and browsers that keep their codes."""
+    """Labs under a clock that stands still, and browsers that keep their codes."""
 
     def __init__(self) -> None:
         self.now = 1000.0
-        self.simulation = SimulationThread()
-        self.sessions = LabRegistry(self.simulation, new_lab, lambda: self.now)
+        self.thread = SimulationThread()
+        self.registry = LabRegistry(self.thread, new_lab, lambda: self.now)
         self.storage: dict[str, str | None] = {}
         self._clients = 0
 
@@ -40,9 +40,9 @@ class Desk:
         """A tab: (client, its entry)."""
         self._clients += 1
         known = self.storage.get(browser)
-        entry = self.sessions.join(self._clients, known)
-        entry.scheduled.view = _View()
-        self.storage[browser] = self.sessions.remembered(entry.code, known or "")
+        entry = self.registry.join(self._clients, known)
+        entry.scheduled.display = _View()
+        self.storage[browser] = self.registry.remembered(entry.code, known or "")
         return self._clients, entry
 
 
@@ -79,7 +79,7 @@ def test_a_lab_that_cannot_be_opened_is_told_of_in_the_language_of_the_new_one(
     def load(_: str) -> LabState | None:
         raise NotKept("error.lab_newer")
 
-    desk.sessions.make, desk.sessions.load = make, load
+    desk.registry.make, desk.registry.load = make, load
     desk.storage["a"] = "abcdefghijkm"
     lab = desk.open("a")[1].scheduled.lab
     words = Words(language)
@@ -91,21 +91,21 @@ def test_a_lab_that_cannot_be_opened_is_told_of_in_the_language_of_the_new_one(
 def test_reload_comes_back_to_the_same_lab(desk: Desk) -> None:
     client, entry = desk.open("a")
     for _ in range(5):
-        left = desk.sessions.leave(client)
+        left = desk.registry.leave(client)
         assert left is entry and entry.client is None
-        assert entry.scheduled.view is None  # time waits
+        assert entry.scheduled.display is None  # time waits
         client, again = desk.open("a")
-        assert again is entry and entry.client == client and entry.scheduled.view is not None
-    assert len(desk.sessions) == 1 and desk.simulation.labs == [entry.scheduled]
+        assert again is entry and entry.client == client and entry.scheduled.display is not None
+    assert len(desk.registry) == 1 and desk.thread.labs == [entry.scheduled]
 
 
 def test_two_tabs_are_two_labs_and_each_reload_finds_its_own(desk: Desk) -> None:
     first, one = desk.open("a")
     second, two = desk.open("a")
     assert one is not two and one.scheduled.lab is not two.scheduled.lab and one.code != two.code
-    desk.sessions.leave(first)
+    desk.registry.leave(first)
     assert desk.open("a")[1] is one
-    desk.sessions.leave(second)
+    desk.registry.leave(second)
     assert desk.open("a")[1] is two
 
 
@@ -113,20 +113,20 @@ def test_the_lab_left_last_comes_back_first(desk: Desk) -> None:
     tabs = [desk.open("a") for _ in range(3)]
     for client, _ in (tabs[1], tabs[2], tabs[0]):
         desk.now += 1
-        desk.sessions.leave(client)
+        desk.registry.leave(client)
     assert [desk.open("a")[1] for _ in range(3)] == [tabs[0][1], tabs[2][1], tabs[1][1]]
 
 
 def test_another_browser_gets_another_lab(desk: Desk) -> None:
     client, entry = desk.open("a")
-    desk.sessions.leave(client)
+    desk.registry.leave(client)
     assert desk.open("b")[1] is not entry
 
 
 @pytest.mark.parametrize("known", [None, "", "x", "0" * 12, "," * 500, "<script>", "é" * 300])
 def test_codes_that_nobody_gave_open_nothing(desk: Desk, known: str | None) -> None:
     client, entry = desk.open("a")
-    desk.sessions.leave(client)
+    desk.registry.leave(client)
     desk.storage["b"] = known
     assert desk.open("b")[1] is not entry
     assert re.fullmatch(r"[a-z0-9]{12}(,[a-z0-9]{12})*", str(desk.storage["b"]))
@@ -152,26 +152,26 @@ def test_browser_remembers_a_few_codes_the_newest_first(desk: Desk) -> None:
 def test_abandoned_lab_is_kept_for_a_while_and_then_dropped(desk: Desk) -> None:
     client, entry = desk.open("a")
     _, used = desk.open("c")
-    desk.sessions.leave(client)
+    desk.registry.leave(client)
     desk.now += KEPT - 1
-    desk.sessions.leave(desk.open("b")[0])
-    assert entry.scheduled in desk.simulation.labs
+    desk.registry.leave(desk.open("b")[0])
+    assert entry.scheduled in desk.thread.labs
     desk.now += 2
     desk.open("b")
-    assert entry.scheduled not in desk.simulation.labs
+    assert entry.scheduled not in desk.thread.labs
     assert desk.open("a")[1] is not entry
-    assert used.scheduled in desk.simulation.labs  # somebody looks at it, however long
+    assert used.scheduled in desk.thread.labs  # somebody looks at it, however long
 
 
 def test_the_number_of_waiting_labs_is_limited(desk: Desk) -> None:
     tabs = [desk.open(str(k)) for k in range(MOST_ABANDONED + 5)]
-    assert len(desk.sessions) == MOST_ABANDONED + 5
+    assert len(desk.registry) == MOST_ABANDONED + 5
     for client, entry in tabs:
         entry.scheduled.lab.advance(0.1)
         desk.now += 0.1
-        desk.sessions.leave(client)
-    assert len(desk.sessions) == len(desk.simulation.labs) == MOST_ABANDONED
-    kept = [len(entry.scheduled.session.history) > 0 for _, entry in tabs]
+        desk.registry.leave(client)
+    assert len(desk.registry) == len(desk.thread.labs) == MOST_ABANDONED
+    kept = [len(entry.scheduled.simulation.history) > 0 for _, entry in tabs]
     assert kept == 5 * [False] + MOST_ABANDONED * [True]  # most of a lab's memory
     assert desk.open("0")[1] is not tabs[0][1]  # the oldest went
     assert desk.open(str(MOST_ABANDONED + 4))[1] is tabs[-1][1]
@@ -179,50 +179,50 @@ def test_the_number_of_waiting_labs_is_limited(desk: Desk) -> None:
 
 def test_leaving_twice_or_never_having_come_does_no_harm(desk: Desk) -> None:
     client, entry = desk.open("a")
-    assert desk.sessions.leave(99) is None
-    assert desk.sessions.leave(client) is entry and desk.sessions.leave(client) is None
-    assert len(desk.sessions) == 1
+    assert desk.registry.leave(99) is None
+    assert desk.registry.leave(client) is entry and desk.registry.leave(client) is None
+    assert len(desk.registry) == 1
 
 
 def test_a_lab_in_which_nobody_did_anything_is_soon_dropped(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     desk = Desk()
-    monkeypatch.setattr(desk.simulation, "call", lambda function: function())
+    monkeypatch.setattr(desk.thread, "call", lambda function: function())
     (_, seen), (left, unused), (gone, used) = (desk.open(name) for name in "abc")
     for entry in (seen, unused, used):
         entry.scheduled.lab.advance(0.5)
     do(used.scheduled.lab, SetRunning(False))
-    desk.sessions.leave(left)
-    desk.sessions.leave(gone)
+    desk.registry.leave(left)
+    desk.registry.leave(gone)
     labs = list[list[bool]]()
     for seconds in (HISTORY_KEPT - 1, 2, 10):
         desk.now += seconds
-        desk.sessions.free_memory()
-        present = desk.simulation.labs
+        desk.registry.free_memory()
+        present = desk.thread.labs
         labs.append([entry.scheduled in present for entry in (seen, unused, used)])
     assert labs == [[True, True, True], [True, False, True], [True, False, True]]
     assert desk.open("c")[1] is used
-    assert desk.open("b")[1].scheduled.session.time == 0.0
+    assert desk.open("b")[1].scheduled.simulation.time == 0.0
 
 
 def test_a_lab_that_was_left_a_while_ago_keeps_no_history(monkeypatch: pytest.MonkeyPatch) -> None:
     desk = Desk()
-    monkeypatch.setattr(desk.simulation, "call", lambda function: function())
+    monkeypatch.setattr(desk.thread, "call", lambda function: function())
     (_, used), (left, gone), (paused, looking) = (desk.open(name) for name in "abc")
     for entry in (used, gone, looking):
         do(entry.scheduled.lab, SetRunning(True))
         entry.scheduled.lab.advance(0.5)
-    look_back(looking.scheduled.session, 0.2)
-    desk.sessions.leave(left)
-    desk.sessions.leave(paused)
+    look_back(looking.scheduled.simulation, 0.2)
+    desk.registry.leave(left)
+    desk.registry.leave(paused)
     lengths: list[list[bool]] = []
     for seconds in (0.0, HISTORY_KEPT + 1):
         desk.now += seconds
-        desk.sessions.free_memory()
-        histories = [entry.scheduled.session.history for entry in (used, gone, looking)]
+        desk.registry.free_memory()
+        histories = [entry.scheduled.simulation.history for entry in (used, gone, looking)]
         lengths.append([len(history) > 0 for history in histories])
     assert lengths == [[True, True, True], [True, False, True]]
     _, back = desk.open("b")
     back.scheduled.lab.advance(0.5)
-    assert back is gone and len(back.scheduled.session.history)
+    assert back is gone and len(back.scheduled.simulation.history)

@@ -15,7 +15,7 @@ from onpath.app.lab.commands import SetLanguage
 from onpath.app.server.lab_server import LabServer
 from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.student import Student
 
 HEADERS = {
@@ -46,7 +46,7 @@ def test_any_header_names_a_language(header: str) -> None:
 
 @pytest.fixture
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, store())
+    server = LabServer("127.0.0.1", 0, loop_cache())
     yield server
     server.stop()
 
@@ -57,13 +57,13 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
     with Student(address, **headers) as student:
         student.open()
         student.read(lambda: student.has_widget("Bahn") and student.code)
-        lab = server.sessions.find(student.code)
+        lab = server.registry.find(student.code)
         assert lab is not None and lab.scheduled.lab.words.language == "de"
 
 
 def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> None:
     room, german = Classroom(), Words("de")
-    server = LabServer("127.0.0.1", 0, store(), classrooms=[room])
+    server = LabServer("127.0.0.1", 0, loop_cache(), classrooms=[room])
     address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
     with Student(address) as student, Student(address) as teacher:
         student.open()
@@ -74,7 +74,7 @@ def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> N
         teacher.set("Teacher's key", shown(room.key))
         teacher.set("Open the teacher's page", True)
         teacher.read(lambda: teacher.has_widget("Freeze all labs") and teacher.code)
-        own = server.sessions.find(teacher.code)
+        own = server.registry.find(teacher.code)
         assert own is not None
         own.scheduled.lab.post(SetLanguage("de"))
         teacher.read(lambda: teacher.has_widget(german("class.freeze")))

@@ -22,7 +22,7 @@ from onpath.app.storage.lab_state import LabState
 from onpath.app.storage.records import Records, file_url
 from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.student import Student
 from tests.support.waiting import wait_for
 
@@ -98,9 +98,9 @@ def ends(act: Callable[[], Any]) -> bool:
     return done.wait(WAIT / 2)
 
 
-def new_sessions(held: Held) -> LabRegistry:
+def new_registry(held: Held) -> LabRegistry:
     keeper: Any = held
-    make = lambda: Lab(store())  # noqa: E731
+    make = lambda: Lab(loop_cache())  # noqa: E731
     current = held.is_current
     return LabRegistry(SimulationThread(), make, load=held.load, is_current=current, keeper=keeper)
 
@@ -108,42 +108,42 @@ def new_sessions(held: Held) -> LabRegistry:
 @pytest.mark.thorough
 @pytest.mark.parametrize("way", ["enter", "join"])
 def test_a_lab_that_is_waited_for_holds_up_nobody_else(held: Held, way: str) -> None:
-    sessions = new_sessions(held)
-    others = [sessions.join(client, None).code for client in (1, 2)]
+    registry = new_registry(held)
+    others = [registry.join(client, None).code for client in (1, 2)]
     if way == "enter":
-        sessions.join(3, None)
+        registry.join(3, None)
     open_slowly = {
-        "enter": lambda: sessions.enter(3, SLOW),
-        "join": lambda: sessions.join(3, SLOW),
+        "enter": lambda: registry.enter(3, SLOW),
+        "join": lambda: registry.join(3, SLOW),
     }[way]
 
     def come_and_go() -> None:
         for _ in range(2):  # the second time the lab is here already
             open_slowly()
-            sessions.leave(3)
+            registry.leave(3)
 
     in_thread(come_and_go)
     assert held.gate.reached.wait(WAIT)
 
     def live_on() -> None:
-        assert set(others) <= set(sessions.held())
-        assert sessions.enter(1, QUICK).client == 1
-        sessions.leave(2)
-        assert sessions.join(4, others[1]).code == others[1]
-        assert sessions.join(5, None).client == 5
-        assert QUICK in sessions.held()
-        assert sessions.lose(QUICK) == 1
+        assert set(others) <= set(registry.held())
+        assert registry.enter(1, QUICK).client == 1
+        registry.leave(2)
+        assert registry.join(4, others[1]).code == others[1]
+        assert registry.join(5, None).client == 5
+        assert QUICK in registry.held()
+        assert registry.lose(QUICK) == 1
 
     assert ends(live_on)
     held.gate.open.set()
-    wait_for(lambda: SLOW not in sessions.held(), WAIT)
+    wait_for(lambda: SLOW not in registry.held(), WAIT)
 
 
 def test_two_who_want_the_same_lab_at_once_get_it_once() -> None:
     held = Held("load")
-    sessions, found = new_sessions(held), []
+    registry, found = new_registry(held), []
     threads = [
-        in_thread(lambda n=n: found.append(sessions.join(n, f"{SLOW},{QUICK}"))) for n in range(3)
+        in_thread(lambda n=n: found.append(registry.join(n, f"{SLOW},{QUICK}"))) for n in range(3)
     ]
     assert held.gate.reached.wait(WAIT)
     held.gate.open.set()
@@ -151,28 +151,28 @@ def test_two_who_want_the_same_lab_at_once_get_it_once() -> None:
         thread.join(WAIT)
     codes = [entry.code for entry in found]
     assert len(set(codes)) == 3 and {SLOW, QUICK} < set(codes)
-    assert sorted(sessions.held()) == sorted(codes) and len(sessions.simulation.labs) == 3
+    assert sorted(registry.held()) == sorted(codes) and len(registry.thread.labs) == 3
 
 
-def test_codes_that_nobody_has_make_no_session_and_soon_are_refused_unasked() -> None:
+def test_codes_that_nobody_has_make_no_lab_and_soon_are_refused_unasked() -> None:
     made, asked = [], []
 
     def make() -> Lab:
-        made.append(Lab(store()))
+        made.append(Lab(loop_cache()))
         return made[-1]
 
-    sessions = LabRegistry(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]
-    entry = sessions.join(1, None)
+    registry = LabRegistry(SimulationThread(), make, load=asked.append)  # type: ignore[arg-type]
+    entry = registry.join(1, None)
     said = set()
     for _ in range(PRESSES):
         with pytest.raises(ValueError, match=r"no lab|too many") as refused:
-            sessions.enter(1, new_code())
+            registry.enter(1, new_code())
         said.add(str(refused.value))
     assert len(made) == 1 and len(asked) == TRIES and len(said) == 2
-    assert sessions.held() == [entry.code]
-    sessions.join(2, None)
+    assert registry.held() == [entry.code]
+    registry.join(2, None)
     with pytest.raises(ValueError, match="no lab"):
-        sessions.enter(2, new_code())
+        registry.enter(2, new_code())
 
 
 def test_presses_while_one_is_under_way_are_dropped() -> None:
@@ -226,7 +226,7 @@ def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
             for tab in (attacker, insider):
                 tab.open()
                 tab.read(lambda tab=tab: tab.moving > 5)
-            server.sessions.load = load  # type: ignore[assignment]
+            server.registry.load = load  # type: ignore[assignment]
             attacker.set(ENGLISH("keep.other"), new_code())
             for _ in range(PRESSES):
                 attacker.set(ENGLISH("keep.go"), True)
@@ -235,7 +235,7 @@ def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
             assert gate.reached.wait(WAIT) and len(loads) == 1
             queue = server.server._thread_executor._work_queue
             wait_for(lambda: queue.qsize() == 0, WAIT)
-            assert insider.code in server.sessions.held()
+            assert insider.code in server.registry.held()
             insider.set(ENGLISH("keep.other"), new_code())
             insider.set(ENGLISH("keep.go"), True)
             wait_for(lambda: len(loads) == 2, WAIT)
@@ -254,9 +254,9 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.has_widget("K2"))
-        (entry,) = server.sessions._entries.values()
+        (entry,) = server.registry._entries.values()
         (client,) = server.server.get_clients().values()
-        page = next(iter(server._views.values())).page
+        page = next(iter(server._feeds.values())).page
         show = page.show
 
         def shown_slowly(snapshot: Any) -> None:
@@ -267,9 +267,9 @@ def test_a_page_is_replaced_when_no_frame_shows_it(monkeypatch: pytest.MonkeyPat
         assert gate.reached.wait(WAIT)
         before = error_log._seen.copy()
         reopened = in_thread(lambda: server._reopen(client, entry))
-        wait_for(lambda: server.simulation._calls or not reopened.is_alive(), WAIT)
+        wait_for(lambda: server.thread._calls or not reopened.is_alive(), WAIT)
         gate.open.set()
         reopened.join(WAIT)
-        assert not reopened.is_alive() and next(iter(server._views.values())).page is not page
+        assert not reopened.is_alive() and next(iter(server._feeds.values())).page is not page
         assert error_log._seen == before
     server.stop()

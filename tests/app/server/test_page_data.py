@@ -133,13 +133,13 @@ def test_what_a_symbol_of_joints_means_is_told_while_it_is_asked_for(
         script.read("frame")
         script.light("rho")
         before = script.read("lit")
-        (base, tip), (other, _) = before["ways"]
+        (base, tip), (other, _) = before["lines"]
         assert before["symbol"] == "rho" and base == other
         row = script.told["frame"]["rows"][-1]
         assert tip == pytest.approx(row[5:7], abs=2000)  # 20 mm: it has moved since then
-        script.read_until("lit", lambda lit: lit["ways"] != before["ways"])
+        script.read_until("lit", lambda lit: lit["lines"] != before["lines"])
         script.light("q_1")
-        assert len(script.read_until("lit", lambda lit: lit["symbol"] == "q_1")["ways"]) == 2
+        assert len(script.read_until("lit", lambda lit: lit["symbol"] == "q_1")["lines"]) == 2
         script.light("")
         script.do("SetRate", rate=2)
         script.read_until("state", lambda state: state["rate"] == 2)
@@ -198,9 +198,9 @@ def test_a_canvas_of_another_size_is_framed_anew(server: LabServer, student: Stu
     with Script(server, ticket_of(student)) as script:
         script.read("frame")
         (page,) = [
-            view.page
-            for view in server._views.values()
-            if view._data and view._data._stream.is_open
+            feed.page
+            for feed in server._feeds.values()
+            if feed._data and feed._data._stream.is_open
         ]
         page._settling = 0
         script.socket.send('{"is":"resized"}')
@@ -247,11 +247,11 @@ def test_a_page_that_is_built_anew_keeps_its_ticket(server: LabServer, student: 
 
 def test_a_lab_without_a_listener_is_told_nothing(server: LabServer, student: Student) -> None:
     ticket_of(student)
-    (view,) = wait_for(lambda: list(server._views.values()))
+    (feed,) = wait_for(lambda: list(server._feeds.values()))
     moving = student.moving
     student.read(lambda: student.moving > moving + 20)
-    source = view._data._source
-    assert source._latest == [] and source._session is None and view._data._state == {}
+    source = feed._data._source
+    assert source._latest == [] and source._simulation is None and feed._data._state == {}
 
 
 def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(
@@ -295,15 +295,15 @@ def test_a_page_to_which_nothing_is_told_hears_that_the_lab_lives(
 def test_a_page_that_could_not_be_built_comes_again(
     server: LabServer, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Its browser connects again; before, it stayed without a view."""
-    genuine, fails = server._view, [True]
+    """Its browser connects again; before, it stayed without a feed."""
+    genuine, fails = server._feed, [True]
 
-    def view(*what: Any) -> Any:
+    def feed(*what: Any) -> Any:
         if fails and fails.pop():
             raise OSError("this once")
         return genuine(*what)
 
-    monkeypatch.setattr(server, "_view", view)
+    monkeypatch.setattr(server, "_feed", feed)
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.wait_until_closed()

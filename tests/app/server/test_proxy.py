@@ -32,12 +32,12 @@ def test_who_belongs_together_is_served_by_one_process_and_places_are_spread(
     served: dict[str, set[int]] = {}
     while len(served) < 6 or len(set.union(*served.values())) < 2:
         assert len(served) < 40  # by chance all would be with one process once in 2^39 times
-        place = alone(running)
+        prefix = alone(running)
         for _ in range(2):
-            with running.site.student(place) as student:
+            with running.site.student(prefix) as student:
                 student.open()
                 student.read(lambda: student.code)
-                served.setdefault(place, set()).add(running.site.serving().port)
+                served.setdefault(prefix, set()).add(running.site.serving().port)
             quiet(running)
     assert all(len(ports) == 1 for ports in served.values())
 
@@ -60,8 +60,8 @@ def test_strangers_and_monsters_are_refused(running: Running) -> None:
 
 
 def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Running) -> None:
-    place = alone(running)
-    with running.site.student(place) as student:
+    prefix = alone(running)
+    with running.site.student(prefix) as student:
         student.open()
         student.set("K2", 44.0)
         student.set("Path", "clover")
@@ -88,7 +88,7 @@ def test_a_student_whose_process_is_killed_goes_on_with_the_other(running: Runni
         assert student.find("Path")["value"] == "clover" and student.find("K2")["value"] == 44.0
         killed.start_again()
     quiet(running)
-    return_to(killed, running, place)
+    return_to(killed, running, prefix)
 
 
 def test_a_class_whose_process_is_killed_goes_on_with_the_other_and_stays(

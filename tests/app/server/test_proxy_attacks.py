@@ -141,7 +141,7 @@ def test_no_spelling_of_its_address_moves_a_class(running: Running) -> None:
             with suppress(InvalidStatus):  # most are refused
                 stranger.open()
                 stranger.read(lambda stranger=stranger: stranger.has_widget("Teacher's key"))
-            with running.site.student(klass.place) as student:
+            with running.site.student(klass.prefix) as student:
                 student.open()
                 student.read(lambda student=student: student.has_widget("Nickname"))
             assert closed(klass) == []

@@ -67,7 +67,7 @@ class Browser:
         """Let time pass; the lab is shown as long as somebody looks."""
         for _ in range(round(seconds / TICK)):
             self.now += TICK
-            if tells and self.scheduled.view is not None:
+            if tells and self.scheduled.display is not None:
                 self.scheduled.drain()
                 advance_together([self.scheduled.frame(TICK)])
                 self.scheduled.show(0, 1)
@@ -82,28 +82,28 @@ def test_a_browser_that_answers_late_is_not_taken_for_gone() -> None:
     browser.wait(60.0, answers=True)
     assert 60 / (QUESTION_INTERVAL + TICK) - 1 <= browser.asked <= 60 / QUESTION_INTERVAL
     browser.wait(QUESTION_INTERVAL + PATIENCE - TICK)
-    assert browser.scheduled.view is browser
+    assert browser.scheduled.display is browser
 
 
 def test_a_lab_waits_for_a_browser_that_does_not_answer_and_continues() -> None:
     browser = Browser()
     lab = browser.scheduled.lab
     browser.wait(QUIET)
-    assert browser.scheduled.view is None
-    told, asked, simulated = browser.updates, browser.asked, lab.session.time
+    assert browser.scheduled.display is None
+    told, asked, simulated = browser.updates, browser.asked, lab.simulation.time
     browser.wait(100.0)
-    assert (browser.updates, lab.session.time) == (told, simulated) and simulated > 0
+    assert (browser.updates, lab.simulation.time) == (told, simulated) and simulated > 0
     assert browser.asked - asked <= 100 / QUESTION_INTERVAL
     browser.answer()
-    assert browser.scheduled.view is browser
+    assert browser.scheduled.display is browser
     browser.wait(10.0, answers=True)
-    assert browser.updates > told and lab.session.time > simulated
+    assert browser.updates > told and lab.simulation.time > simulated
 
 
 def test_a_browser_that_is_sent_nothing_is_asked_nothing() -> None:
     browser = Browser()
     browser.wait(100.0, tells=False)
-    assert browser.asked == 0 and browser.scheduled.view is browser
+    assert browser.asked == 0 and browser.scheduled.display is browser
 
 
 def test_a_late_answer_does_not_bring_back_a_browser_that_has_left() -> None:
@@ -111,14 +111,14 @@ def test_a_late_answer_does_not_bring_back_a_browser_that_has_left() -> None:
     browser.wait(QUIET)
     browser.onlooker.leave()
     browser.answer()
-    assert browser.scheduled.view is None
+    assert browser.scheduled.display is None
     other = Browser()
     other.wait(QUIET)
-    other.scheduled.view = browser  # somebody else has the lab by now
+    other.scheduled.display = browser  # somebody else has the lab by now
     other.answer()
-    assert other.scheduled.view is browser
+    assert other.scheduled.display is browser
     other.onlooker.leave()
-    assert other.scheduled.view is browser
+    assert other.scheduled.display is browser
 
 
 class Tab(Student):
@@ -169,25 +169,25 @@ def tab(server: LabServer) -> Iterator[Tab]:
 
 @pytest.mark.thorough
 def test_a_hidden_tab_gets_nothing_and_then_the_present_whole(server: LabServer, tab: Tab) -> None:
-    (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
+    (scheduled,), clock = server.thread.labs, FrameClock(server.thread)
     visible = tab.rate(clock, 2 * GONE)
-    assert scheduled.view is not None
+    assert scheduled.display is not None
     tab.hidden = True
-    tab.read(lambda: scheduled.view is None)
+    tab.read(lambda: scheduled.display is None)
     tab.rate(clock, 0.5)  # what was on its way
-    simulated, moving = scheduled.session.time, tab.moving
+    simulated, moving = scheduled.simulation.time, tab.moving
     hidden = tab.rate(clock, 2.0)
     assert hidden * SOON["QUESTION_INTERVAL"] / QUESTION_INTERVAL < min(HIDDEN, 0.01 * visible)
-    assert scheduled.session.time == simulated and tab.moving == moving
+    assert scheduled.simulation.time == simulated and tab.moving == moving
     scheduled.lab.post(c.ChoosePath("clover"))  # a teacher does, say
     tab.show()
     tab.read(lambda: tab.find("Path")["value"] == "clover" and tab.moving > moving + 10)
-    assert scheduled.session.time > simulated
+    assert scheduled.simulation.time > simulated
 
 
 @pytest.mark.thorough
 def test_a_paused_lab_sends_nothing(server: LabServer, tab: Tab) -> None:
-    (scheduled,), clock = server.simulation.labs, FrameClock(server.simulation)
+    (scheduled,), clock = server.thread.labs, FrameClock(server.thread)
     running = tab.rate(clock, 2.0)
     scheduled.lab.post(c.SetRunning(False))
     tab.rate(clock, GONE)

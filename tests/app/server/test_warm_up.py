@@ -10,7 +10,7 @@ from importlib import import_module
 import pytest
 
 from onpath.app.lab.loops.loop_cache import LoopCache
-from onpath.app.lab.session import Session
+from onpath.app.lab.simulation import Simulation
 from onpath.app.server import warm_up
 from onpath.lessons.course import NO_LESSONS
 from onpath.models.closed_loop.loops import CompiledLoop
@@ -26,7 +26,7 @@ from onpath.app.scene.stage_catalogue import stage_of
 
 lab = Lab(LoopCache())
 take_page_snapshot(lab, 1.0)
-stage_of(lab.session.robot).parts()
+stage_of(lab.simulation.robot).parts()
 print(*sorted({"scipy", "trimesh", "matplotlib"} & sys.modules.keys()))
 """
 
@@ -86,5 +86,5 @@ def test_the_loops_of_a_robots_first_lab_are_compiled_with_progress(
     warm_up.compile_loops(cache, entry)
     told = [record.getMessage() for record in caplog.records]
     assert told == [f"compiling {entry.label}: {i} of 4" for i in range(1, 5)]
-    for run in Session(cache, entry).runs.values():
+    for run in Simulation(cache, entry).runs.values():
         assert isinstance(run.loop(), CompiledLoop)

@@ -41,7 +41,7 @@ class Screen:
 
 def seen_lab(offset: int = 0) -> ScheduledLab:
     scheduled = ScheduledLab(new_lab())
-    scheduled.view = Screen(offset)
+    scheduled.display = Screen(offset)
     return scheduled
 
 
@@ -50,7 +50,7 @@ def times(scheduled: ScheduledLab, strides: Iterable[float]) -> list[float]:
     found = list[float]()
     for count, stride in enumerate(strides):
         advance_together([scheduled.frame(FRAME, frame_length(count), count, stride)])
-        found.append(scheduled.session.time)
+        found.append(scheduled.simulation.time)
     return found
 
 
@@ -83,8 +83,10 @@ def test_frames_together_give_the_same_numbers_as_one_by_one() -> None:
     one, together = seen_lab(), seen_lab()
     times(one, [EASY] * 31)
     times(together, [BUSY[0]] * 31)  # ends with its turn
-    assert one.session.time == pytest.approx(together.session.time, abs=1e-9)
-    for mine, other in zip(one.session.runs.values(), together.session.runs.values(), strict=True):
+    assert one.simulation.time == pytest.approx(together.simulation.time, abs=1e-9)
+    for mine, other in zip(
+        one.simulation.runs.values(), together.simulation.runs.values(), strict=True
+    ):
         assert np.array_equal(mine.state, other.state) and mine.max_distance == other.max_distance
 
 
@@ -105,7 +107,7 @@ def test_a_script_has_every_frame() -> None:
 
 def test_frames_that_nobody_saw_are_not_made_up_for() -> None:
     scheduled = seen_lab()
-    scheduled.view = None
+    scheduled.display = None
     times(scheduled, [BUSY[0]] * 10)
-    scheduled.view = Screen(0)
+    scheduled.display = Screen(0)
     assert times(scheduled, [EASY]) == pytest.approx([frame_length(0)], abs=1e-9)

@@ -80,7 +80,7 @@ class View:
         return True
 
     def show(self, lab: Lab, frame: int, stride: float) -> None:
-        self.shown.append((lab.session.time, 0.0, frame))
+        self.shown.append((lab.simulation.time, 0.0, frame))
         self.work(frame)
 
     def refresh(self, lab: Lab, achieved: float) -> None:
@@ -135,7 +135,7 @@ def drawn(
     labs[0] = Costly(new_lab())
     screens = [Screen(clock, at, drawing / count) for at in range(count)]
     for scheduled, screen in zip(labs, screens, strict=True):
-        scheduled.view = screen
+        scheduled.display = screen
         thread.add(scheduled)
     thread.run()
     return thread, labs, screens
@@ -147,7 +147,7 @@ def simulated(
     """Some seconds of a thread whose frames cost as much as `cost` says."""
     clock, thread = clocked(seconds)
     scheduled = ScheduledLab(new_lab())
-    scheduled.view = view = View(lambda frame: clock.work(cost(frame)))
+    scheduled.display = view = View(lambda frame: clock.work(cost(frame)))
     for other in others:
         thread.add(other)
     thread.add(scheduled)
@@ -158,7 +158,7 @@ def simulated(
 def test_sixty_frames_a_second_each_on_time() -> None:
     thread, scheduled, view, _ = simulated(3.0, lambda _: 0.004)
     assert len(view.shown) == pytest.approx(180, abs=2)
-    assert scheduled.session.time == pytest.approx(3.0, abs=0.04)
+    assert scheduled.simulation.time == pytest.approx(3.0, abs=0.04)
     assert max(thread.lateness) < 1e-9
     assert scheduled.achieved == pytest.approx(1.0, abs=0.02)
     assert [frame for _, _, frame in view.shown] == list(range(len(view.shown)))
@@ -168,7 +168,7 @@ def test_sixty_frames_a_second_each_on_time() -> None:
 def test_frames_that_take_too_long_are_simulated_two_at_once(cost: float) -> None:
     """Simulated time does not slow down, as long as two at once are done in time."""
     thread, scheduled, view, _ = simulated(20.0, lambda _: cost * FRAME)
-    assert scheduled.session.time == pytest.approx(20.0, abs=2 * BEHIND)
+    assert scheduled.simulation.time == pytest.approx(20.0, abs=2 * BEHIND)
     assert scheduled.achieved == pytest.approx(1.0, rel=0.02)
     assert max(thread.lateness) < BEHIND + FRAME  # less than one more, since that takes two
     assert len(view.shown) == pytest.approx(20.0 / (cost * FRAME + PAUSE), rel=0.01)
@@ -178,7 +178,7 @@ def test_frames_that_take_too_long_are_simulated_two_at_once(cost: float) -> Non
 def test_slower_frames_slow_simulated_time_visibly(cost: float, at_once: float) -> None:
     """The schedule restarts with each that is over six frames late: every third, or every one."""
     thread, scheduled, _, _ = simulated(24.0, lambda _: cost * FRAME)
-    assert scheduled.session.time == pytest.approx(24.0 * at_once / cost, rel=0.05)
+    assert scheduled.simulation.time == pytest.approx(24.0 * at_once / cost, rel=0.05)
     assert scheduled.achieved == pytest.approx(at_once / cost, rel=0.05)
     assert max(thread.lateness) <= LATEST + cost * FRAME  # it never piles up
 
@@ -190,7 +190,7 @@ def test_after_a_stall_it_continues_at_its_pace() -> None:
         return cost if frame == 30 else 0.001
 
     _, scheduled, view, _ = simulated(10.0, stall)
-    assert scheduled.session.time == pytest.approx(
+    assert scheduled.simulation.time == pytest.approx(
         10.0 - cost, abs=0.1
     )  # the stall is not made up for
     steps = [b[0] - a[0] for a, b in zip(view.shown, view.shown[1:], strict=False)]
@@ -200,7 +200,7 @@ def test_after_a_stall_it_continues_at_its_pace() -> None:
 
 def test_short_hiccups_are_made_up_for() -> None:
     _, scheduled, _, _ = simulated(4.0, lambda frame: 0.05 if frame % 40 == 7 else 0.001)
-    assert scheduled.session.time == pytest.approx(4.0, abs=0.06)
+    assert scheduled.simulation.time == pytest.approx(4.0, abs=0.06)
 
 
 def test_frames_that_are_late_are_drawn_less_often_until_they_no_longer_are() -> None:
@@ -218,7 +218,7 @@ def test_drawing_gives_way_before_simulated_time_does() -> None:
     """At the slowest pace there is too much to do; when hurried, there is not."""
     thread, labs, screens = drawn(20.0, lambda _: 0.008, drawing=0.040)
     for scheduled, screen in zip(labs, screens, strict=True):
-        assert scheduled.session.time == pytest.approx(
+        assert scheduled.simulation.time == pytest.approx(
             20.0, abs=2 * LATEST
         )  # until the cost is known
         assert scheduled.achieved == pytest.approx(1.0, abs=0.01)
@@ -250,11 +250,11 @@ def test_simulated_time_follows_the_wanted_speed() -> None:
     labs = [ScheduledLab(new_lab()) for _ in range(3)]
     for scheduled, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
         scheduled.lab.post(c.SetRate(rate))
-        scheduled.view = View(lambda _: clock.work(0.001))
+        scheduled.display = View(lambda _: clock.work(0.001))
         thread.add(scheduled)
     thread.run()
     for scheduled, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
-        assert scheduled.session.time == pytest.approx(2.0 * rate, rel=0.02)
+        assert scheduled.simulation.time == pytest.approx(2.0 * rate, rel=0.02)
         assert scheduled.achieved == pytest.approx(rate, rel=0.03)
 
 
@@ -265,13 +265,15 @@ def test_a_lab_that_raises_does_not_stop_the_others(caplog: pytest.LogCaptureFix
             yield  # a generator, as any frame
 
     blind = ScheduledLab(new_lab())
-    blind.view = View(lambda _: 1 / 0)
-    broken = ScheduledLab(Broken(new_lab().session._store))
-    broken.view = View(lambda _: None)
+    blind.display = View(lambda _: 1 / 0)
+    broken = ScheduledLab(Broken(new_lab().simulation._loop_cache))
+    broken.display = View(lambda _: None)
     with caplog.at_level(logging.ERROR):
         _, scheduled, _, _ = simulated(1.0, lambda _: 0.001, broken, blind)
-    assert scheduled.session.time == pytest.approx(1.0, abs=0.04)
-    assert blind.session.time == pytest.approx(1.0, abs=0.04)  # it simulates; only its view fails
+    assert scheduled.simulation.time == pytest.approx(1.0, abs=0.04)
+    assert blind.simulation.time == pytest.approx(
+        1.0, abs=0.04
+    )  # it simulates; only its view fails
     text = [record.getMessage() for record in caplog.records]
     assert sum("this lab is broken" in line for line in text) <= 3  # not at every frame
     assert any("this lab is broken" in line for line in text)
@@ -281,8 +283,8 @@ def test_time_waits_while_nobody_looks_and_commands_do_not() -> None:
     unseen = ScheduledLab(new_lab())
     unseen.lab.post(c.SetParameter("K1", 123))
     simulated(1.0, lambda _: 0.001, unseen)
-    assert unseen.session.time == 0.0
-    assert unseen.session.parameters.K1 == 123
+    assert unseen.simulation.time == 0.0
+    assert unseen.simulation.parameters.K1 == 123
 
 
 def test_paused_lab_does_not_spoil_its_measured_speed() -> None:
@@ -294,10 +296,10 @@ def test_paused_lab_does_not_spoil_its_measured_speed() -> None:
             scheduled.lab.post(c.SetRunning(frame == 120))
         clock.work(0.001)
 
-    scheduled.view = View(show)
+    scheduled.display = View(show)
     thread.add(scheduled)
     thread.run()
-    assert scheduled.session.time == pytest.approx(2.0, abs=0.05)
+    assert scheduled.simulation.time == pytest.approx(2.0, abs=0.05)
     assert scheduled.achieved == pytest.approx(1.0, abs=0.03)
 
 
@@ -308,7 +310,7 @@ def test_labs_come_and_go_from_other_threads_while_it_runs() -> None:
         seen = threading.Event()
         labs = [ScheduledLab(new_lab()) for _ in range(4)]
         for scheduled in labs:
-            scheduled.view = View(lambda _: seen.set())
+            scheduled.display = View(lambda _: seen.set())
         workers = [threading.Thread(target=thread.add, args=(scheduled,)) for scheduled in labs]
         for worker in workers:
             worker.start()
@@ -409,15 +411,15 @@ def test_commands_take_what_is_left_of_a_frame() -> None:
             return taken
 
     honest = ScheduledLab(new_lab())
-    honest.view = View(lambda _: clock.work(0.011))
+    honest.display = View(lambda _: clock.work(0.011))
     for _ in range(20):
         asked = Asked(1e-3)
-        asked.lab, asked.view, asked.session = Greedy(1e-3), None, honest.session
+        asked.lab, asked.display, asked.simulation = Greedy(1e-3), None, honest.simulation
         thread.add(asked)
     thread.add(honest)
     thread.run()
     assert sorted(thread.lateness)[-60] < FRAME  # all but those of the first second
-    assert honest.session.time == pytest.approx(10.0, abs=0.2)
+    assert honest.simulation.time == pytest.approx(10.0, abs=0.2)
 
 
 def test_labs_that_began_at_different_frames_need_equally_many_ticks() -> None:
@@ -426,7 +428,7 @@ def test_labs_that_began_at_different_frames_need_equally_many_ticks() -> None:
     for count in range(120):
         if count in (0, 1, 2, 13, 59):
             lab = ScheduledLab(new_lab())
-            lab.view = Screen(Clock(1.0), 0, 0.0)
+            lab.display = Screen(Clock(1.0), 0, 0.0)
             labs[lab] = []
         for lab, needed in labs.items():
             frame = lab.frame(FRAME, frame_length(count))
@@ -492,8 +494,8 @@ def test_another_thread_reads_a_lab_between_two_frames_only() -> None:
             yield from super().frame(seconds)
             inside.clear()
 
-    scheduled = ScheduledLab(Busy(new_lab().session._store))
-    scheduled.view = View(lambda _: None)
+    scheduled = ScheduledLab(Busy(new_lab().simulation._loop_cache))
+    scheduled.display = View(lambda _: None)
     thread.add(scheduled)
     thread.start()
     try:
@@ -526,8 +528,8 @@ def test_a_caller_waits_as_long_as_a_frame_takes(monkeypatch: pytest.MonkeyPatch
             may_end.set()
         time.sleep(seconds)
 
-    scheduled = ScheduledLab(Slow(new_lab().session._store))
-    scheduled.view = View(lambda _: None)
+    scheduled = ScheduledLab(Slow(new_lab().simulation._loop_cache))
+    scheduled.display = View(lambda _: None)
     thread.add(scheduled)
     thread.start()
     try:

@@ -123,15 +123,15 @@ def test_any_states_under_any_codes(labs: dict[str, dict[str, Any]]) -> None:
 
 
 def test_a_lab_comes_back(file: Path) -> None:
-    session, other = new_lab().session, new_lab().session
-    session.editor.commit(session.presets["clover"])
+    simulation, other = new_lab().simulation, new_lab().simulation
+    simulation.editor.commit(simulation.presets["clover"])
     with opened(file) as records:
-        records.save("a", {"setup": to_data(capture(session))})
+        records.save("a", {"setup": to_data(capture(simulation))})
     with opened(file) as records:
         state = records.load("a")
     assert state is not None
     restore(other, from_data(state["setup"]))
-    assert capture(other) == capture(session)
+    assert capture(other) == capture(simulation)
 
 
 def test_the_time_of_storing_is_that_of_the_clock(file: Path) -> None:
@@ -157,8 +157,8 @@ def test_little_of_the_file_is_in_memory(file: Path) -> None:
         ("a", {"text": "x" * LARGEST}, "too much"),
         ("a", {"list": list(range(LARGEST))}, "too much"),
         ("a", {"object": object()}, "cannot be stored"),
-        ("", {}, "session code"),
-        ("x" * 65, {}, "session code"),
+        ("", {}, "lab code"),
+        ("x" * 65, {}, "lab code"),
     ],
 )
 def test_a_state_that_is_too_large_or_invalid_is_refused(

@@ -115,7 +115,7 @@ def is_kept(server: Server, code: str, lab: Lab) -> bool:
     """Whether the database has a lab's set-up, a second later."""
     run(lab, 1.0)
     state = server.records.load(code)
-    return state is not None and from_data(state["setup"]) == capture(lab.session)
+    return state is not None and from_data(state["setup"]) == capture(lab.simulation)
 
 
 # The student is told

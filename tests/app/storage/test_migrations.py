@@ -46,11 +46,11 @@ def test_no_lab_of_an_old_database_is_lost_and_nothing_of_its_classes_stays(old:
     assert len(before["members"]) == 2 and b"Bob <b>" in old.read_bytes()
     records = Records(file_url(old))
     assert records.warning == ""
-    state, session = records.load("c0de01"), new_lab().session
+    state, simulation = records.load("c0de01"), new_lab().simulation
     assert state is not None
-    restore(session, from_data(state["setup"]))
-    assert (session.parameters.K1, session.editor.design.name) == (900.0, "clover")
-    assert session.parameters.K3 == 0.0  # as by default then
+    restore(simulation, from_data(state["setup"]))
+    assert (simulation.parameters.K1, simulation.editor.design.name) == (900.0, "clover")
+    assert simulation.parameters.K3 == 0.0  # as by default then
     assert records.claim("c0de01") == state and records.is_current("c0de01")
     records.close()
     after = rows(old)

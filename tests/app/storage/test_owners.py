@@ -20,7 +20,7 @@ from onpath.app.storage.leases import LEASE
 from onpath.app.storage.records import HeldElsewhere, NotKept, Records, file_url
 from onpath.app.storage.schema import classes, labs
 from onpath.app.storage.write_behind import WriteBehind
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 from tests.support.waiting import wait_for
 
 CODE = "a" * 12
@@ -35,7 +35,7 @@ class Process:
         self.keeper = WriteBehind(self.records, interval=60.0, lost=self._lose)
         self.registry = LabRegistry(
             SimulationThread(),
-            lambda: Lab(store()),
+            lambda: Lab(loop_cache()),
             load=self.records.claim,
             give_up=self.records.give_up,
             is_current=self.records.is_current,
@@ -49,7 +49,7 @@ class Process:
     def gain(self, code: str) -> float:
         entry = self.registry.find(code)
         assert entry is not None
-        return entry.scheduled.session.parameters.K2
+        return entry.scheduled.simulation.parameters.K2
 
     def set(self, code: str, gain: float) -> None:
         """Change a lab, and wait until it asks to be stored."""

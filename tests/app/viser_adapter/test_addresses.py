@@ -15,7 +15,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.http11 import Request
 from websockets.sync.client import connect
 
-from onpath.app.viser_adapter.addresses import class_code_in, place_of, storage_key, without_place
+from onpath.app.viser_adapter.addresses import class_code_in, prefix_of, storage_key, without_prefix
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 
@@ -43,7 +43,7 @@ def get(server: viser.ViserServer, path: str, **headers: str) -> HTTPResponse:
 
 
 @pytest.mark.parametrize(
-    ("path", "place", "rest"),
+    ("path", "prefix", "rest"),
     [
         ("/", "", "/"),
         ("/c/abc234/", "c/abc234", "/"),
@@ -57,12 +57,12 @@ def get(server: viser.ViserServer, path: str, **headers: str) -> HTTPResponse:
         ("/c/" + "a" * 33, "", "/c/" + "a" * 33),
     ],
 )
-def test_a_place_is_the_beginning_of_a_path(path: str, place: str, rest: str) -> None:
-    assert (place_of(path), without_place(path)) == (place, rest)
+def test_a_prefix_is_the_beginning_of_a_path(path: str, prefix: str, rest: str) -> None:
+    assert (prefix_of(path), without_prefix(path)) == (prefix, rest)
 
 
 def test_each_class_has_values_of_its_own_in_a_browser() -> None:
-    keys = {storage_key("labs", place) for place in ("", "l/abc", "c/abc", "c/abd")}
+    keys = {storage_key("labs", prefix) for prefix in ("", "l/abc", "c/abc", "c/abd")}
     assert keys == {"labs", "labs_abc", "labs_abd"}
     assert class_code_in("l/abc") == "" and class_code_in("c/abc") == "abc"
 
@@ -102,7 +102,7 @@ def test_a_similar_address_leads_to_the_page(alone: viser.ViserServer, path: str
 def test_a_websocket_is_opened_at_a_place_as_it_is_spelt_only(
     kind: str, name: str, rest: str, query: str
 ) -> None:
-    """What another process may be asked for, since a proxy does not read it as this place."""
+    """What another process may be asked for, since a proxy does not read it as this prefix."""
     door = RequestFilter((), local_only=False)
     door.open = True
     path = f"/{kind}/{name}{rest}{query}"
@@ -119,7 +119,7 @@ def test_at_no_place_a_websocket_is_opened_as_before() -> None:
 
 
 def test_who_asks_for_a_class_of_another_process_is_told_to_ask_again() -> None:
-    server = make_server(port=0, elsewhere=lambda place: place == "c/abc234")
+    server = make_server(port=0, elsewhere=lambda prefix: prefix == "c/abc234")
     assert get(server, "/c/abc234/").status == 200  # the page, which asks every second
     with pytest.raises(InvalidStatus) as refused:
         connect(f"ws://127.0.0.1:{server.get_port()}/c/abc234")
@@ -132,7 +132,7 @@ def test_a_full_process_sends_those_on_whose_class_another_one_has() -> None:
     """At 503 nginx asks nobody else: who fills one process would lock a class out of another."""
     away = "c/abc234"
     limits = Limits(max_connections=0)
-    server = make_server(port=0, limits=limits, elsewhere=lambda place: place == away)
+    server = make_server(port=0, limits=limits, elsewhere=lambda prefix: prefix == away)
     for asked in ({}, {"Upgrade": "websocket", "Connection": "Upgrade"}):
         assert get(server, f"/{away}/", **asked).status == 502
         assert get(server, "/c/n4ws8c/", **asked).status == 503
@@ -142,17 +142,17 @@ def test_a_full_process_sends_those_on_whose_class_another_one_has() -> None:
 
 def test_who_is_in_no_class_has_a_place_that_stays(proxied: viser.ViserServer) -> None:
     first = get(proxied, "/")
-    place, cookie = first.getheader("Location") or "", first.getheader("Set-Cookie") or ""
-    assert first.status == 302 and re.fullmatch("/l/[a-z0-9]{12}/", place)
+    prefix, cookie = first.getheader("Location") or "", first.getheader("Set-Cookie") or ""
+    assert first.status == 302 and re.fullmatch("/l/[a-z0-9]{12}/", prefix)
     assert "HttpOnly" in cookie and "SameSite=Strict" in cookie
     again = get(proxied, "/index.html", Cookie=f"other=1; {cookie.partition(';')[0]}")
-    assert again.getheader("Location") == place and again.getheader("Set-Cookie") is None
-    assert get(proxied, "/").getheader("Location") != place
+    assert again.getheader("Location") == prefix and again.getheader("Set-Cookie") is None
+    assert get(proxied, "/").getheader("Location") != prefix
     for wrong in ("onpath=evil", "onpath=../../../etc", f"onpath={'A' * 12}"):
         answer = get(proxied, "/", Cookie=wrong)
         assert re.fullmatch("/l/[a-z0-9]{12}/", answer.getheader("Location") or "")
         assert answer.getheader("Set-Cookie")
-    assert get(proxied, place).status == 200
+    assert get(proxied, prefix).status == 200
 
 
 def test_without_a_proxy_the_page_is_where_it_was(alone: viser.ViserServer) -> None:

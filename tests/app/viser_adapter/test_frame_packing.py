@@ -41,8 +41,8 @@ def forms() -> st.SearchStrategy[GroupForm]:
         properties, end = list[tuple[str, str, slice]](), 0
         for node, own in enumerate(sizes):
             for number, size in enumerate(own):
-                place = slice(end, end := end + size)
-                properties.append((f"/{node}", f"property {number}", place))
+                span = slice(end, end := end + size)
+                properties.append((f"/{node}", f"property {number}", span))
         return GroupForm(properties, owner)
 
     return st.builds(group, nodes, st.sampled_from(["0", "17"]))

@@ -45,8 +45,8 @@ def arrived(server: LabServer) -> Student:
 
 def parts_of(server: LabServer, keys: bool = True) -> list[weakref.ref[Any]]:
     """What the only page is made of, with its keys or without."""
-    (view,), (client,) = server._views.values(), server.server.get_clients().values()
-    page: Any = view.page
+    (feed,), (client,) = server._feeds.values(), server.server.get_clients().values()
+    page: Any = feed.page
     widgets = client.gui._gui_input_handle_from_uuid.values()
     nodes = client.scene._handle_from_node_name.values()
     commands = client.gui._command_handle_from_uuid.values()
@@ -65,7 +65,7 @@ def test_a_page_is_free_as_soon_as_its_tab_closes(server: LabServer) -> None:
 def test_a_page_that_is_built_anew_leaves_nothing(server: LabServer) -> None:
     student = arrived(server)
     parts = parts_of(server, keys=False)  # they stay
-    (entry,) = server.sessions._entries.values()
+    (entry,) = server.registry._entries.values()
     entry.scheduled.lab.post(SetLanguage("de"))
     student.read(lambda: student.has_widget("Für beide"))
     wait_for(lambda: not any(part() for part in parts), WAIT)

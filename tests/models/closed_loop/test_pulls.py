@@ -10,7 +10,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from onpath.models.closed_loop.faults import fault_in
+from onpath.models.closed_loop.faults import explained, fault_in
 from onpath.models.closed_loop.kernel import INTEGRAL_REACH
 from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.control.laws.path_following import far_from_path
@@ -19,6 +19,7 @@ from onpath.models.paths.distance import path_distance
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
+from onpath.models.systems.robots import NOT_FINITE
 from tests.support import pulls
 from tests.support.pulls import parameters_of, runs_untouched, troubled, untouched
 
@@ -92,6 +93,30 @@ def test_a_pull_over_the_edge_of_the_workspace_ends_with_that_as_its_cause() -> 
     stopped = [each for each in at_their_limits("five_bar", 0.1, control_rate=1000) if each.fault]
     assert len(stopped) <= 2
     assert all("all links in one line" in each.fault[1] for each in stopped if each.fault)
+
+
+def whipped(**changes: float) -> pulls.Result:
+    """A hand that jumps about swings the arm along a figure of eight at 3 m/s."""
+    parameters, curve = parameters_of("planar_arm", **changes), presets()["figure of eight"].curve
+    return troubled("planar_arm", parameters, FOLLOWER, 2026, 8, curve)[2]
+
+
+@pytest.mark.thorough
+def test_a_hand_whips_the_planar_arm_only_beyond_the_torques_of_its_file() -> None:
+    assert whipped().fault is not None  # with exact measurements
+    held = whipped(torque_limit=100.0)
+    assert held.fault is None and held.late < NEAR
+
+
+def test_a_stop_beyond_the_torques_of_the_file_says_so() -> None:
+    parameters = parameters_of("planar_arm")
+    robot = ROBOTS["planar_arm"].make(parameters)
+    log = pulls.loop_of(robot, kind_of(FOLLOWER, parameters, circle(0.05))).layouts.log
+    row = {name: np.zeros(size) for name, size in log.fields}
+    for torque, beyond in ((11.0, False), (25.0, True)):
+        rows = log.pack(row | {"u": np.array([torque, 0.0, 0.0])})[None]
+        reason = explained(NOT_FINITE, robot, log, FOLLOWER, rows, parameters)
+        assert ("more than the 12 N m that the robot's file states" in str(reason)) is beyond
 
 
 @given(

@@ -14,12 +14,15 @@ from onpath.models.closed_loop.trajectory import Trajectory
 from onpath.models.control.forecast import (
     NO_REST,
     SINGULAR,
+    exhausted,
     forecast,
     growth_rate,
     unmodelled,
 )
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.rank_test import rank_number
+from onpath.models.control.speed_limit import SHARE
+from onpath.models.control.standing_torque import standing_torque
 from onpath.models.errors import CodedError
 from onpath.models.paths.curves import circle
 from onpath.models.studies.experiments import on_path, run
@@ -233,3 +236,44 @@ def test_what_an_observer_does_not_know_is_said_where_there_is_one(
     assert not doubted(changes) and not doubted(SENSORS)
     assert not doubted({**seen, "observer_time": 0.0})
     assert not doubted(seen, "trajectory_tracking")
+
+
+# With a torque limit
+
+
+@settings(deadline=None, max_examples=20)
+@given(
+    st.sampled_from(["two_link_arm", "spatial_arm", "cart_pendulum", "rod_gantry"]),
+    st.floats(0.5, 1.5),
+    st.floats(-np.pi, np.pi),
+)
+def test_it_is_said_where_holding_still_takes_most_of_the_torque_limit(
+    name: str, ratio: float, theta: float
+) -> None:
+    """The torque of gravity is ∂V/∂q of the joints with motors, here by differences of energy."""
+    entry, path = ROBOTS[name], circle(0.04)
+    robot, own = entry.make(entry.parameters()), entry.parameters()
+    q, energy = (
+        robot.rest(robot.frame.lift(path.at(np.array(theta)))),
+        robot.system.function("energy"),
+    )
+    still, plant, step = np.zeros(robot.system.n), robot.plant(own), 1e-6
+    slopes = [
+        float(energy(q + step * unit, still, plant) - energy(q - step * unit, still, plant))
+        for unit in np.eye(robot.system.n)
+    ]
+    held = np.abs(slopes).max() / (2 * step)
+    assume(abs(ratio - 1) > 0.02)
+    limited = replace(own, torque_limit=float(ratio * held / SHARE))
+    assert ratio > 1 or exhausted(robot, limited, path) is not None
+    assert standing_torque(robot, own, path) >= held * (1 - 0.01)
+
+
+def test_the_errors_of_the_sensors_count_and_nothing_is_said_without_a_limit() -> None:
+    entry, path = ROBOTS["rod_gantry"], circle(0.04)
+    exact = replace(entry.parameters(), torque_limit=7.0)
+    assert exhausted(entry.make(exact), exact, path) is None
+    coarse = replace(exact, **SENSORS)
+    assert exhausted(entry.make(coarse), coarse, path) is not None
+    free = replace(coarse, torque_limit=0.0)
+    assert exhausted(entry.make(free), free, path) is None

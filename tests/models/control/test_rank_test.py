@@ -114,8 +114,8 @@ def test_grid_ends_where_the_reach_does(name: str) -> None:
     way = rng.normal(size=(400, 3))
     way *= rng.uniform(1.001, 2.0, (400, 1)) * robot.reach / np.linalg.norm(way, axis=1)[:, None]
     if robot.system.p == 2:
-        way = robot.place(robot.unplace(way))  # in the plane of its outputs
-    beyond = robot.unplace(way)[np.linalg.norm(way, axis=1) > robot.reach]
+        way = robot.position(robot.output_at(way))  # in the plane of its outputs
+    beyond = robot.output_at(way)[np.linalg.norm(way, axis=1) > robot.reach]
     assert len(beyond) > 50
     assert np.isnan(section_map(robot, parameters, beyond)).all()
     z = robot.frame.planar(reached)
@@ -169,7 +169,7 @@ def test_at_home_it_is_large(name: str) -> None:
 def test_above_its_base_the_spatial_arm_loses_rank() -> None:
     entry = ROBOTS["spatial_arm"]
     robot, parameters = entry.make(entry.parameters()), entry.parameters()
-    axis = robot.frame.planar(robot.unplace(np.zeros(3)))
+    axis = robot.frame.planar(robot.output_at(np.zeros(3)))
     away = np.array([1e-1, 1e-2, 1e-3, 1e-4])
     q = robot.rest(robot.frame.lift(axis + away[:, None] * [0.8, 0.6]))
     values = least_gain(decoupling_matrices(robot, parameters, q))
@@ -190,7 +190,7 @@ def test_a_flexible_link_loses_rank_inside_the_workspace(
     robot = FLEXIBLE.make(parameters)
     r, height = np.meshgrid(np.linspace(0.02, 0.8, 150), np.linspace(-0.9, 0.45, 150))
     y = np.stack([r, 0 * r, height], axis=-1).reshape(-1, 3)
-    far = np.linalg.norm(robot.place(y), axis=1)
+    far = np.linalg.norm(robot.position(y), axis=1)
     least = abs(LINKS.link1 - LINKS.beam)
     y = y[(far > least + 1e-4) & (far < robot.reach - 1e-4)]
     signs = np.linalg.det(decoupling_matrices(robot, parameters, robot.rest(y))) < 0
@@ -199,7 +199,7 @@ def test_a_flexible_link_loses_rank_inside_the_workspace(
         assert y[signs][:, 0].max() < 0.1 and y[signs][:, 2].max() < -0.45
     one, other = y[signs][0], y[~signs][len(y) // 4]
     along = one + np.linspace(0.0, 1.0, 2001)[:, None] * (other - one)
-    far = np.linalg.norm(robot.place(along), axis=1)
+    far = np.linalg.norm(robot.position(along), axis=1)
     along = along[(far > least) & (far < robot.reach)]
     values = least_gain(decoupling_matrices(robot, parameters, robot.rest(along)))
     assert values.min() < 0.01 * values.max()

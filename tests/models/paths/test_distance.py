@@ -50,6 +50,18 @@ def test_on_a_circle_it_is_that_of_the_radius_also_near_the_centre():
         assert np.abs(found - np.abs(np.linalg.norm(y, axis=1) - 0.05)).max() < 1e-10
 
 
+@pytest.mark.parametrize("count", [1, 7, 2100])
+@pytest.mark.parametrize("seed", range(4))
+def test_all_points_at_once_are_as_far_as_one_by_one_by_another_search(random_curve, seed, count):
+    """The other search halves intervals instead of following tangents."""
+    rng, curve = np.random.default_rng(seed), random_curve(seed)
+    beside = curve.at(rng.uniform(-np.pi, np.pi, count)) + rng.normal(0, 0.01, (count, 2))
+    y = np.where(rng.random((count, 1)) < 0.5, beside, rng.uniform(-0.12, 0.12, (count, 2)))
+    found, some = path_distance(Plane(), curve, y), rng.choice(count, min(count, 40))
+    alone = np.array([curve.nearest(y[i : i + 1])[1][0] for i in some])
+    np.testing.assert_allclose(found[some], alone, atol=1e-12)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("seed", range(8))
 def test_no_point_of_the_curve_is_nearer_even_where_two_valleys_are_equally_deep(

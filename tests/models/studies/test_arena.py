@@ -20,7 +20,7 @@ from onpath.models.studies.arena import (
     complete,
     entrants,
     measured,
-    results_of,
+    result_of,
     run_under,
     table,
     trials_of,
@@ -108,7 +108,7 @@ def test_the_measures_are_what_they_say() -> None:
     assert brake.released is not None and result.overshoot_m is not None
     after = moved.distance[moved.t >= brake.released]
     assert result.overshoot_m <= after.max()
-    pulled = results_of(("path_following", False), [trials["pull"]])[0]
+    pulled = result_of(("path_following", False), trials["pull"])
     assert pulled.distance_m is None and pulled.force_N is not None
     far = int((pulled.shown[:, 1] > OFF).argmax())
     at = pulled.shown[far, 0] - trials["pull"].values["pull_from"]

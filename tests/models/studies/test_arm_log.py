@@ -46,7 +46,7 @@ def log(tmp_path: Path) -> Path:
 
 
 def test_a_log_in_other_units_and_another_locale_gives_the_arm(log: Path) -> None:
-    result = onpath.identify(log, columns=COLUMNS, units=UNITS)
+    result = onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS)
     true = truth("five_bar", motion_of("five_bar")[1])
     assert set(result.values) >= {"M11", "M22", "b1", "b2", "c1", "c2"}
     for name, value in result.values.items():
@@ -61,7 +61,7 @@ def test_the_command_says_the_same_as_python_and_draws(
     picture = tmp_path / "residuals.svg"
     assert run_command(["identify", str(log), *OPTIONS, "--json", "--plot", str(picture)]) == 0
     data = json.loads(capsys.readouterr().out)
-    result = onpath.identify(log, columns=COLUMNS, units=UNITS)
+    result = onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS)
     told = {each["name"]: tuple(each["interval"]) for each in data["parameters"]}
     assert told.keys() == result.intervals.keys()
     for name, interval in result.intervals.items():
@@ -73,7 +73,7 @@ def test_the_command_says_the_same_as_python_and_draws(
 
 
 def test_residuals_are_small_where_the_model_is_right(log: Path) -> None:
-    found = onpath.identify(log, columns=COLUMNS, units=UNITS).found.estimate
+    found = onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS).found.estimate
     assert found.torque.shape == found.residual.shape == (len(found.times), 2)
     share = np.linalg.norm(found.residual) / np.linalg.norm(found.torque)
     assert share == pytest.approx(found.unexplained)
@@ -173,7 +173,7 @@ def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
     u = np.column_stack([0.1 * np.cos(q1) + 0.02 * np.gradient(np.gradient(q1, t), t), 0 * t])
     path = tmp_path / "poor.csv"
     write_log(path, t, q, u)
-    result = onpath.identify(path, columns=COLUMNS, units=UNITS)
+    result = onpath.identify("five_bar", path, columns=COLUMNS, units=UNITS)
     found, motion = result.found.estimate, result.found.motion
     assert found.unexcited or any(each.others for each in found.found)
     assert motion is not None and not motion.left
@@ -182,7 +182,7 @@ def test_the_advised_motion_tells_what_the_log_does_not(tmp_path: Path) -> None:
 
 
 def test_a_rich_log_needs_no_other_motion(log: Path) -> None:
-    assert onpath.identify(log, columns=COLUMNS, units=UNITS).found.motion is None
+    assert onpath.identify("five_bar", log, columns=COLUMNS, units=UNITS).found.motion is None
     entry = ROBOTS["five_bar"]
     made = entry.make(entry.parameters())
     records = [each for _, each in read_records(log, made, log_columns(made, COLUMNS, UNITS))]
@@ -264,7 +264,7 @@ def test_wrong_names_and_units_are_refused(
     path.write_text("\n".join(map(",".join, lines())))
     named = {name: name for name in QUANTITIES} | columns
     with pytest.raises(CodedError, match=said):
-        onpath.identify(path, columns=named, units=units)
+        onpath.identify("five_bar", path, columns=named, units=units)
 
 
 def test_forces_count_if_the_log_has_them(tmp_path: Path) -> None:

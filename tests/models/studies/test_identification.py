@@ -180,7 +180,7 @@ def made_lab(seconds: float = 5.0, **parameters: Any) -> Lab:
 
 
 def errors(lab: Lab) -> Array:
-    return np.array([getattr(lab.session.parameters, f"error_{name}") for name in INERTIA])
+    return np.array([getattr(lab.simulation.parameters, f"error_{name}") for name in INERTIA])
 
 
 def worst(lab: Lab) -> float:
@@ -191,7 +191,7 @@ def worst(lab: Lab) -> float:
     run(lab, 0.5)
     do(lab, c.Hold(False), c.SetParameter("speed", -6.0))
     run(lab, 2)
-    return lab.session.runs[FOLLOWER].max_distance
+    return lab.simulation.runs[FOLLOWER].max_distance
 
 
 @pytest.mark.thorough
@@ -225,12 +225,12 @@ def test_lab_says_what_the_model_has_no_place_for() -> None:
     do(lab, c.Identify())
     plant = dict(
         zip(
-            lab.session.robot.system.parameter_names,
-            lab.session.robot.plant(lab.session.parameters),
+            lab.simulation.robot.system.parameter_names,
+            lab.simulation.robot.plant(lab.simulation.parameters),
             strict=True,
         )
     )
-    model = lab.session.robot.model(lab.session.parameters)
+    model = lab.simulation.robot.model(lab.simulation.parameters)
     assert model[0] == pytest.approx(plant["M11"], rel=1e-3)
     assert "c1 = 0.05" in lab.message and "G1 = 0.19" in lab.message
     heavier = made_lab(payload=0.3)
@@ -252,11 +252,11 @@ def test_lab_learns_from_the_robot_as_it_is_now() -> None:
 
 def test_lab_looks_at_a_bounded_past_and_that_of_the_right_robot() -> None:
     lab = made_lab(8.0)
-    history = lab.session.history.all()
-    record = last_record(lab.session.robot, history)
+    history = lab.simulation.history.all()
+    record = last_record(lab.simulation.robot, history)
     n = len(record.q)
     assert MOST_TICKS - 20 < n <= MOST_TICKS
-    fields = replayed(lab.session)[FOLLOWER].fields
+    fields = replayed(lab.simulation)[FOLLOWER].fields
     for name, values in (("q", record.q), ("v", record.v), ("u", record.torque)):
         np.testing.assert_allclose(values, fields[name][-n:], atol=1e-12)
 

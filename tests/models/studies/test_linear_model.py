@@ -31,6 +31,7 @@ from onpath.models.studies.linear_model import MotionRecord, estimate, linear_mo
 from onpath.models.studies.record_file import read_records
 from onpath.models.studies.table_file import LONGEST_LINE
 from onpath.models.systems.catalogue import ROBOTS
+from tests.support.cases import drawn
 from tests.support.lab import do
 from tests.support.lab import run as run_lab
 from tests.support.passive_chain import Shape, passive_chain
@@ -126,7 +127,7 @@ def test_the_file_has_the_angles_that_the_loop_reads(robot: str, values: dict[st
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("robot", RIGID)
+@pytest.mark.parametrize("robot", drawn(RIGID, 2))
 def test_measured_angles_are_written_and_used(
     robot: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -174,7 +175,8 @@ def test_runs_with_and_without_exact_sensors_are_written_together() -> None:
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(
-    ("robot", "values"), [*((name, {}) for name in RIGID), *((name, FILTERED) for name in TURNING)]
+    ("robot", "values"),
+    drawn([*((name, {}) for name in RIGID), *((name, FILTERED) for name in TURNING)], 3),
 )
 def test_a_delay_of_the_logged_torques_changes_no_parameter(
     robot: str, values: dict[str, float], tmp_path: Path
@@ -270,8 +272,8 @@ def test_the_file_of_a_lab_is_read_with_its_sides_and_typed_laws(
     run_lab(lab, 1.0)
     do(lab, c.Hold(on=False))
     run_lab(lab, 2.0)
-    path.write_bytes(csv_bytes(lab.session.robot, lab.session.history.all()))
-    laws = [law for law, _ in read_records(path, lab.session.robot)]
+    path.write_bytes(csv_bytes(lab.simulation.robot, lab.simulation.history.all()))
+    laws = [law for law, _ in read_records(path, lab.simulation.robot)]
     assert laws == ["trajectory_tracking", typed, "path_following", typed]
     for more, seconds in ([], 12), (["--law", typed], 6):
         assert run_command(["identify", str(path), "--json", *more]) == 0

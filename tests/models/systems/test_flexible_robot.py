@@ -75,12 +75,12 @@ def test_rest_puts_the_straight_link_s_tip_where_asked() -> None:
 def test_drawing_is_a_rigid_motion_that_keeps_up_and_turns_the_path_to_the_viewer() -> None:
     rng = np.random.default_rng(1)
     y = rng.normal(size=(4, 3))
-    placed = ROBOT.place(y)
-    assert ROBOT.unplace(placed) == pytest.approx(y, abs=1e-15)
+    placed = ROBOT.position(y)
+    assert ROBOT.output_at(placed) == pytest.approx(y, abs=1e-15)
     axes = placed[1:] - placed[0]
     assert axes @ axes.T == pytest.approx((y[1:] - y[0]) @ (y[1:] - y[0]).T)
     assert np.sign(np.linalg.det(axes)) == np.sign(np.linalg.det(y[1:] - y[0]))
-    corners = ROBOT.place(ROBOT.frame.lift(np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]])))
+    corners = ROBOT.position(ROBOT.frame.lift(np.array([[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]])))
     right, up = corners[1] - corners[0], corners[2] - corners[0]
     assert up == pytest.approx([0, 0, 0.1])
     assert right[0] == pytest.approx(0.1) and abs(right[1]) < 0.02
@@ -96,7 +96,7 @@ def test_bars_hang_together_from_the_base_to_the_tip() -> None:
         assert np.array_equal(bars[2], joints[[2, 3]]) and np.array_equal(bars[3], joints[[3, 1]])
         chain = bars[3:]
         assert chain[1:, 0] == pytest.approx(chain[:-1, 1], abs=1e-15)
-        assert chain[-1, 1] == pytest.approx(ROBOT.place(ROBOT.endpoint(q)), abs=1e-12)
+        assert chain[-1, 1] == pytest.approx(ROBOT.position(ROBOT.endpoint(q)), abs=1e-12)
         assert joints[1] - joints[0] == pytest.approx(joints[3] - joints[2], abs=1e-12)
 
 
@@ -105,7 +105,7 @@ def test_exaggeration_stretches_the_deflection_and_nothing_else() -> None:
     straight, bent, more = (drawn(ROBOT.skeleton, q, k)[0] for k in (0.0, 1.0, 5.0))
     assert more - straight == pytest.approx(5 * (bent - straight), abs=1e-12)
     rigid = np.concatenate([q[:3], np.zeros(3)])
-    assert straight[-1, 1] == pytest.approx(ROBOT.place(ROBOT.endpoint(rigid)), abs=1e-12)
+    assert straight[-1, 1] == pytest.approx(ROBOT.position(ROBOT.endpoint(rigid)), abs=1e-12)
     gap = np.linalg.norm(bent[-1, 1] - straight[-1, 1])
     assert gap == pytest.approx(abs(q[3:] @ TIP))
 

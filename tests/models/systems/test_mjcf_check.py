@@ -199,7 +199,7 @@ def test_a_mangled_file_is_a_robot_or_refused_in_a_line(tmp_path: Path, data: by
 
 @pytest.mark.thorough
 @settings(
-    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=250
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=60
 )
 @given(mangled(mjcf_seeds()), st.sampled_from(["tool", "", "link2"]))
 def test_many_mangled_files_are_robots_or_refused_in_a_line(

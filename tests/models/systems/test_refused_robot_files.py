@@ -256,7 +256,7 @@ def test_warnings_of_mujoco_are_remarks_and_no_file_in_the_current_folder(
 
 @pytest.mark.thorough
 @settings(
-    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=250
+    suppress_health_check=[HealthCheck.function_scoped_fixture], deadline=None, max_examples=100
 )
 @given(mangled(urdf_seeds()), st.sampled_from(["tip", "tool0", ""]))
 def test_many_mangled_files_are_robots_or_refused_in_a_line(

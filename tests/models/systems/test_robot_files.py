@@ -125,8 +125,8 @@ def test_equations_are_those_of_mujoco(arm: Arm) -> None:
         scale = max(1.0, float(np.abs(expected_bias).max()))
         assert np.abs(mass - expected_mass).max() < 1e-9
         assert np.abs(bias[:, 0] - expected_bias).max() < 1e-9 * scale
-        assert np.abs(y[:, 0] - robot.unplace(tip)).max() < 1e-9
-        assert np.abs(robot.endpoint(q) - robot.unplace(tip)).max() < 1e-9
+        assert np.abs(y[:, 0] - robot.output_at(tip)).max() < 1e-9
+        assert np.abs(robot.endpoint(q) - robot.output_at(tip)).max() < 1e-9
 
 
 @pytest.mark.thorough

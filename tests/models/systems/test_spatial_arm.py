@@ -162,8 +162,8 @@ def test_bars_join_at_the_elbow_and_end_at_the_end_point(q: Array) -> None:
     np.testing.assert_allclose(joints, [bars[0, 0], bars[1, 0]])
     lengths = np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1)
     np.testing.assert_allclose(lengths, [LINKS.l2, LINKS.l3])
-    np.testing.assert_allclose(bars[-1, 1], ARM.place(ARM.endpoint(q)), atol=1e-12)
-    np.testing.assert_allclose(ARM.unplace(bars[-1, 1]), ARM.endpoint(q), atol=1e-12)
+    np.testing.assert_allclose(bars[-1, 1], ARM.position(ARM.endpoint(q)), atol=1e-12)
+    np.testing.assert_allclose(ARM.output_at(bars[-1, 1]), ARM.endpoint(q), atol=1e-12)
 
 
 def test_presets_can_be_followed_also_as_saddles() -> None:

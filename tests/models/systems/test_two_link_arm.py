@@ -201,8 +201,8 @@ def test_bars_join_at_the_elbow_and_end_at_the_end_point(q: Array) -> None:
     np.testing.assert_allclose(joints, [bars[0, 0], bars[1, 0]])
     lengths = np.linalg.norm(bars[:, 1] - bars[:, 0], axis=1)
     np.testing.assert_allclose(lengths, [LINKS.l1, LINKS.l2])
-    np.testing.assert_allclose(bars[-1, 1], ARM.place(ARM.endpoint(q)), atol=1e-12)
-    np.testing.assert_allclose(ARM.unplace(bars[-1, 1]), ARM.endpoint(q), atol=1e-12)
+    np.testing.assert_allclose(bars[-1, 1], ARM.position(ARM.endpoint(q)), atol=1e-12)
+    np.testing.assert_allclose(ARM.output_at(bars[-1, 1]), ARM.endpoint(q), atol=1e-12)
 
 
 def test_presets_can_be_followed_and_a_path_beyond_its_reach_is_refused_in_words() -> None:

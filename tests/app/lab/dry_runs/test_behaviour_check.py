@@ -26,7 +26,7 @@ from onpath.models.paths.curve_faults import ambiguities, curve_faults
 from onpath.models.studies import identification
 from tests.support.built_in import built_in_course
 from tests.support.cases import some
-from tests.support.lab import store
+from tests.support.lab import loop_cache
 from tests.support.lesson_texts import LESSON, write_lesson
 
 COURSE = built_in_course()[0]
@@ -46,12 +46,12 @@ def faults(name: str) -> list[tuple[int, str]]:
     for lesson in COURSE.lessons[found].values():
         said += page_faults(lesson, (home / f"{lesson.language}.md").read_text("utf-8"))
     lesson = COURSE.lesson(found, "en")
-    return said + list(behaviour_faults(lesson, read_plays(home / REFERENCE), store()))
+    return said + list(behaviour_faults(lesson, read_plays(home / REFERENCE), loop_cache()))
 
 
 def listed_faults() -> list[str]:
     """What is wrong with the sentences of the list, and with those that are not in it."""
-    return [str(each) for each in sentence_faults(COURSE, BUILT_IN, store())]
+    return [str(each) for each in sentence_faults(COURSE, BUILT_IN, loop_cache())]
 
 
 NUMBERS = [name.partition("-")[0] for name in COURSE.lessons]
@@ -103,7 +103,7 @@ def test_a_mark_is_played(tmp_path: Path, mark: str, fault: str) -> None:
     file = write_lesson(tmp_path, text)
     lesson = read_lesson(file)
     plays = {name: script for name, script in PLAYS.items() if mark.endswith(f"after {name}")}
-    found = [*behaviour_faults(lesson, plays, store()), *page_faults(lesson, text)]
+    found = [*behaviour_faults(lesson, plays, loop_cache()), *page_faults(lesson, text)]
     assert bool(found) == bool(fault), found
     if fault:
         ((line, said),) = found

@@ -49,15 +49,15 @@ def slow(monkeypatch: pytest.MonkeyPatch) -> Iterator[SlowThread]:
 
 
 @pytest.fixture(scope="module")
-def store() -> Iterator[LoopCache]:
-    store = LoopCache(at_once=True)
-    yield store
-    store.close()
+def loop_cache() -> Iterator[LoopCache]:
+    loop_cache = LoopCache(at_once=True)
+    yield loop_cache
+    loop_cache.close()
 
 
 @pytest.fixture
-def lab(store: LoopCache) -> Lab:
-    lab = Lab(store)
+def lab(loop_cache: LoopCache) -> Lab:
+    lab = Lab(loop_cache)
     lab.identification = Identification()
     do(lab, c.SetParameter("error_M11", 30), c.SetParameter("speed", 6.0))
     run(lab, SECONDS)
@@ -66,7 +66,7 @@ def lab(store: LoopCache) -> Lab:
 
 def error_of(lab: Lab) -> float:
     """By how much the controllers' M11 is wrong, [%]."""
-    return dataclasses.asdict(lab.session.parameters)["error_M11"]
+    return dataclasses.asdict(lab.simulation.parameters)["error_M11"]
 
 
 def has_learned(lab: Lab) -> bool:
@@ -75,10 +75,10 @@ def has_learned(lab: Lab) -> bool:
 
 
 def test_a_lab_goes_on_until_its_robot_is_identified(lab: Lab, slow: SlowThread) -> None:
-    time = lab.session.time
+    time = lab.simulation.time
     do(lab, c.Identify(), c.Identify())
     run(lab, 0.5)
-    assert lab.session.time == pytest.approx(time + 0.5, abs=0.02)
+    assert lab.simulation.time == pytest.approx(time + 0.5, abs=0.02)
     assert error_of(lab) == 30 and not lab.message
     slow.may_end.set()
     wait_for(lambda: has_learned(lab), LONGEST)
@@ -89,15 +89,17 @@ def test_a_lab_goes_on_until_its_robot_is_identified(lab: Lab, slow: SlowThread)
 
 def test_what_was_learned_of_another_robot_is_not_used(lab: Lab, slow: SlowThread) -> None:
     do(lab, c.Identify(), c.ChooseRobot("two_link_arm"), c.ChooseRobot("flexible"))
-    before = lab.session.parameters
+    before = lab.simulation.parameters
     slow.may_end.set()
     wait_for(lambda: not lab.identification.is_under_way, LONGEST)
     lab.drain()
-    assert lab.session.parameters == before and not lab.message
+    assert lab.simulation.parameters == before and not lab.message
 
 
-def test_many_labs_are_identified_one_after_the_other(store: LoopCache, slow: SlowThread) -> None:
-    labs = [Lab(store) for _ in range(3)]
+def test_many_labs_are_identified_one_after_the_other(
+    loop_cache: LoopCache, slow: SlowThread
+) -> None:
+    labs = [Lab(loop_cache) for _ in range(3)]
     for each in labs:
         each.identification = Identification()
     do(labs[0], c.Identify())

@@ -19,7 +19,7 @@ from onpath.app.page.teaching.steps_for_all import StepsForAll
 from onpath.app.server.built_in_course import built_in_course
 from onpath.lessons.course import Course
 from onpath.lessons.words import ENGLISH
-from tests.support.lab import do, run, store
+from tests.support.lab import do, loop_cache, run
 
 
 def with_a_branch(course: Course) -> Course:
@@ -86,7 +86,7 @@ displays = st.builds(
 @pytest.mark.thorough
 @given(displays, st.sampled_from((-1, 1)))
 def test_from_any_stored_place_there_is_a_step_that_exists(display: Display, by: int) -> None:
-    lesson, index = STEPS.place(display)
+    lesson, index = STEPS.shown(display)
     assert index in range(len(COURSE.lesson(lesson, "en").steps))
     room = Classroom()
     room.push(TakeSetup(Setup()))
@@ -106,18 +106,18 @@ def test_on_a_projector_the_step_that_comes_next_does_not_tell_what_will_happen(
 def test_every_demonstration_is_played_in_the_teacher_s_lab_which_is_then_put_back(
     name: str,
 ) -> None:
-    lab = Lab(store(), course=COURSE)
+    lab = Lab(loop_cache(), course=COURSE)
     do(lab, ChoosePath("clover"), SetParameter("K1", 77.0))
-    before = capture(lab.session)
+    before = capture(lab.simulation)
     steps, played = COURSE.lesson(name, "en").steps, set[int]()
     for index in range(len(steps)):
         step = STEPS.demonstration(Display(name, index))
         if step is not None:
             assert step.step - index in (0, 1)
             do(lab, step)
-            assert lab.lessons.playing and lab.session.running and lab.message_level != "error"
+            assert lab.lessons.playing and lab.simulation.running and lab.message_level != "error"
             run(lab, 0.1)
             played.add(step.step)
     assert played == {index for index, step in enumerate(steps) if step.script is not None}
     do(lab, CloseLesson())
-    assert capture(lab.session) == before
+    assert capture(lab.simulation) == before

@@ -162,7 +162,7 @@ def test_it_makes_no_energy_and_is_never_in_debt(name: str) -> None:
 @pytest.mark.thorough
 @pytest.mark.parametrize("name", SUITED)
 def test_it_makes_no_energy_and_is_never_in_debt_in_many_runs(name: str) -> None:
-    check(name, 150, 6.0, 100)
+    check(name, 60, 6.0, 100)
 
 
 @pytest.mark.thorough

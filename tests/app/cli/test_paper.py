@@ -1,4 +1,4 @@
-"""`onpath figure`: every figure is drawn, twice the same, and errors are one clear line."""
+"""`onpath paper`: every figure is drawn, twice the same, and errors are one clear line."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def test_the_same_figure_has_the_same_bytes(
     outputs = []
     for kind in ("png", "png", "svg", "svg"):
         file = tmp_path / f"figure.{kind}"
-        assert run_command(["figure", str(number), "--plot", str(file), "--json"]) == 0
+        assert run_command(["paper", str(number), "--plot", str(file), "--json"]) == 0
         outputs.append((file.read_bytes(), capsys.readouterr().out))
     assert outputs[0] == outputs[1] and outputs[2] == outputs[3]
     assert outputs[0][0].startswith(b"\x89PNG") and len(outputs[0][0]) > 20_000
@@ -32,7 +32,7 @@ def test_the_same_figure_has_the_same_bytes(
 
 
 def test_the_text_names_settings_and_numbers(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run_command(["figure", "5"]) == 0
+    assert run_command(["paper", "5"]) == 0
     text = capsys.readouterr().out
     for words in ("from the paper's text", "illustrative", "2π rad/s", "max distance while held"):
         assert words in text
@@ -76,20 +76,20 @@ def test_the_modes_are_told_apart_and_all_are_seen() -> None:
     "arguments",
     [
         ["figure"],
-        ["figure", "4"],
-        ["figure", "two"],
-        ["figure", "2", "3"],
-        ["figure", "2", "--plot", "x.txt"],
-        ["figure", "2", "--plot", "missing/x.png"],
-        ["figure", "2", "--json", "yes"],
-        ["figure", "2", "--robot", "five_bar"],
-        ["figure", "rank", "--robot", "five_baz"],
-        ["figure", "rank", "--set", "K1"],
-        ["figure", "rank", "--set", "weight=3"],
-        ["figure", "rank", "--set", "payload=heavy"],
-        ["figure", "rank", "--set", "K1=300"],
-        ["figure", "crossing", "--set", "K1=300"],
-        ["figure", "crossing", "--robot", "five_bar"],
+        ["paper", "4"],
+        ["paper", "two"],
+        ["paper", "2", "3"],
+        ["paper", "2", "--plot", "x.txt"],
+        ["paper", "2", "--plot", "missing/x.png"],
+        ["paper", "2", "--json", "yes"],
+        ["paper", "2", "--robot", "five_bar"],
+        ["paper", "rank", "--robot", "five_baz"],
+        ["paper", "rank", "--set", "K1"],
+        ["paper", "rank", "--set", "weight=3"],
+        ["paper", "rank", "--set", "payload=heavy"],
+        ["paper", "rank", "--set", "K1=300"],
+        ["paper", "crossing", "--set", "K1=300"],
+        ["paper", "crossing", "--robot", "five_bar"],
     ],
 )
 def test_errors_are_one_line(
@@ -112,12 +112,12 @@ def test_the_rank_test_is_drawn_for_every_robot(
     outputs = []
     for number in range(2):
         file = tmp_path / f"{number}.png"
-        assert run_command(["figure", "rank", "--robot", robot, "--plot", str(file), "--json"]) == 0
+        assert run_command(["paper", "rank", "--robot", robot, "--plot", str(file), "--json"]) == 0
         outputs.append((file.read_bytes(), capsys.readouterr().out))
     assert outputs[0] == outputs[1] and len(outputs[0][0]) > 20_000
     result = json.loads(outputs[0][1])
     assert result["robot"] == robot and 0 < result["home"] <= 1.001 * result["largest"]
-    assert run_command(["figure", "rank", "--robot", robot]) == 0
+    assert run_command(["paper", "rank", "--robot", robot]) == 0
     text = capsys.readouterr().out
     assert result["unit"] in text and f"{result['home']:g}" in text
 
@@ -125,7 +125,7 @@ def test_the_rank_test_is_drawn_for_every_robot(
 def test_the_rank_test_has_the_parameters_that_are_set(capsys: pytest.CaptureFixture[str]) -> None:
     homes = []
     for given in ([], ["--set", "payload=0.2"]):
-        assert run_command(["figure", "rank", *given, "--json"]) == 0
+        assert run_command(["paper", "rank", *given, "--json"]) == 0
         homes.append(json.loads(capsys.readouterr().out)["home"])
     assert homes[1] < homes[0]
 
@@ -134,7 +134,7 @@ def test_the_crossing_is_drawn_with_the_jumps_that_are_printed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     target = tmp_path / "crossing.png"
-    assert run_command(["figure", "crossing", "--json", "--plot", str(target)]) == 0
+    assert run_command(["paper", "crossing", "--json", "--plot", str(target)]) == 0
     runs = json.loads(capsys.readouterr().out)["runs"]
     assert [each["jumps"] > 0 for each in runs.values()] == [False, False, True]
     assert target.stat().st_size > 20_000

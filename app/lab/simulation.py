@@ -38,11 +38,11 @@ from onpath.models.systems.robots import Robot
 MOST_TICKS = 200  # per frame
 
 
-class Session:
-    """The state of one simulated lab.
+class Simulation:
+    """The simulated half of a lab.
 
     Args:
-        store: provides the closed loops.
+        loop_cache: provides the closed loops.
         entry: the initial robot.
 
     Attributes:
@@ -71,14 +71,14 @@ class Session:
         across_since: time since which ξ has had its present unit, [s].
     """
 
-    def __init__(self, store: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
-        self._store = store
+    def __init__(self, loop_cache: LoopCache, entry: RobotEntry = FIVE_BAR) -> None:
+        self._loop_cache = loop_cache
         self.earlier: dict[str, RobotSettings] = {}
         self.history = History(self._samples)
         self._now = CurrentInstant()
         self._recorder = Recorder()
         self.runs: dict[str, ClosedLoopRun] = {}
-        self.law_changes = LawChanges(store, self.change_law)
+        self.law_changes = LawChanges(loop_cache, self.change_law)
         self.presets: Mapping[str, PathDesign] = presets()
         self.running = self.resumes = True
         self.lacks_loops = self.has_to_step = False
@@ -216,7 +216,7 @@ class Session:
         return self.frame_of(ticks)
 
     def simulate(self, ticks: int) -> None:
-        """Simulate some ticks of this session alone."""
+        """Simulate some ticks of this simulation alone."""
         advance_together([self.frame_of(ticks)])
 
     def frame_of(self, ticks: int) -> Frame:
@@ -330,10 +330,10 @@ class Session:
         self.undo_timeline: Timeline | None = None
         self.history.clear()
         self.faults.clear()
-        start, store = self._beginning(), self._store
+        start, loop_cache = self._beginning(), self._loop_cache
         self.runs = {
             side: ClosedLoopRun(
-                store,
+                loop_cache,
                 robot=self.robot,
                 side=side,
                 law=law,

@@ -19,8 +19,8 @@ from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.lessons.words import Words
 
 
-class TeacherView(Page):
-    """The teacher's view. A followed lab is read-only.
+class TeacherPage(Page):
+    """The teacher's page. A followed lab is read-only.
 
     For a projector, the lab's controls are folded, and those of the class are beside the stage.
     The page is in the teacher's language, whoever's lab is shown.

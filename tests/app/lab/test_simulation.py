@@ -35,10 +35,10 @@ from tests.support.lab import (
     assert_drawable,
     assert_sound,
     do,
+    loop_cache,
     new_lab,
     run,
     states,
-    store,
     y,
 )
 from tests.support.lesson_texts import write_lesson
@@ -69,7 +69,7 @@ def points(most: int) -> st.SearchStrategy[np.ndarray]:
 def circles() -> st.SearchStrategy[np.ndarray]:
     """Strokes that a hand could draw: rings anywhere, either way round, whole or in part."""
 
-    middle = new_lab().session.robot.unplace(np.array([0.2, 0.0, 0.2]))
+    middle = new_lab().simulation.robot.output_at(np.array([0.2, 0.0, 0.2]))
 
     def stroke(radius: float, x: float, phase: float, turn: float) -> np.ndarray:
         a = phase + turn * np.linspace(0, 2 * np.pi, 40)
@@ -82,14 +82,14 @@ def circles() -> st.SearchStrategy[np.ndarray]:
 
 def parameter_values() -> st.SearchStrategy[c.SetParameter]:
     def values(name: str) -> st.SearchStrategy[Any]:
-        spec = specs(new_lab().session.parameters).get(name)
+        spec = specs(new_lab().simulation.parameters).get(name)
         if spec is None or spec.options:
             good = st.sampled_from(spec.options if spec else (1,))
         else:
             good = st.floats(spec.low, spec.high)
         return st.one_of(good, good, WILD, st.sampled_from(["", "x", None, "1e9", [1, 2]]))
 
-    names = st.sampled_from([*specs(new_lab().session.parameters), "K6", ""])
+    names = st.sampled_from([*specs(new_lab().simulation.parameters), "K6", ""])
     return names.flatmap(lambda name: values(name).map(lambda v: c.SetParameter(name, v)))
 
 
@@ -158,7 +158,7 @@ COMMANDS: dict[type, st.SearchStrategy[Any]] = {
     c.StartOnPath: st.builds(c.StartOnPath),
     c.SetExaggeration: st.builds(c.SetExaggeration, WILD),
     c.ChoosePath: st.builds(
-        c.ChoosePath, st.sampled_from([*new_lab().session.presets, "", "hexagon"])
+        c.ChoosePath, st.sampled_from([*new_lab().simulation.presets, "", "hexagon"])
     ),
     c.SelectPoint: st.builds(c.SelectPoint, INDICES),
     c.MovePoint: st.builds(c.MovePoint, st.integers(-3, 30), points(1), st.booleans()),
@@ -212,7 +212,7 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
     for command, frames in steps:
         do(lab, command)
         for _ in range(frames):
-            lab.advance(lab.session.rate * FRAME)
+            lab.advance(lab.simulation.rate * FRAME)
         assert_sound(lab)
     do(lab, c.ResetParameters(), c.ChoosePath("circle"), c.SetRate(1.0))
     do(lab, *[c.ChooseLaw(side, law) for side, law in DEFAULT_LAWS.items()])
@@ -220,8 +220,8 @@ def test_no_sequence_of_commands_breaks_a_lab(steps: list[tuple[c.Command, int]]
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
     run(lab, 0.8)
-    assert lab.session.time == pytest.approx(0.8, abs=0.02) and lab.message == ""
-    for run_ in lab.session.runs.values():
+    assert lab.simulation.time == pytest.approx(0.8, abs=0.02) and lab.message == ""
+    for run_ in lab.simulation.runs.values():
         assert run_.diverged is None and run_.distance < 0.005 and run_.max_distance < 0.005
 
 
@@ -256,18 +256,18 @@ IN_A_LESSON: dict[type, st.SearchStrategy[Any]] = LESSON_COMMANDS | {
 def test_no_sequence_of_commands_breaks_a_lesson(
     course: Course, robot: str, steps: list[tuple[c.Command, int]]
 ) -> None:
-    lab = Lab(store(), FIVE_BAR, course)
+    lab = Lab(loop_cache(), FIVE_BAR, course)
     do(lab, c.ChooseRobot(robot))
-    assert lab.session.entry.name == robot
+    assert lab.simulation.entry.name == robot
     if robot == "five_bar":
         do(lab, c.OpenLesson("01-a"))
     for command, frames in steps:
         do(lab, command)
         for _ in range(frames):
             lab.drain()
-            lab.advance(lab.session.rate * FRAME)
+            lab.advance(lab.simulation.rate * FRAME)
         assert_sound(lab)
-    put_back(Lab(store(), FIVE_BAR, course), _state(*_now(lab)))  # it can be kept
+    put_back(Lab(loop_cache(), FIVE_BAR, course), _state(*_now(lab)))  # it can be kept
     do(lab, c.CloseLesson())
     assert lab.lessons.lesson is None and lab.locked is None
     do(lab, c.ChooseRobot("five_bar"), c.ResetParameters(), c.ChoosePath("circle"))
@@ -275,17 +275,17 @@ def test_no_sequence_of_commands_breaks_a_lesson(
     run(lab, 0.4)  # the path has blended in
     do(lab, c.Reset())
     run(lab, 0.5)
-    assert lab.session.time == pytest.approx(0.5, abs=0.02)
-    assert all(run_.diverged is None for run_ in lab.session.runs.values())
+    assert lab.simulation.time == pytest.approx(0.5, abs=0.02)
+    assert all(run_.diverged is None for run_ in lab.simulation.runs.values())
 
 
 def test_commands_wait_for_the_next_frame_in_their_order_and_a_flood_is_dropped() -> None:
     lab = new_lab()
     lab.post(c.SetParameter("K1", 100))
     lab.post(c.SetParameter("K1", 200))
-    assert lab.session.parameters.K1 == 400
+    assert lab.simulation.parameters.K1 == 400
     lab.drain()
-    assert lab.session.parameters.K1 == 200
+    assert lab.simulation.parameters.K1 == 200
     for k in range(3 * MOST_COMMANDS):
         lab.post(c.SetParameter("K1", k))
     assert len(lab._inbox) == MOST_COMMANDS
@@ -295,7 +295,7 @@ def test_bad_command_is_answered_and_the_next_one_is_done() -> None:
     lab = new_lab()
     do(lab, c.SetParameter("K1", float("nan")), c.SetParameter("K2", 50))
     assert "K1" in lab.message and lab.message_level == "warning"
-    assert (lab.session.parameters.K1, lab.session.parameters.K2) == (400, 50)
+    assert (lab.simulation.parameters.K1, lab.simulation.parameters.K2) == (400, 50)
 
 
 def test_a_gain_that_is_posted_is_the_number_that_both_loops_are_run_with() -> None:
@@ -303,8 +303,8 @@ def test_a_gain_that_is_posted_is_the_number_that_both_loops_are_run_with() -> N
     for value, packed in (("905", 905.0), (float("nan"), 905.0), (1e300, 905.0), (30, 30.0)):
         lab.post(c.SetParameter("K1", value))
         run(lab, FRAME)
-        for run_ in lab.session.runs.values():
-            settings = kernel_of(lab.session.robot, run_.kind).settings.unpack(run_.settings)
+        for run_ in lab.simulation.runs.values():
+            settings = kernel_of(lab.simulation.robot, run_.kind).settings.unpack(run_.settings)
             assert settings["K1"] == packed
 
 
@@ -322,7 +322,7 @@ def test_a_pull_to_no_point_is_refused_by_its_command(command: c.Command) -> Non
     lab = new_lab(0.1)
     do(lab, command)
     assert "not a" in lab.message and lab.message_level == "warning"
-    assert not lab.session.forces.hands and lab.session.forces.grabbed is None
+    assert not lab.simulation.forces.hands and lab.simulation.forces.grabbed is None
 
 
 @pytest.mark.thorough
@@ -350,38 +350,40 @@ def test_speed_scales_simulated_time_and_nothing_else(rate: float) -> None:
     lab, reference = new_lab(), new_lab()
     do(lab, c.SetRate(rate))
     for _ in range(24):
-        lab.advance(lab.session.rate * FRAME)
-    assert lab.session.time == pytest.approx(24 * FRAME * rate, abs=1.01e-3)
-    reference.session.simulate(round(lab.session.time / 1e-3))
-    for name, state in states(lab.session).items():
-        assert np.array_equal(state, reference.session.runs[name].state)
+        lab.advance(lab.simulation.rate * FRAME)
+    assert lab.simulation.time == pytest.approx(24 * FRAME * rate, abs=1.01e-3)
+    reference.simulation.simulate(round(lab.simulation.time / 1e-3))
+    for name, state in states(lab.simulation).items():
+        assert np.array_equal(state, reference.simulation.runs[name].state)
 
 
 def test_paused_lab_stands_still_and_steps_by_one_action() -> None:
     lab = new_lab(0.5)
     do(lab, c.SetRunning(False))
-    before = states(lab.session)
+    before = states(lab.simulation)
     run(lab, 0.5)
-    assert all(np.array_equal(state, before[name]) for name, state in states(lab.session).items())
+    assert all(
+        np.array_equal(state, before[name]) for name, state in states(lab.simulation).items()
+    )
     for rate, step in ((1000, 1e-3), (50, 0.02), (2000, 1e-3), (250, 4e-3)):
         do(lab, c.SetParameter("control_rate", rate))
-        time = lab.session.time
+        time = lab.simulation.time
         do(lab, c.StepOnce())
-        assert lab.session.time - time == pytest.approx(step) and not lab.session.running
-    time = lab.session.time
+        assert lab.simulation.time - time == pytest.approx(step) and not lab.simulation.running
+    time = lab.simulation.time
     do(lab, c.SetRunning(True))
     lab.advance(FRAME)
-    assert lab.session.time - time == pytest.approx(FRAME, abs=1.01e-3)  # no time has piled up
+    assert lab.simulation.time - time == pytest.approx(FRAME, abs=1.01e-3)  # no time has piled up
 
 
 def test_space_toggles_and_arrow_steps_when_no_point_is_selected() -> None:
     lab = new_lab(0.1)
     do(lab, c.SetRunning())
-    time = lab.session.time
+    time = lab.simulation.time
     do(lab, c.NudgePoint(0.001, 0.0))
-    assert not lab.session.running and lab.session.time > time
+    assert not lab.simulation.running and lab.simulation.time > time
     do(lab, c.SetRunning())
-    assert lab.session.running
+    assert lab.simulation.running
 
 
 # Fairness
@@ -393,8 +395,8 @@ def test_both_robots_share_path_parameters_and_clock() -> None:
     run(lab, 0.5)
     for name in ("K1", "K2", "speed", "dt", "plant", "model", "torque_limit"):
         values = []
-        for run_ in lab.session.runs.values():
-            layout = kernel_of(lab.session.robot, run_.kind).settings
+        for run_ in lab.simulation.runs.values():
+            layout = kernel_of(lab.simulation.robot, run_.kind).settings
             values.append(layout.unpack(run_.settings)[name])
         assert np.array_equal(*values), name
 
@@ -404,14 +406,14 @@ def test_both_robots_share_path_parameters_and_clock() -> None:
 def test_hold_acts_on_both_with_copy_and_on_one_without(side: str, copy: bool) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetCopy(copy), c.Hold(True, side))
-    assert lab.session.forces.held == (set(SIDES) if copy else {side})
+    assert lab.simulation.forces.held == (set(SIDES) if copy else {side})
     run(lab, 0.2)
-    for name, run_ in lab.session.runs.items():
+    for name, run_ in lab.simulation.runs.items():
         force = np.linalg.norm(run_.shown()["force"])
-        assert (force > 0.1) == (name in lab.session.forces.held)
+        assert (force > 0.1) == (name in lab.simulation.forces.held)
     do(lab, c.Hold(False, side))
     run(lab, 0.1)
-    assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
+    assert all(np.all(r.shown()["force"] == 0) for r in lab.simulation.runs.values())
 
 
 def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
@@ -422,7 +424,7 @@ def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
     assert shown.held
     assert shown.robots[FOLLOWER].max_distance < 0.004 < 0.03 < shown.robots[TRACKER].max_distance
     do(lab, c.Hold())
-    assert not lab.session.forces.held
+    assert not lab.simulation.forces.held
 
 
 @pytest.mark.parametrize("side", SIDES)
@@ -430,40 +432,40 @@ def test_hold_tears_the_tracker_off_and_not_the_follower() -> None:
 def test_grab_pulls_both_by_the_same_or_one_alone(side: str, copy: bool) -> None:
     lab = new_lab(0.5)
     do(lab, c.SetCopy(copy))
-    before = {name: lab.session.runs[name].shown()["y"].copy() for name in SIDES}
+    before = {name: lab.simulation.runs[name].shown()["y"].copy() for name in SIDES}
     assert np.linalg.norm(before[FOLLOWER] - before[TRACKER]) > 0.01  # they are not in one place
     for shift in ([0.02, 0.01], [0.03, -0.02]):
         do(lab, c.Grab(side, before[side] + np.array(shift)))
-        assert set(lab.session.forces.hands) == (set(SIDES) if copy else {side})
-        for name, hand in lab.session.forces.hands.items():
+        assert set(lab.simulation.forces.hands) == (set(SIDES) if copy else {side})
+        for name, hand in lab.simulation.forces.hands.items():
             assert hand - before[name] == pytest.approx(shift)
-    lab.session.simulate(1)
-    pulled = {n for n, r in lab.session.runs.items() if np.linalg.norm(r.shown()["force"]) > 0.1}
-    assert pulled == set(lab.session.forces.hands)
+    lab.simulation.simulate(1)
+    pulled = {n for n, r in lab.simulation.runs.items() if np.linalg.norm(r.shown()["force"]) > 0.1}
+    assert pulled == set(lab.simulation.forces.hands)
     other = next(name for name in SIDES if name != side)
     do(lab, c.Release(other))
-    assert lab.session.forces.hands  # that robot was not the one being pulled
+    assert lab.simulation.forces.hands  # that robot was not the one being pulled
     do(lab, c.Release(side))
-    lab.session.simulate(1)
-    assert not lab.session.forces.hands and take_snapshot(lab, 1.0).grabbed is None
-    assert all(np.all(r.shown()["force"] == 0) for r in lab.session.runs.values())
+    lab.simulation.simulate(1)
+    assert not lab.simulation.forces.hands and take_snapshot(lab, 1.0).grabbed is None
+    assert all(np.all(r.shown()["force"] == 0) for r in lab.simulation.runs.values())
 
 
 def test_the_hand_holds_one_robot_at_a_time_unless_it_is_copied() -> None:
     lab = new_lab(0.3)
     do(lab, c.SetCopy(False))
     for name in (TRACKER, FOLLOWER):
-        do(lab, c.Grab(name, y(lab.session, name) + np.array([0.02, 0.02])))
-        lab.session.simulate(1)
-        pulled = {n for n, r in lab.session.runs.items() if np.any(r.shown()["force"] != 0)}
-        assert pulled == {name} == set(lab.session.forces.hands)
+        do(lab, c.Grab(name, y(lab.simulation, name) + np.array([0.02, 0.02])))
+        lab.simulation.simulate(1)
+        pulled = {n for n, r in lab.simulation.runs.items() if np.any(r.shown()["force"] != 0)}
+        assert pulled == {name} == set(lab.simulation.forces.hands)
 
 
 def test_same_state_same_hand_same_force() -> None:
     lab = new_lab()
-    do(lab, c.Grab(TRACKER, y(lab.session, TRACKER) + np.array([0.03, 0.02])))
-    lab.session.simulate(1)
-    one, other = (r.shown()["force"] for r in lab.session.runs.values())
+    do(lab, c.Grab(TRACKER, y(lab.simulation, TRACKER) + np.array([0.03, 0.02])))
+    lab.simulation.simulate(1)
+    one, other = (r.shown()["force"] for r in lab.simulation.runs.values())
     assert np.array_equal(one, other) and np.linalg.norm(one) > 1
 
 
@@ -471,17 +473,17 @@ def test_hand_far_away_pulls_no_harder_than_it_can() -> None:
     lab = new_lab(0.2)
     do(lab, c.Grab(FOLLOWER, np.array([1e300, -1e300])))
     run(lab, 0.05)
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert 0 < np.linalg.norm(run_.shown()["force"]) <= 15 + 1e-9
 
 
 def test_tug_takes_hold_and_adds_up() -> None:
     lab = new_lab(0.2)
     do(lab, c.SetRunning(False))
-    start = lab.session.runs[FOLLOWER].shown()["y"].copy()
+    start = lab.simulation.runs[FOLLOWER].shown()["y"].copy()
     do(lab, c.MoveHand(0.01, 0.0), c.MoveHand(0.01, -0.01))
-    assert lab.session.forces.grabbed == FOLLOWER
-    assert lab.session.forces.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
+    assert lab.simulation.forces.grabbed == FOLLOWER
+    assert lab.simulation.forces.hands[FOLLOWER] - start == pytest.approx([0.02, -0.01])
 
 
 # The path
@@ -493,9 +495,9 @@ def test_new_path_is_followed_after_it_has_blended_in(name: str) -> None:
     do(lab, c.ChoosePath(name))
     assert lab.message == ""
     run(lab, 0.35)
-    assert lab.session.editor.curve is lab.session.presets[name].curve
+    assert lab.simulation.editor.curve is lab.simulation.presets[name].curve
     run(lab, 2.0)
-    for run_ in lab.session.runs.values():
+    for run_ in lab.simulation.runs.values():
         assert run_.diverged is None and run_.distance < 1e-3
 
 
@@ -505,13 +507,13 @@ def test_a_jump_of_the_path_empties_the_integrals() -> None:
     do(lab, c.SetParameter("tracker_integral", "on"), c.SetParameter("coulomb", 0.05))
     run(lab, 1.0)
     summed = {
-        name: np.abs(run_.fields()["integral"]).max() for name, run_ in lab.session.runs.items()
+        name: np.abs(run_.fields()["integral"]).max() for name, run_ in lab.simulation.runs.items()
     }
     assert min(summed.values()) > 1e-6
     do(lab, c.SetRunning(False), c.ChoosePath("segment"))  # no blend: the kind changes
     run(lab, 2 * FRAME)
-    assert lab.session.editor.curve is lab.session.presets["segment"].curve
-    for run_ in lab.session.runs.values():
+    assert lab.simulation.editor.curve is lab.simulation.presets["segment"].curve
+    for run_ in lab.simulation.runs.values():
         assert not run_.fields()["integral"].any()
 
 
@@ -521,25 +523,29 @@ FAR = c.DrawPath(0.19 * np.column_stack([np.cos(TURN := np.linspace(0, 6.2, 60))
 
 def test_refused_path_keeps_the_previous_one_and_says_why() -> None:
     lab = new_lab(0.5)
-    design, curve = lab.session.editor.design, lab.session.editor.curve
+    design, curve = lab.simulation.editor.design, lab.simulation.editor.curve
     do(lab, FAR)
-    assert lab.session.editor.design is design and "leaves the workspace" in lab.message
+    assert lab.simulation.editor.design is design and "leaves the workspace" in lab.message
     assert lab.message_level == "warning"
     assert len(take_snapshot(lab, 1.0).path.refused)
     run(lab, 0.5)
-    assert np.array_equal(lab.session.editor.table, curve.table())
-    assert max(r.max_distance for r in lab.session.runs.values()) < 5e-3
+    assert np.array_equal(lab.simulation.editor.table, curve.table())
+    assert max(r.max_distance for r in lab.simulation.runs.values()) < 5e-3
 
 
 @pytest.mark.parametrize("begin", np.arange(0.2, 3.4, 0.4))
 def test_a_path_that_crosses_itself_is_followed_with_a_warning(begin: float) -> None:
     lab = new_lab(begin)
     do(lab, c.ChoosePath("figure of eight"))
-    assert lab.session.editor.design.name == "figure of eight" and not lab.session.editor.faults
+    assert (
+        lab.simulation.editor.design.name == "figure of eight" and not lab.simulation.editor.faults
+    )
     assert "crosses itself" in lab.message and lab.message_level == "warning"
     assert not len(take_snapshot(lab, 1.0).path.refused)
     run(lab, 3.0)
-    assert all(each.diverged is None and each.distance < 5e-3 for each in lab.session.runs.values())
+    assert all(
+        each.diverged is None and each.distance < 5e-3 for each in lab.simulation.runs.values()
+    )
     do(lab, c.ChoosePath("circle"))
     assert lab.message == ""
 
@@ -550,18 +556,18 @@ def test_a_start_at_a_crossing_is_on_the_strand_that_it_names(theta: float) -> N
     do(lab, c.ChoosePath("figure of eight"))
     run(lab, 0.5)
     do(lab, c.SetStart("theta", theta), c.SetStart("along", 0.1), c.Reset())
-    for each in lab.session.runs.values():
-        first = lab.session.editor.curve.at(np.array(theta), 1)
+    for each in lab.simulation.runs.values():
+        first = lab.simulation.editor.curve.at(np.array(theta), 1)
         at = each.fields()
         assert at["theta"][0] == pytest.approx(theta, abs=1e-6)
-        y = [lab.session.robot.endpoint(q) for q in (at["q"], at["q"] + 1e-6 * at["v"])]
+        y = [lab.simulation.robot.endpoint(q) for q in (at["q"], at["q"] + 1e-6 * at["v"])]
         wanted = 0.1e-6 * first / np.linalg.norm(first)
         assert y[1] - y[0] == pytest.approx(wanted, abs=1e-12)
 
 
 def ring(lab: Lab, phase: float, sense: int) -> np.ndarray:
     a = phase + sense * np.linspace(0, 6.2, 60)
-    middle = lab.session.robot.unplace(np.array([0.2, 0.0, 0.2]))
+    middle = lab.simulation.robot.output_at(np.array([0.2, 0.0, 0.2]))
     return middle + 0.05 * np.stack([np.cos(a), np.sin(a)], axis=1)
 
 
@@ -570,35 +576,35 @@ def ring(lab: Lab, phase: float, sense: int) -> np.ndarray:
 def test_the_same_circle_drawn_anyhow_disturbs_nobody(phase: float, sense: int) -> None:
     lab = new_lab(1.0)
     do(lab, c.DrawPath(ring(lab, phase, sense)))
-    assert lab.session.editor.design.name == "drawn" and lab.message == ""
-    before = {name: run_.max_distance for name, run_ in lab.session.runs.items()}
+    assert lab.simulation.editor.design.name == "drawn" and lab.message == ""
+    before = {name: run_.max_distance for name, run_ in lab.simulation.runs.items()}
     run(lab, 1.0)
-    for name, run_ in lab.session.runs.items():
+    for name, run_ in lab.simulation.runs.items():
         assert run_.max_distance < before[name] + 1.5e-3
         assert run_.shown()["theta_rate"][0] > 5  # and goes on in its direction
 
 
 def test_drag_of_a_point_is_one_edit_and_follows_meanwhile() -> None:
     lab = new_lab(0.3)
-    first = lab.session.editor.design
+    first = lab.simulation.editor.design
     place = first.points[2]
     for k in range(1, 6):
         do(lab, c.MovePoint(2, place + np.array([0.0, -0.002 * k]), finished=False))
         run(lab, 0.1)
-    assert lab.session.editor.design is first and lab.session.editor.selected == 2
-    assert not np.allclose(lab.session.editor.table, first.curve.table(), atol=1e-4)
+    assert lab.simulation.editor.design is first and lab.simulation.editor.selected == 2
+    assert not np.allclose(lab.simulation.editor.table, first.curve.table(), atol=1e-4)
     do(lab, c.EndMove())
-    assert lab.session.editor.design.points[2] - first.points[2] == pytest.approx([0.0, -0.01])
+    assert lab.simulation.editor.design.points[2] - first.points[2] == pytest.approx([0.0, -0.01])
     do(lab, c.Undo())
-    assert lab.session.editor.design is first
+    assert lab.simulation.editor.design is first
     do(lab, c.Undo())
-    assert lab.session.editor.design is first and "no change" in lab.message
+    assert lab.simulation.editor.design is first and "no change" in lab.message
 
 
 @pytest.mark.parametrize("beyond", [(0.15, 0.15), (0.0, -0.18), (-0.1, 0.0)])
 def test_a_drag_beyond_what_is_valid_goes_as_far_as_it_may(beyond: tuple[float, float]) -> None:
     lab = new_lab(0.3)
-    editor, first = lab.session.editor, lab.session.editor.design
+    editor, first = lab.simulation.editor, lab.simulation.editor.design
     start, way = first.points[2], np.array(beyond)
     do(lab, c.MovePoint(2, start + np.array([0.0, 0.01]), finished=False))
     run(lab, 0.4)
@@ -609,9 +615,9 @@ def test_a_drag_beyond_what_is_valid_goes_as_far_as_it_may(beyond: tuple[float, 
     assert "no further" in lab.message and lab.message_level == "warning"
     share = (editor.design.points[2] - start) @ way / (way @ way)
     assert editor.design.points[2] == pytest.approx(start + share * way)
-    assert 0 < share < 1 and not curve_faults(lab.session.robot.margin, editor.design.curve)
+    assert 0 < share < 1 and not curve_faults(lab.simulation.robot.margin, editor.design.curve)
     next_one = first.moved(2, start + (share + 1 / 64) * way)
-    assert curve_faults(lab.session.robot.margin, next_one.curve)
+    assert curve_faults(lab.simulation.robot.margin, next_one.curve)
     run(lab, 0.4)
     assert editor.curve is editor.design.curve
     do(lab, c.MovePoint(2, start))  # back to where it began
@@ -622,7 +628,7 @@ def test_a_drag_beyond_what_is_valid_goes_as_far_as_it_may(beyond: tuple[float, 
 
 def test_a_drag_that_comes_back_from_beyond_goes_where_the_hand_is() -> None:
     lab = new_lab(0.3)
-    editor, start = lab.session.editor, lab.session.editor.design.points[2]
+    editor, start = lab.simulation.editor, lab.simulation.editor.design.points[2]
     for down in (0.01, 0.2, 0.005):
         do(lab, c.MovePoint(2, start - np.array([0.0, down]), finished=False))
     do(lab, c.EndMove())
@@ -633,10 +639,10 @@ def test_a_drag_that_comes_back_from_beyond_goes_where_the_hand_is() -> None:
 @pytest.mark.parametrize("command", [c.NudgePoint(0.15, 0.15), c.PlacePoint(0.19, 0.19)])
 def test_by_key_and_by_number_too_a_point_goes_as_far_as_it_may(command: c.Command) -> None:
     lab = new_lab()
-    editor, first = lab.session.editor, lab.session.editor.design
+    editor, first = lab.simulation.editor, lab.simulation.editor.design
     do(lab, c.SelectPoint(2), command)
     assert "no further" in lab.message and editor.design is not first
-    assert not curve_faults(lab.session.robot.margin, editor.design.curve)
+    assert not curve_faults(lab.simulation.robot.margin, editor.design.curve)
 
 
 @settings(max_examples=3)
@@ -644,30 +650,30 @@ def test_by_key_and_by_number_too_a_point_goes_as_far_as_it_may(command: c.Comma
 def test_a_command_carries_coordinates_of_the_path_s_plane_to_the_bit(robot: str) -> None:
     lab = new_lab()
     do(lab, c.ChooseRobot(robot))
-    there = lab.session.editor.design.points[1] + np.array([0.001, -0.002])
+    there = lab.simulation.editor.design.points[1] + np.array([0.001, -0.002])
     do(lab, c.MovePoint(1, there))
-    assert np.array_equal(lab.session.editor.design.points[1], there)
+    assert np.array_equal(lab.simulation.editor.design.points[1], there)
     for wrong in (there[:1], np.append(there, 0.0)):
         do(lab, c.MovePoint(1, wrong))
         assert "not a point" in lab.message
-    assert np.array_equal(lab.session.editor.design.points[1], there)
+    assert np.array_equal(lab.simulation.editor.design.points[1], there)
 
 
 def test_undo_in_the_middle_of_a_drag_takes_the_drag_back() -> None:
     lab = new_lab(0.3)
-    first = lab.session.editor.design
+    first = lab.simulation.editor.design
     moved = first.points[2] + np.array([0.0, -0.01])
     do(lab, c.MovePoint(2, moved, finished=False))
     run(lab, 0.4)
     do(lab, c.Undo())
     run(lab, 0.4)
     do(lab, c.EndMove())
-    assert lab.session.editor.design is first and lab.session.editor.curve is first.curve
+    assert lab.simulation.editor.design is first and lab.simulation.editor.curve is first.curve
 
 
 def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
     by_key, by_number, by_mouse = new_lab(), new_lab(), new_lab()
-    start = by_key.session.editor.design.points[3]
+    start = by_key.simulation.editor.design.points[3]
     do(
         by_key,
         c.SelectPoint(2),
@@ -684,11 +690,11 @@ def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
     target = start + np.array([0.003, -0.004])
     do(by_mouse, c.MovePoint(3, target))
     for lab in (by_key, by_number):
-        assert lab.session.editor.selected == 3
-        assert lab.session.editor.design.points == pytest.approx(
-            by_mouse.session.editor.design.points
+        assert lab.simulation.editor.selected == 3
+        assert lab.simulation.editor.design.points == pytest.approx(
+            by_mouse.simulation.editor.design.points
         )
-    assert by_mouse.session.editor.design.points[3] - start == pytest.approx([0.003, -0.004])
+    assert by_mouse.simulation.editor.design.points[3] - start == pytest.approx([0.003, -0.004])
 
 
 @settings(max_examples=25, deadline=None)
@@ -697,9 +703,9 @@ def test_keyboard_moves_the_selected_point_as_a_drag_would() -> None:
 )
 def test_undo_and_redo_walk_the_line_of_edits(actions: list[str]) -> None:
     lab = new_lab()
-    line, at = [lab.session.editor.design], 0
+    line, at = [lab.simulation.editor.design], 0
     for k, action in enumerate(actions):
-        editor = lab.session.editor
+        editor = lab.simulation.editor
         if action == "undo":
             at = max(0, at - 1)
             do(lab, c.Undo())
@@ -734,29 +740,29 @@ def unstable() -> Lab:
 
 def test_divergence_freezes_the_robot_says_why_and_reset_brings_it_back() -> None:
     lab = unstable()
-    assert any(r.diverged for r in lab.session.runs.values())
+    assert any(r.diverged for r in lab.simulation.runs.values())
     assert "Reset" in lab.message and lab.message_level == "error"
-    frozen = {n: r.state.copy() for n, r in lab.session.runs.items() if r.diverged}
-    time = lab.session.time
+    frozen = {n: r.state.copy() for n, r in lab.simulation.runs.items() if r.diverged}
+    time = lab.simulation.time
     run(lab, 0.2)
-    assert lab.session.time == pytest.approx(time + 0.2, abs=1e-2)
+    assert lab.simulation.time == pytest.approx(time + 0.2, abs=1e-2)
     for name, state in frozen.items():
-        assert np.array_equal(lab.session.runs[name].state, state)
+        assert np.array_equal(lab.simulation.runs[name].state, state)
     assert_sound(lab)
     do(lab, c.ResetParameters(), c.Reset())
     run(lab, 0.5)
     assert lab.message == ""
-    assert all(r.diverged is None and r.distance < 0.005 for r in lab.session.runs.values())
+    assert all(r.diverged is None and r.distance < 0.005 for r in lab.simulation.runs.values())
 
 
 def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
     lab = new_lab(0.1)
-    run_ = lab.session.runs[FOLLOWER]
+    run_ = lab.simulation.runs[FOLLOWER]
 
     class Breaking:
         """A loop whose closest point is lost before the robot is."""
 
-        layouts = loop_layouts(lab.session.robot.system, run_.kind)
+        layouts = loop_layouts(lab.simulation.robot.system, run_.kind)
 
         def run_many(self, states: list[np.ndarray], *_: object) -> tuple[np.ndarray, np.ndarray]:
             rows = np.tile(run_.row, (len(states), 9, 1))
@@ -771,32 +777,40 @@ def test_frozen_robot_shows_the_last_instant_that_is_all_numbers() -> None:
             return Breaking()
 
     broken = Store()
-    for each in lab.session.runs.values():
-        each._store, each._loop = broken, None
+    for each in lab.simulation.runs.values():
+        each._loop_cache, each._loop = broken, None
     before = run_.state.copy()
-    lab.session.simulate(9)
-    assert run_.diverged and run_.diverged.time == pytest.approx(lab.session.time - 9e-3 + 6e-3)
+    lab.simulation.simulate(9)
+    assert run_.diverged and run_.diverged.time == pytest.approx(lab.simulation.time - 9e-3 + 6e-3)
     assert run_.shown()["y"][0] == 3 and np.array_equal(run_.state, before)
     assert_drawable(take_snapshot(lab, 1.0))
-    do(lab, c.Hold(True), c.Grab(FOLLOWER, lab.session.robot.unplace(np.array([0.2, 0.0, 0.2]))))
-    lab.session.simulate(9)
+    do(
+        lab,
+        c.Hold(True),
+        c.Grab(FOLLOWER, lab.simulation.robot.output_at(np.array([0.2, 0.0, 0.2]))),
+    )
+    lab.simulation.simulate(9)
 
 
 def test_one_robot_stands_still_and_the_other_goes_on() -> None:
     lab = new_lab(0.3)
     do(lab, c.SetCopy(False))
-    lab.session.runs[FOLLOWER].fields()["v"][:] = 200.0
+    lab.simulation.runs[FOLLOWER].fields()["v"][:] = 200.0
     run(lab, 0.5)
-    assert lab.session.runs[FOLLOWER].diverged and not lab.session.runs[TRACKER].diverged
+    assert lab.simulation.runs[FOLLOWER].diverged and not lab.simulation.runs[TRACKER].diverged
     assert "Path following stopped at 0.3" in lab.message
-    before = y(lab.session, TRACKER)
-    do(lab, c.Hold(True), c.Grab(FOLLOWER, lab.session.robot.unplace(np.array([0.2, 0.0, 0.2]))))
+    before = y(lab.simulation, TRACKER)
+    do(
+        lab,
+        c.Hold(True),
+        c.Grab(FOLLOWER, lab.simulation.robot.output_at(np.array([0.2, 0.0, 0.2]))),
+    )
     run(lab, 0.1)
-    assert not np.array_equal(y(lab.session, TRACKER), before)
+    assert not np.array_equal(y(lab.simulation, TRACKER), before)
     assert_sound(lab)
 
 
-def test_a_session_never_notices_another() -> None:
+def test_a_simulation_never_notices_another() -> None:
     alone, beside = new_lab(), new_lab()
     other = new_lab()
     do(
@@ -809,20 +823,20 @@ def test_a_session_never_notices_another() -> None:
         alone.advance(FRAME)
         other.advance(FRAME)
         if k == 30:
-            other.session.runs[TRACKER].fields()["q"][:] = np.nan
+            other.simulation.runs[TRACKER].fields()["q"][:] = np.nan
             do(other, c.ChoosePath("clover"), c.Hold(True))
         beside.advance(FRAME)
-    assert other.session.runs[TRACKER].diverged
-    for name, state in states(alone.session).items():
-        assert np.array_equal(state, beside.session.runs[name].state)
-    assert beside.message == "" and beside.session.parameters == alone.session.parameters
+    assert other.simulation.runs[TRACKER].diverged
+    for name, state in states(alone.simulation).items():
+        assert np.array_equal(state, beside.simulation.runs[name].state)
+    assert beside.message == "" and beside.simulation.parameters == alone.simulation.parameters
 
 
 def test_a_dragged_slider_is_recorded_once_a_second() -> None:
-    lab = Lab(store())
+    lab = Lab(loop_cache())
     for step in range(170):
         do(lab, c.SetParameter("K1", 500.0 + step))
         lab.advance(FRAME)
     do(lab, c.SetParameter("K2", 50.0), c.SetParameter("K1", 300.0))
-    told = [(event.detail, round(event.time, 1)) for event in lab.session.events]
+    told = [(event.detail, round(event.time, 1)) for event in lab.simulation.events]
     assert told == [("K1", 0.0), ("K1", 1.0), ("K1", 2.0), ("K2", 2.8), ("K1", 2.8)]

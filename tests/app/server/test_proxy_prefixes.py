@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from websockets import Headers
 from websockets.http11 import Request
 
-from onpath.app.viser_adapter.addresses import place_of
+from onpath.app.viser_adapter.addresses import prefix_of
 from onpath.app.viser_adapter.request_filter import RequestFilter
 from tests.support.checkout import ROOT
 from tests.support.lab_process import free_ports
@@ -92,9 +92,9 @@ def served(folder: Path, more: str = "", starts: bool = True) -> Iterator[Served
 class Tabs:
     """Pages that connect again, by websocket alone, as viser's does."""
 
-    def __init__(self, site: Served, places: Sequence[str]) -> None:
+    def __init__(self, site: Served, prefixes: Sequence[str]) -> None:
         self._site = site
-        self._places = places
+        self._prefixes = prefixes
         self._open = dict[str, tuple[str, socket.socket, ExitStack]]()
 
     def close(self) -> None:
@@ -104,19 +104,19 @@ class Tabs:
     def connect(self) -> None:
         """Those whose process has ended connect again, once: all of them are served at once."""
         up = {each.name for each in self._site.behind if each.runs}
-        for place in self._places:
-            if place in self._open:
-                name, _, stack = self._open[place]
-                if name in up and not self._has_ended(place):
+        for prefix in self._prefixes:
+            if prefix in self._open:
+                name, _, stack = self._open[prefix]
+                if name in up and not self._has_ended(prefix):
                     continue
                 stack.close()
             stack = ExitStack()
-            status, name, way = self._site.ask(f"/{place}/", stack, **UPGRADE)
-            assert (status, name in up) == (101, True), (place, status, name)
-            self._open[place] = name, way, stack
+            status, name, way = self._site.ask(f"/{prefix}/", stack, **UPGRADE)
+            assert (status, name in up) == (101, True), (prefix, status, name)
+            self._open[prefix] = name, way, stack
 
-    def _has_ended(self, place: str) -> bool:
-        way = self._open[place][1]
+    def _has_ended(self, prefix: str) -> bool:
+        way = self._open[prefix][1]
         way.setblocking(False)
         try:
             return not way.recv(1)
@@ -134,15 +134,15 @@ def test_whoever_comes_is_served_at_once_while_one_process_is_there(
     "Kill, start again, kill the other" is the rolling restart of an upgrade.
     """
     chance = random.Random(39)
-    places = [f"c/{CODE}", *(f"{kind}/{number:06d}" for kind in "cl" for number in range(4))]
+    prefixes = [f"c/{CODE}", *(f"{kind}/{number:06d}" for kind in "cl" for number in range(4))]
     with served(tmp_path, upstream, starts=first == "processes") as site, ExitStack() as stack:
         a, b = site.behind
         if first == "proxy":
-            for place in places:  # so that nginx has met nobody at all
-                assert site.ask(f"/{place}/", stack, **UPGRADE)[0] == 502
+            for prefix in prefixes:  # so that nginx has met nobody at all
+                assert site.ask(f"/{prefix}/", stack, **UPGRADE)[0] == 502
             a.start()
             b.start()
-        tabs = Tabs(site, places)
+        tabs = Tabs(site, prefixes)
         stack.callback(tabs.close)
         tabs.connect()
         upgrade = [b.kill, b.start, a.kill, a.start] * 2
@@ -216,17 +216,17 @@ def test_a_websocket_comes_to_the_process_of_its_place_or_to_none(site: Served, 
     lab.open = True
     for each, text in came:
         refused = lab.refusal(Request(text, Headers(Host=HOST, **UPGRADE)))
-        place = "" if refused else place_of(text)
-        assert not place or each == site.serving(f"/{place}/")
+        prefix = "" if refused else prefix_of(text)
+        assert not prefix or each == site.serving(f"/{prefix}/")
 
 
 def test_the_pages_of_a_place_and_their_websockets_come_to_one_process(site: Served) -> None:
     found = set[str]()
     for number in range(40):
-        place = f"c/{number:06d}"
-        names = {site.serving(f"/{place}{rest}") for rest in ("", "/", "/?x=1", "/?websocket=x")}
+        prefix = f"c/{number:06d}"
+        names = {site.serving(f"/{prefix}{rest}") for rest in ("", "/", "/?x=1", "/?websocket=x")}
         with ExitStack() as stack:
-            names.add(site.ask(f"/{place}/", stack)[1])
+            names.add(site.ask(f"/{prefix}/", stack)[1])
         (name,) = names
         found.add(name)
     assert found == {"a", "b"}
