@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import signal
 
-_CLOSED = getattr(signal, "SIGHUP", None)  # when the terminal is closed
-_HEEDED = _CLOSED is not None and signal.getsignal(_CLOSED) is signal.SIG_DFL  # not with `nohup`
-END_SIGNALS = (signal.SIGINT, signal.SIGTERM, *([_CLOSED] if _HEEDED else []))
+_CLOSED = [each for each in signal.Signals if each.name == "SIGHUP"]  # the terminal; not on Windows
+END_SIGNALS = (
+    signal.SIGINT,
+    signal.SIGTERM,
+    *(each for each in _CLOSED if signal.getsignal(each) is signal.SIG_DFL),  # `nohup` ignores it
+)
