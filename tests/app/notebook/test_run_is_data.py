@@ -49,7 +49,7 @@ here = onpath.simulate(entry, run.experiment.path, duration=0.1)
 legend = run.plot(here, "both.svg").axes[0].get_legend()
 assert "A gentle law" in [text.get_text() for text in legend.get_texts()]
 assert Path("both.svg").stat().st_size > 1e4
-assert np.isfinite(entry.make(run.experiment.parameters).place(run.y)).all()
+assert np.isfinite(entry.make(run.experiment.parameters).position(run.y)).all()
 assert run.experiment.robot().drawing and run.experiment.robot().skeleton
 again = pickle.loads(pickle.dumps(run))
 assert "Gentle" not in onpath.laws() and np.array_equal(again.y, run.y)
