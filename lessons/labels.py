@@ -69,11 +69,17 @@ def robot_text(entry: RobotEntry, words: Words) -> str:
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
-    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a side."""
-    spec = specs(parameters).get(name)
-    if spec is not None:
-        return parameter_label(name, spec, words)
-    return words(f"side.{name}") if name in DEFAULT_LAWS else words(OTHERS[name])
+    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a side.
+
+    Args:
+        parameters: of the robot; a lesson may name a parameter that only another robot has.
+    """
+    if name in DEFAULT_LAWS:
+        return words(f"side.{name}")
+    if name in OTHERS:
+        return words(OTHERS[name])
+    declared = (specs(each) for each in (parameters, *(e.parameters for e in ROBOTS.values())))
+    return parameter_label(name, next(each[name] for each in declared if name in each), words)
 
 
 def value_label(name: str, value: object, words: Words) -> str:

@@ -206,11 +206,13 @@ def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: b
         if not key_is_known:
             key = shown(room.key)
             print(f"teacher's key: {key}     there, under Class, Teacher; tell it nobody")
-    sys.stdout.flush()
+    print(end="", flush=True)  # does nothing without a standard output
 
 
 def _can_show(text: str) -> bool:
     """Whether the output is a terminal that can show a text."""
+    if sys.stdout is None:  # closed by who has started the lab
+        return False
     try:
         text.encode(sys.stdout.encoding or "ascii")
     except UnicodeEncodeError:

@@ -13,8 +13,10 @@ import sys
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
-HANDED_ON = signal.SIGINT, signal.SIGTERM
+from onpath.app.common.end_signals import END_SIGNALS
+
 SOON = 5.0  # [s]; a lab that ends this soon after its start would only fail again
 LOOK = 0.5  # [s] between a child's looks for its parent
 
@@ -28,27 +30,35 @@ def supervised(serve: Callable[[bool], int]) -> int:
     """
     if not hasattr(os, "fork") or "NOTIFY_SOCKET" in os.environ:
         return serve(False)
-    child, again = 0, False
+    child, told, again = 0, 0, False
 
     def hand_on(number: int, _: object) -> None:
-        if not child:
-            sys.exit(128 + number)
-        os.kill(child, number)
+        nonlocal told
+        told = number
+        for each in END_SIGNALS:  # else another one would cut Python's own end short
+            signal.signal(each, signal.SIG_IGN)
+        if child:
+            with suppress(ProcessLookupError):  # it has just ended
+                os.kill(child, number)
 
-    handlers = {number: signal.signal(number, hand_on) for number in HANDED_ON}
-    while True:
+    handlers = {number: signal.signal(number, hand_on) for number in END_SIGNALS}
+    while not told:
         begun = time.monotonic()
+        child = 0
         if not (child := os.fork()):
             for number, handler in handlers.items():
                 signal.signal(number, handler)
             threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
-            return serve(again)
+            return 128 + told if told else serve(again)
+        if told:  # before it could be handed on
+            os.kill(child, told)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         goes_on = code < 0 or code == os.EX_SOFTWARE  # see `app.server.watchdog`
-        if not goes_on or time.monotonic() - begun < SOON:
+        if told or not goes_on or time.monotonic() - begun < SOON:
             return code if code >= 0 else 128 - code
-        child, again = 0, True
+        again = True
         print(f"onpath: the lab has ended with code {code}; it starts again", file=sys.stderr)
+    return 128 + told
 
 
 def _end_with(parent: int) -> None:

@@ -126,9 +126,9 @@ class Trace:
 
 
 def _changed(simulation: Simulation, given: Mapping[str, object]) -> tuple[str, ...]:
-    """Names of the settings that differ from the given ones."""
+    """Names of the settings that differ from the given ones; another robot may have others."""
     now = settings_of(simulation)
-    return tuple(name for name, value in given.items() if now.get(name) != value)
+    return tuple(name for name, value in given.items() if name in now and now[name] != value)
 
 
 def _happening(event: LabEvent) -> Happening:

@@ -33,6 +33,7 @@ from onpath.app.page.plots import MORE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
+from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -116,10 +117,8 @@ class PanelFactory:
 
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
-        names = [name for name in scene.controls if name not in first.parameters]
-        return [
-            part for name in names if name not in IN_STRIP for part in self._add(name, first, True)
-        ]
+        names = [name for name in scene.controls if name in CONTROLS and name not in IN_STRIP]
+        return [part for name in names for part in self._add(name, first, True)]
 
     def _plots_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         fields, large = first.key.fields, first.key.presenting

@@ -16,6 +16,7 @@ import viser
 
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import normalised
+from onpath.app.common.end_signals import END_SIGNALS
 from onpath.app.common.error_log import log_error
 from onpath.app.common.periodic import Periodic
 from onpath.app.exports import exporter as exports
@@ -75,7 +76,6 @@ ASKED = {  # see `Arrivals`
     SITE_KEY: False,
 }
 MOST_CLIENTS = 64
-ENDING = signal.SIGINT, signal.SIGTERM
 LOOK = 0.5  # [s] between looks for a signal
 FREEING = 10.0  # [s] between looks for labs that were left
 
@@ -392,7 +392,7 @@ def serve(
     ready: Callable[[str], None] = lambda _: None,
     **listening: Any,
 ) -> None:
-    """Serve the lab until Ctrl-C or SIGTERM.
+    """Serve the lab until one of `END_SIGNALS`, such as Ctrl-C.
 
     Args:
         lessons: folder of the user's own lessons.
@@ -429,7 +429,7 @@ def serve(
         **listening,
     )
     try:
-        for number in ENDING:
+        for number in END_SIGNALS:
             signal.signal(number, _end)
         warm_up(loop_cache, course)
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
@@ -447,6 +447,6 @@ def serve(
 
 def _end(*_: object) -> None:
     """End the server. Later signals are ignored while the last changes are stored."""
-    for number in ENDING:
+    for number in END_SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     raise KeyboardInterrupt

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
@@ -90,7 +91,8 @@ def _name(raw: bytes) -> str:
 
 
 def _is_coherent(message: Any) -> bool:
-    """Whether constraints beyond types hold: unit quaternions, indices >= 0."""
+    """Whether constraints beyond types hold: unit quaternions, indices >= 0, a field of view."""
     norm_squared = sum(x * x for x in getattr(message, "wxyz", (1.0,)))
     index = getattr(message, "instance_index", None)
-    return abs(norm_squared - 1.0) < 0.01 and (index or 0) >= 0
+    is_seen = 0 < getattr(message, "fov", 1.0) < math.pi
+    return abs(norm_squared - 1.0) < 0.01 and (index or 0) >= 0 and is_seen

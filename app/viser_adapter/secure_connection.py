@@ -36,6 +36,7 @@ GESTURES = (wire.ViewerCameraMessage, *CHANGES)
 """Messages handled at once: a browser may send many in a row, and their handlers never wait."""
 LONG = 4096  # [B]; a message counts once more for every so many bytes
 _DATA = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
+_END_OF_REQUEST = b"\r\n\r\n"
 _BAD_REQUEST = b"HTTP/1.1 400 Bad Request\r\nConnection: close\r\nContent-Length: 0\r\n\r\n"
 
 
@@ -128,6 +129,7 @@ class SecureConnection(CountedConnection):
         self._deadline: asyncio.TimerHandle | None = None
         self._begun: bytes | None = b""  # start of the request, until its method is known
         self._request_size, self.is_head, self._refused = 0, False, False
+        self._last = b""  # bytes of the request, in which its end may begin
         self._is_next = False  # whether no earlier message still waits
         self._decoded: Any = None  # the waiting message, if it is decoded already
         self._end: ConnectionClosed | None = None  # raised in the task that waited for a message
@@ -136,6 +138,8 @@ class SecureConnection(CountedConnection):
     def data_received(self, data: bytes) -> None:
         if self.request is None:
             data = self._of_request(data)
+        elif self.protocol.state is State.CONNECTING:
+            return  # nothing may be sent before the answer; websockets would fail on it
         if data:
             super().data_received(data)
             self._limit_unfinished()
@@ -216,7 +220,7 @@ class SecureConnection(CountedConnection):
         self.transport.abort()
 
     def _of_request(self, data: bytes) -> bytes:
-        """The bytes of a request to pass on; empty until its method is known."""
+        """The bytes to pass on: none until the method is known, and none after the request."""
         self._request_size += len(data)
         if self._begun is not None:
             self._begun += data
@@ -225,7 +229,10 @@ class SecureConnection(CountedConnection):
             data, self._begun = self._begun, None
             self.is_head = data.startswith(b"HEAD ")
             data = b"GET " + data[5:] if self.is_head else data
-        return data
+        before, data = self._last, self._last + data
+        request, end, _ = data.partition(_END_OF_REQUEST)
+        self._last = data[1 - len(_END_OF_REQUEST) :]
+        return (request + end)[len(before) :]
 
     def _limit_unfinished(self) -> None:
         """Limit the size of a request, and the memory and duration of an unfinished message."""

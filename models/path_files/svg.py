@@ -26,6 +26,7 @@ from onpath.models.errors import CodedError
 from onpath.models.path_files.stroke import UNITS, Stroke, check_count, drawn_stroke
 
 DEEPEST, MOST_ELEMENTS = 50, 20_000
+LONGEST_NAME = 40  # of a line, as far as a message quotes it
 CURVED = 48  # straight pieces of a Bézier curve or an arc
 GROUPS = ("svg", "g", "a", "switch")
 LINE = "line-in-file"
@@ -48,7 +49,7 @@ def strokes_of_svg(data: bytes) -> list[Stroke]:
         raise CodedError("error.svg_no_drawing")
     unit, strokes, count = _unit(root), list[Stroke](), 0
     for element, path, name in _shapes(root):
-        for part in _continuous(path, int(element.get(LINE, "0"))):
+        for part in _read(element, list, _continuous(path, int(element.get(LINE, "0")))):
             z = unit * np.column_stack([part.real, -part.imag])
             count += len(z)
             check_count(count, int(element.get(LINE, "0")))
@@ -130,7 +131,7 @@ def _shapes(root: Element) -> Iterator[tuple[Element, Any, str]]:
         described = _read(element, CONVERSIONS[tag], element)
         path = _read(element, transform, _read(element, parse_path, described), before @ own)
         if len(path):
-            yield element, path, element.get("id") or f"{tag} {number}"
+            yield element, path, element.get("id", "")[:LONGEST_NAME] or f"{tag} {number}"
 
 
 def _read(element: Element, reader: Callable[..., Any], *arguments: Any) -> Any:
@@ -139,6 +140,8 @@ def _read(element: Element, reader: Callable[..., Any], *arguments: Any) -> Any:
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return reader(*arguments)
+    except CodedError:
+        raise
     except Exception as error:  # it raises many kinds, also AssertionError
         reason = str(error).partition("\n")[0][:80] or type(error).__name__
         line = element.get(LINE, "")

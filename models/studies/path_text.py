@@ -60,8 +60,9 @@ def curve_from_text(text: str) -> Curve:
         return _implicit(text.lstrip())
     form, *words = text.replace(MINUS, "-").replace(",", " ").split() or [""]
     if "." not in text and (comma := re.search(r"\d+,\d+", text)):  # no path has whole metres
-        point = comma[0].replace(",", ".")
-        raise CodedError("error.decimal_comma", name="path", value=comma[0], point=point)
+        value = comma[0][:20]
+        point = value.replace(",", ".")
+        raise CodedError("error.decimal_comma", name="path", value=value, point=point)
     if form not in FORMS:
         known = list(dict.fromkeys([*presets(), *FORMS, IMPLICIT]))
         raise unknown_name(text.strip()[:60], known, "path")

@@ -35,6 +35,7 @@ from onpath.models.systems.parameter_specs import MINUS
 
 LONGEST_LINE = 10_000  # [characters]
 MOST_LINES = 1_000_000
+MOST_QUOTED = 20  # of a cell, in a message, [characters]
 LARGEST = 1e9  # of any number, in absolute value
 LATEST = 1e20  # of a time, which may be in nanoseconds since 1970
 SEPARATORS = "\t;,"
@@ -175,7 +176,7 @@ class NumberReader:
         Raises:
             CodedError: it is not a number, or has another decimal sign than those before.
         """
-        at, text = str(line), repr(cell[:20])
+        at, column, text = str(line), column[:MOST_QUOTED], repr(cell[:MOST_QUOTED])
         match = NUMBER.fullmatch(cell)
         if match is None:
             raise CodedError("error.table_not_a_number", line=at, column=column, text=text)

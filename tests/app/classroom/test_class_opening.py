@@ -134,3 +134,8 @@ def test_a_terminal_shows_the_address_as_a_qr_code_if_a_phone_can_open_it(
     assert f"{site}/c/{room.code}/" in said and shown(room.key) in said
     assert (qr_text(f"{site}/c/{room.code}/") in said) == is_shown
     assert ("--host 0.0.0.0" in said) == ("192" not in site)
+
+
+def test_a_class_without_an_output_to_print_on_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sys.stdout", None)
+    print_classes(open_classes(KEYS[:1]), "https://lab.example.org", key_is_known=True)

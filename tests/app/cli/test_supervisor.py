@@ -29,6 +29,7 @@ from onpath.app.cli import supervisor
 def serve(again):
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(3))
     signal.signal(signal.SIGINT, lambda *_: sys.exit(3))
+    signal.signal(signal.SIGHUP, lambda *_: sys.exit(3))
     with Path(sys.argv[1]).open("a") as lives:
         print(os.getpid(), again, file=lives)
     exec(sys.argv[2])
@@ -100,7 +101,7 @@ def lab(tmp_path: Path) -> Iterator[Callable[..., Lab]]:
                 os.kill(process, signal.SIGKILL)
 
 
-@pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("end", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_lab_that_is_killed_starts_again_until_it_is_ended(
     lab: Callable[..., Lab], end: signal.Signals
 ) -> None:
@@ -112,6 +113,27 @@ def test_a_lab_that_is_killed_starts_again_until_it_is_ended(
     assert made.code() == 3 and is_gone(last) and len(made.lives) == 4
     assert made.log.read_text("utf-8").count("it starts again") == 3
     assert made.told == ["False", "True", "True", "True"]
+
+
+def test_a_lab_that_is_told_to_end_all_the_time_ends_once(lab: Callable[..., Lab]) -> None:
+    made = lab()
+    made.life(0)
+    while made.parent.poll() is None:
+        made.parent.terminate()
+    assert made.code() == 3 and len(made.lives) == 1
+    assert "Traceback" not in made.log.read_text("utf-8")
+
+
+def test_a_lab_in_a_terminal_that_may_be_closed_goes_on(lab: Callable[..., Lab]) -> None:
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as `nohup` does
+    try:
+        made = lab()
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    made.life(0)
+    made.parent.send_signal(signal.SIGHUP)
+    made.parent.terminate()
+    assert made.code() == 3 and len(made.lives) == 1
 
 
 def test_a_lab_that_hung_starts_again(lab: Callable[..., Lab]) -> None:

@@ -304,3 +304,22 @@ def test_any_stroke_becomes_a_curve_on_its_axes_or_is_refused(
     assert min(curve.values) >= 0 and max(curve.values) <= 60
     if len(set(drawn)) == len(drawn):
         assert max(curve.values) == np.round(np.clip(values, 0, 60), 3).max()
+
+
+@pytest.mark.parametrize("robot", ["two_link_arm", "cart_pendulum", "flexible"])
+def test_every_task_is_judged_whatever_robot_is_chosen(robot: str) -> None:
+    """Another robot has other settings than those that a check names."""
+    course, _ = built_in_course()
+    lab = Lab(loop_cache(), FIVE_BAR, course)
+    began = [Beginning.now(lab.simulation)]
+    do(lab, c.ChooseRobot("flexible"))
+    began.append(Beginning.now(lab.simulation))
+    do(lab, c.ChooseRobot(robot))
+    run(lab, 2 * FRAME)
+    assert lab.simulation.entry.name == robot
+    for begin in began:
+        record = record_of(lab.simulation, begin)
+        for name in course.lessons:
+            for step in course.lesson(name, "en").steps:
+                for task in step.tasks():
+                    judge(task, record, ENGLISH)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from unittest.mock import MagicMock
 
+import pytest
+
+from onpath.app.lab.commands import ChooseRobot
 from onpath.app.lab.dry_runs.behaviour_check import labels_of
 from onpath.app.lab.dry_runs.course_check import lab_at
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
@@ -13,7 +16,7 @@ from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.behaviour.marks import Behaviour
 from onpath.lessons.words import Words
 from tests.support.built_in import built_in_course
-from tests.support.lab import loop_cache
+from tests.support.lab import do, loop_cache, new_lab
 
 COURSE = built_in_course()[0]
 
@@ -63,3 +66,15 @@ def test_a_plot_and_a_control_that_a_text_names_are_on_its_page() -> None:
                     assert on_page != said.absent, (lesson.name, said.text, known, shown)
                     seen += 1
     assert seen > 10
+
+
+@pytest.mark.parametrize("robot", ["two_link_arm", "cart_pendulum"])
+def test_every_steps_page_is_built_whatever_robot_is_chosen(robot: str) -> None:
+    """Another robot lacks some of the parameters among the controls, and of the plots."""
+    lab, words = new_lab(), Words("en")
+    do(lab, ChooseRobot(robot))
+    first = take_page_snapshot(lab, 1.0)
+    for versions in COURSE.lessons.values():
+        lesson = versions["en"]
+        for index in range(len(lesson.steps)):
+            labels(lesson.scene_at(index), first, words)

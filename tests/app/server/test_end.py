@@ -45,7 +45,7 @@ def workers(served: LabProcess) -> str:
     return "".join(each.read_text() for each in lists)
 
 
-@SIGNALS
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_however_often_it_is_told_to_end_the_last_change_is_stored(
     served: LabProcess, tmp_path: Path, end: signal.Signals
 ) -> None:

@@ -390,7 +390,7 @@ NO_SCENE_MESSAGE = [
     *((n, {key: bad}) for n, keys in POSITIONS.items() for key in keys for bad in NO_POSITION),
     *(("camera", {"wxyz": bad}) for bad in ([0.0] * 4, [math.nan] * 4, [1])),
     *((n, {"instance_index": bad}) for n in ("drag", "click") for bad in (-1, 0.5, "0", True)),
-    *(("camera", {"fov": bad}) for bad in (math.nan, "1", None, [1.0])),
+    *(("camera", {"fov": bad}) for bad in (math.nan, "1", None, [1.0], 0.0, -0.1, math.pi)),
     *(("camera", {"image_height": bad}) for bad in (math.inf, 0.5, 10**12, "600")),
     *(("click", {"screen_pos": bad}) for bad in ([], [0.5], [0.5, math.nan], [[0.5, 0.5]])),
     ("drag", {"end_screen_pos": [math.nan, 0.0]}),

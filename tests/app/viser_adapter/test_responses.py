@@ -216,6 +216,22 @@ def test_a_malformed_request_is_answered(port: int, text: bytes, bytewise: bool)
     assert answer.count(b"HTTP/1.1") == 1
 
 
+@pytest.mark.parametrize("together", [True, False])
+@pytest.mark.parametrize("after", [b"GET / HTTP/1.1\r\nHost: a\r\n\r\n", b"\xff" * 300, b"\x81"])
+@pytest.mark.parametrize("asked", [b"", b"Upgrade: websocket\r\n"])
+def test_bytes_after_a_request_do_not_keep_it_from_its_answer(
+    port: int, caplog: pytest.LogCaptureFixture, asked: bytes, after: bytes, together: bool
+) -> None:
+    request = b"GET /health HTTP/1.1\r\nHost: 127.0.0.1\r\n" + asked + b"\r\n"
+    with socket.create_connection(("127.0.0.1", port), WAIT) as raw:
+        raw.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        for part in [request + after] if together else [request[:-3], request[-3:] + after]:
+            raw.sendall(part)
+        answer = b"".join(iter(lambda: raw.recv(1 << 16), b""))
+    assert answer.startswith(b"HTTP/1.1 200 ") and answer.count(b"HTTP/1.1") == 1
+    assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
+
+
 def test_an_error_of_our_own_is_logged(
     caplog: pytest.LogCaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

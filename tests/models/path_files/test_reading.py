@@ -473,3 +473,21 @@ def test_a_file_of_another_size_or_place_is_read_from_disk(tmp_path: Path) -> No
         path_of(TABLE.encode(), "a.csv", Placing(), most=10)
     with pytest.raises(OSError):
         path_in(tmp_path)
+
+
+def test_what_a_message_quotes_of_a_file_is_short() -> None:
+    long = "1" * 5000
+    table = f"x_mm{long},y_mm\n5,a\n"
+    texts = (table, f"x_mm,y_mm{long}\n5,a\n", f"circle 0,{long}")
+    for text in texts:
+        with pytest.raises(CodedError) as refused:
+            read(text)
+        assert len(str(refused.value)) < 300
+    line = f'<path id="{long}" d="M0 0 L5 0 L5 5"/>'
+    (remark, *_) = read(f"<svg>{line}{line}</svg>", "a.svg", fit=0.1).remarks
+    assert len(str(remark)) < 300
+
+
+def test_a_drawing_that_svgpathtools_fails_on_is_refused() -> None:
+    with pytest.raises(CodedError, match="line 2"):
+        read('<svg>\n<path d="L 5 40 C 5 15 36 4 55 18 Z"/></svg>', "a.svg", fit=0.1)
