@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Iterable, Mapping, Sequence
-from html import escape
 from typing import Any
 
 from onpath.app.common.own_laws import compiled_law
+from onpath.app.common.templates import render
 from onpath.app.exports.standalone.figure import Figure, check_language
 from onpath.app.exports.standalone.figure_choice import chosen
 from onpath.app.exports.summary_text import rows_of
@@ -20,7 +20,6 @@ from onpath.models.control.sides import SIDES
 from onpath.models.studies.experiments import Experiment, summary
 from onpath.models.studies.log_identification import FileEstimate
 from onpath.models.systems.catalogue import ROBOTS
-from onpath.models.systems.robot_sketch import html_table
 
 
 class Table(dict[str, str]):
@@ -37,7 +36,7 @@ class Table(dict[str, str]):
             rows: its rows.
         """
         super().__init__(texts)
-        self._table = html_table(head, rows)
+        self._table = cell(head=head, rows=rows)
 
     def _repr_html_(self) -> str:
         return self._table
@@ -56,9 +55,9 @@ class LawText(str):
     def _repr_html_(self) -> str:
         law = LAWS[self.name]
         gains = ", ".join((*law.gains, *(gain.name for gain in law.own_gains)))
-        said = paragraphs(law.text, law.good, law.limits, law.objection)
-        more = paragraphs(f"Gains: {gains}", f"Source: {law.source}" if law.source else "")
-        return f"<div><b>{escape(law.label)}</b>{said}{more}</div>"
+        source = f"Source: {law.source}" if law.source else ""
+        said = (law.text, law.good, law.limits, law.objection, f"Gains: {gains}", source)
+        return cell(title=law.label, before=said)
 
 
 def run_figure(
@@ -111,9 +110,13 @@ def run_bundle(text: str, experiment: Experiment, run: Trajectory, reason: str) 
     from onpath.app.exports.standalone.still import still  # slow to import
 
     picture = still(experiment.robot(), experiment.curve(), [run], ENGLISH)
-    head = (f"{law_title(run.law)}, {experiment.title}", f"{len(run.t)} ms")
-    table = html_table(head, rows_of(summary(experiment, [run])["laws"][run.law]))
-    return bundle(text, table + paragraphs(reason), picture)
+    return bundle(
+        text,
+        picture,
+        head=(f"{law_title(run.law)}, {experiment.title}", f"{len(run.t)} ms"),
+        rows=rows_of(summary(experiment, [run])["laws"][run.law]),
+        after=(reason,),
+    )
 
 
 def identification_bundle(text: str, found: FileEstimate) -> dict[str, Any]:
@@ -121,22 +124,52 @@ def identification_bundle(text: str, found: FileEstimate) -> dict[str, Any]:
     from onpath.app.exports.identification import parameter_rows, remarks, residual_figure
 
     title, *others = remarks(found)
-    table = html_table(("parameter (SI)", "value", "± (95 %)"), parameter_rows(found))
-    picture = residual_figure(found).png()
-    return bundle(text, paragraphs(title) + table + paragraphs(*others), picture)
+    return bundle(
+        text,
+        residual_figure(found).png(),
+        before=(title,),
+        head=("parameter (SI)", "value", "± (95 %)"),
+        rows=parameter_rows(found),
+        after=others,
+    )
 
 
-def paragraphs(*texts: str) -> str:
-    """Texts as HTML; those that are empty are left out."""
-    return "".join(f"<p>{escape(each)}</p>" for each in texts if each)
-
-
-def bundle(text: str, html: str, picture: bytes) -> dict[str, Any]:
+def bundle(text: str, picture: bytes, **shown: Any) -> dict[str, Any]:
     """Text, HTML with a picture, and the picture alone, which a PDF takes.
 
     Args:
         picture: a PNG file.
+        shown: as for `cell`.
     """
     data = b64encode(picture).decode()
-    image = f'<img alt="" style="max-width: 100%" src="data:image/png;base64,{data}">'
-    return {"text/html": f"<div>{html}{image}</div>", "image/png": data, "text/plain": text}
+    return {"text/html": cell(picture=data, **shown), "image/png": data, "text/plain": text}
+
+
+def cell(
+    *,
+    title: str = "",
+    before: Iterable[str] = (),
+    head: Sequence[str] = (),
+    rows: Iterable[Sequence[str]] = (),
+    caption: str = "",
+    after: Iterable[str] = (),
+    picture: str = "",
+) -> str:
+    """What a cell shows, as HTML: a title, texts, a table, more texts and a picture.
+
+    Args:
+        before, after: texts above and below the table; empty ones are left out.
+        head: titles of the table's columns; without them, there is no table.
+        rows: its rows.
+        picture: a PNG file in base64.
+    """
+    return render(
+        "notebook/cell.html",
+        title=title,
+        before=before,
+        head=head,
+        rows=rows,
+        caption=caption,
+        after=after,
+        picture=picture,
+    )

@@ -6,7 +6,6 @@ import math
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from html import escape
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ import numpy as np
 
 from onpath.app.common.kept import Kept, key_of
 from onpath.app.common.workers import Job
+from onpath.app.notebook.display import cell
 from onpath.app.notebook.run import Run, data_frame, written
 from onpath.app.notebook.simulate import entry_named, law_of, planned
 from onpath.models.closed_loop.simulation import kind_of
@@ -149,13 +149,8 @@ class SweepResult:
         return "\n".join([*told, self._rest()])
 
     def _repr_html_(self) -> str:
-        names, *rows = [[escape(text) for text in line] for line in self._lines()]
-        head = "".join(f'<th scope="col">{name}</th>' for name in names)
-        body = "".join(f"<tr>{''.join(f'<td>{text}</td>' for text in row)}</tr>" for row in rows)
-        return (
-            f"<table><caption>{self._rest()}</caption><thead><tr>{head}</tr></thead>"
-            f"<tbody>{body}</tbody></table>"
-        )
+        names, *rows = self._lines()
+        return cell(head=names, rows=rows, caption=self._rest())
 
 
 def sweep(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from html import escape
 
 import numpy as np
@@ -30,7 +30,8 @@ def sketch(bars: Array, joints: Array, cells: Array, size: float) -> str:
     scale = min((np.array([WIDTH, HEIGHT]) - 2 * MARGIN) / np.maximum(high - low, 1e-6))
 
     def at(points: Array) -> Array:
-        return np.round(MARGIN + scale * (points - low) * (1, -1) + (0, scale * (high - low)[1]), 1)
+        across, up = scale * (points - low).T
+        return np.round(MARGIN + np.column_stack([across, scale * (high - low)[1] - up]), 1)
 
     side = f"{scale * size + 0.2:.1f}"
     tiles = "".join(
@@ -54,25 +55,16 @@ def sketch(bars: Array, joints: Array, cells: Array, size: float) -> str:
 
 def described(label: str, name: str, text: str, drawing: str, joints: Iterable[Joint]) -> str:
     """A robot's sketch with its words and the limits of its joints, as HTML."""
-    rows = [
-        (each.name, _range(each), "" if math.isinf(each.effort) else f"{each.effort:g} {each.unit}")
-        for each in joints
-    ]
-    table = html_table(("joint", "range", "largest torque or force"), rows) if rows else ""
+    limits = "".join(f"<li>{escape(_limits(each))}</li>" for each in joints)
     words = f"<b>{escape(label)}</b> ({escape(name)})<br>{escape(text)}"
     shade = "<br>Shaded: where the end-point can be in the path's plane. It is drawn at home."
-    return f"<div>{drawing}<p>{words}{shade}</p>{table}</div>"
+    return f"<div>{drawing}<p>{words}{shade}</p>{f'<ul>{limits}</ul>' if limits else ''}</div>"
 
 
-def html_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of texts as HTML."""
-    lines = "".join(_row("td", row) for row in rows)
-    return f"<table><thead>{_row('th', head)}</thead><tbody>{lines}</tbody></table>"
-
-
-def _row(tag: str, texts: Sequence[str]) -> str:
-    cells = (f'<{tag} style="text-align: left">{escape(each)}</{tag}>' for each in texts)
-    return f"<tr>{''.join(cells)}</tr>"
+def _limits(joint: Joint) -> str:
+    """What a joint can do, such as "joint1: -90° to 90°, at most 12 N m"."""
+    most = "" if math.isinf(joint.effort) else f", at most {joint.effort:g} {joint.unit}"
+    return f"{joint.name}: {_range(joint)}{most}"
 
 
 def _range(joint: Joint) -> str:

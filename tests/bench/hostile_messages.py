@@ -138,7 +138,8 @@ def wild_message(draw: random.Random) -> str | bytes:
         return draw.randbytes(100)
     if kind < 0.2:
         return draw.choice([*COMMANDS, *OWN])
-    name, command = draw.choice([*page_commands().items()])
+    commands: list[tuple[str, Any]] = [*page_commands().items()]
+    name, command = draw.choice(commands)
     fields = {field.name: _value(str(field.type), draw) for field in dataclasses.fields(command)}
     return json.dumps({"do": name, **fields}, default=repr)
 

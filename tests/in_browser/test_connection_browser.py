@@ -334,7 +334,7 @@ class Visit:
         self.page.route("**/*", lambda route: route.fulfill(body=text, content_type="text/html"))
         self.page.goto(SITE)
         if away is not None:
-            self.page.clock.run_for(1e3 * away.at)
+            self.page.clock.run_for(round(1e3 * away.at))
             self._stand_still(away)
         while (now := self._now) < most and not (now > least and self._is_whole):
             self.page.clock.run_for(5000)
@@ -346,7 +346,7 @@ class Visit:
     def _stand_still(self, away: Away) -> None:
         self.page.evaluate("hidden => lab.hide(hidden)", away.hidden)
         for _ in range(away.steps):
-            self.page.clock.fast_forward(1e3 * away.step)
+            self.page.clock.fast_forward(round(1e3 * away.step))
         self.page.evaluate("lab.hide(false)")
 
     @property

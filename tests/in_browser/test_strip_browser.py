@@ -364,7 +364,7 @@ def test_letters_in_a_lens_are_whole_and_apart(page: Page, size: int) -> None:
 )
 def test_a_lens_on_every_robot(browser: Browser, tmp_path: Path, robot: str) -> None:
     """Lengths in it are those in space; a link that bends has a straight tip beside its own."""
-    page = opened(browser, tmp_path, robot=robot, paths="circle")
+    page = opened(browser, tmp_path, robot=robot, path="circle")
     page.evaluate("onpath.advance(500)")
     page.evaluate("onpath.simulation.pull([0.02, 0.01])")
     page.evaluate("onpath.advance(400)")

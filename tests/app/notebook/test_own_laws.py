@@ -257,7 +257,7 @@ def test_a_file_is_read_again_after_a_change(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("law", "words"),
     [
-        ("no_such.py:Law", "there is no file"),
+        ("no_such.py:Law", "there is no such file"),
         (f"{EXAMPLE}Typo", "did you mean SlidingMode"),
         (3, "of type int"),
         (ModuleType("m"), "of type module"),

@@ -242,7 +242,8 @@ def test_what_the_motion_does_not_tell_apart_is_estimated_as_a_sum() -> None:
 def test_a_robot_that_is_not_linear_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert run_command(["identify", str(tmp_path / "none.csv"), "--robot", "flexible"]) == 2
+    (tmp_path / "motion.csv").write_text(text_of("five_bar"))
+    assert run_command(["identify", str(tmp_path / "motion.csv"), "--robot", "flexible"]) == 2
     assert "not linear" in capsys.readouterr().err
 
 
