@@ -10,7 +10,8 @@ In Python, without a browser:
 `run.plot()` draws it, `run.to_csv("a.csv")` writes it; `help(onpath.simulate)` describes the
 arguments. Robot, path and law come first, in this order, in every function, and on the command line
 as `--robot`, `--path` and `--law`: each is a name, a text, a file or an object. A law of one's own
-in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`.
+in CasADi is made with `onpath.followed`, `onpath.tangential` and `onpath.own_gain`, of what
+`help(onpath.View)` lists; one that is a function is given what `help(onpath.Now)` lists.
 `onpath.sweep` and `onpath.arena` take several of each, and `onpath.figure` makes a live page.
 Names are listed by `onpath.robots()`, `onpath.laws()`, `onpath.paths()` and
 `onpath.parameters("five_bar")`. The same arguments give the same motion here, on the command line,
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from onpath.app.notebook.arena import arena as arena
     from onpath.app.notebook.figure import figure as figure
     from onpath.app.notebook.identify import identify as identify
+    from onpath.app.notebook.own_law import Now as Now
+    from onpath.app.notebook.own_law import View as View
     from onpath.app.notebook.own_law import followed as followed
     from onpath.app.notebook.own_law import own_gain as own_gain
     from onpath.app.notebook.own_law import tangential as tangential
@@ -49,8 +52,10 @@ if TYPE_CHECKING:
 __all__ = (
     "NEWCOMER",
     "ArenaResult",
+    "Now",
     "Run",
     "SweepResult",
+    "View",
     "arena",
     "check_path",
     "circle",
@@ -78,6 +83,8 @@ _MODULES = {
     "figure": "figure",
     "identify": "identify",
     "robot": "robot",
+    "Now": "own_law",
+    "View": "own_law",
     "followed": "own_law",
     "own_gain": "own_law",
     "tangential": "own_law",

@@ -29,7 +29,7 @@ from onpath.models.studies.arena import (
     result_from,
     trials_of,
 )
-from onpath.models.studies.experiments import check_called
+from onpath.models.studies.experiments import check_own_law
 from onpath.models.systems.catalogue import robot_named
 
 NO_MOTION = "it does not move along a path, as laws in an arena do"
@@ -91,7 +91,7 @@ class Arena:
         for robot in self._rows:
             first = next(trial for trial in self._trials[0] if trial.robot == robot)
             for law in options.laws:
-                check_called(first.experiment(remedy=False), law)
+                check_own_law(first.experiment(remedy=False), law)
         self._results, self._kept = list[Result](), Kept(options.folder)
         self._figures = dict[tuple[str, str], str]()
 

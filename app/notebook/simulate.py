@@ -78,9 +78,9 @@ def simulate(
             robot's path plane, [m].
         law: one of `onpath.laws()`; or a law of one's own: a text in two lines, such as
             "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"; an object with `command(view)`
-            in CasADi, a class of such objects, or a function that is called in every control
-            interval, and once before the run, to check what it returns, see `python_law` in
-            models/control/laws/python_law.py; or one of these in a file, as "my_law.py:Name".
+            in CasADi, see `onpath.View`, a class of such objects, or a function that is called in
+            every control interval, and once before the run, to check what it returns, see
+            `onpath.Now`; or one of these in a file, as "my_law.py:Name".
         duration: simulated time, [s].
         start: initial position of the end-point, shape (2,) in the path's plane or (p,)
             in the output space, [m]; None: the point of the path at theta = 0.
@@ -138,6 +138,17 @@ def simulate(
 
     >>> run = onpath.simulate(law="across = -2*K1*xi - K2*dxi; along = 9*(5 - dtheta)", duration=1)
     >>> bool(abs(run.theta_rate[-1] - 5) < 0.1)
+    True
+
+    The same as a class, which is compiled:
+
+    >>> class Twice:
+    ...     def command(self, view):
+    ...         gains, output = view.gains, view.output
+    ...         pulled = -2 * gains.k1 * output.xi - gains.k2 * output.xi_rate
+    ...         return onpath.followed(view, onpath.tangential(view), pulled)
+    >>> run = onpath.simulate(law=Twice, hold=(0.1, 0.3), duration=0.5)
+    >>> bool(run.max_distance < 0.001)
     True
 
     A function, which is called in every control interval, returns θ'' and λ'':

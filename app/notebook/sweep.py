@@ -21,7 +21,7 @@ from onpath.models.closed_loop.simulation import kind_of
 from onpath.models.paths.curves import Curve
 from onpath.models.studies import experiments
 from onpath.models.studies.arena import run_under
-from onpath.models.studies.experiments import Experiment, check_called, of_stopped
+from onpath.models.studies.experiments import Experiment, check_own_law, of_stopped
 from onpath.models.studies.unused import unused_text
 
 if TYPE_CHECKING:
@@ -215,7 +215,7 @@ def sweep(
         if unused is None or unused:
             told = unused_text(experiment, [name], values)
             unused = told if unused in (None, told) else ""
-        check_called(experiment, name)
+        check_own_law(experiment, name)
         trials.append((experiment, name))
         row = {each: shown[each][i] for each, i in zip(given, choice, strict=True) if each in shown}
         rows.append(row)

@@ -372,14 +372,14 @@ def run(
     return _finished(robot, kernel, law, _joined(segments), experiment, fault)
 
 
-def check_called(experiment: Experiment, law: str) -> None:
-    """Check what a law that is called returns at the start of an experiment.
+def check_own_law(experiment: Experiment, law: str) -> None:
+    """Check that the code of a law of one's own gives a command at the start of an experiment.
 
     Raises:
         CodedError: it fails, or it returns no command, with file and line.
     """
     known = law_named(law)
-    if known.called is None or (known, experiment.robot().core) in _CHECKED:
+    if known.origin is None or (known, experiment.robot().core) in _CHECKED:
         return
     try:
         _begun(experiment, law, InterpretedLoop)
@@ -411,9 +411,11 @@ def _begun(
         schedule=experiment.schedule,
         start=start,
     )
-    if isinstance(running, CalledLoop) and (law_named(law), robot.core) not in _CHECKED:
-        running.check(*scheduled.inputs())
-        _CHECKED.add((law_named(law), robot.core))
+    own = law_named(law), robot.core
+    if own[0].origin is not None and own not in _CHECKED:
+        if isinstance(running, CalledLoop):
+            running.check(*scheduled.inputs())
+        _CHECKED.add(own)
     return kernel, running, scheduled
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -38,7 +39,15 @@ def error_in(name: str, error: BaseException, file: str, line: int = 1) -> Coded
     for frame, number in walk_tb(error.__traceback__):
         if frame.f_code.co_filename == file:
             line = number
-    reason = f"{type(error).__name__}: {' '.join(str(error).split())}"[:LONGEST]
+    reason = f"{type(error).__name__}: {' '.join(str(error).split())}{_has(error)}"[:LONGEST]
     return CodedError(
         "error.law_fails", law=name, reason=reason, file=Path(file).name, line=str(line)
     )
+
+
+def _has(error: BaseException) -> str:
+    """What a law's argument, or a part of it, has instead of what its code asked for."""
+    asked = error.obj if isinstance(error, AttributeError) else None
+    if not dataclasses.is_dataclass(asked):
+        return ""
+    return f"; it has {', '.join(field.name for field in dataclasses.fields(asked))}"

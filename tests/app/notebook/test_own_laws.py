@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import random
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -142,6 +143,26 @@ def test_what_a_law_returns_is_checked_before_the_first_run(returned: object) ->
     with pytest.raises(ValueError, match=r"odd.* it returned .* \(test_own_laws.py, line \d+\)"):
         onpath.simulate(law=odd, duration=0.1)
     assert calls == [0.0]
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda law: onpath.simulate(law=law),
+        lambda law: onpath.sweep(law=[law, "path_following"], duration=[0.1, 0.2]),
+        lambda law: onpath.arena("five_bar", law, only=True, rounds=1),
+    ],
+    ids=["simulate", "sweep", "arena"],
+)
+def test_an_error_in_a_compiled_law_is_told_at_once_with_what_there_is(
+    call: Callable[[Any], Any],
+) -> None:
+    class Odd:
+        def command(self, view: Any) -> ControlAction:
+            return followed(view, tangential(view), -view.gains.K1 * view.output.xi)
+
+    with pytest.raises(ValueError, match=r"Odd.* it has k1, k2, .* \(test_own_laws.py, line \d+\)"):
+        call(Odd)
 
 
 @pytest.mark.parametrize("kind", [tuple, list, np.array, np.float32])
