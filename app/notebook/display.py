@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from onpath.app.common.own_laws import compiled_law
 from onpath.app.common.templates import render
@@ -17,9 +19,10 @@ from onpath.models.control.laws.own import is_text, law_title
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import values_of
 from onpath.models.control.sides import SIDES
-from onpath.models.studies.experiments import Experiment, summary
+from onpath.models.studies.experiments import Experiment, on_path, summary
 from onpath.models.studies.log_identification import FileEstimate
 from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.parameters import time_step
 
 
 class Table(dict[str, str]):
@@ -61,14 +64,14 @@ class LawText(str):
 
 
 def run_figure(
-    first: Experiment, runs: Sequence[Trajectory], alike: bool, title: str, language: str
+    experiments: Sequence[Experiment], runs: Sequence[Trajectory], title: str, language: str
 ) -> Figure:
     """The figure of one or two recorded runs of a robot on a path.
 
     Its page has their robot, path, laws and settings, if a page can have them.
 
     Args:
-        alike: whether they have the same settings.
+        experiments: of each run.
 
     Raises:
         ValueError: more than two runs, or an unknown language.
@@ -76,10 +79,11 @@ def run_figure(
     check_language(language)
     if len(runs) > len(SIDES):
         raise ValueError(f"figure: expected one or two runs, got {len(runs)}")
+    first = experiments[0]
     robot, curve = first.robot(), first.curve()
     choice, reason = None, ""
     try:
-        if not alike:
+        if any(each.parameters != first.parameters for each in experiments):
             raise ValueError("the runs have different settings")
         if ROBOTS.get(first.entry.name) != first.entry:
             raise ValueError(f"there is another robot named {first.entry.name} here")
@@ -99,10 +103,27 @@ def run_figure(
         curve=curve,
         choice=choice,
         recorded=tuple(runs),
+        without=tuple(dict.fromkeys(part for each in experiments for part in _parts(each))),
         reason=reason,
         title=title,
         language=language,
     )
+
+
+def _parts(experiment: Experiment) -> Iterator[str]:
+    """What a run has that a page has not: keys of standalone-recorded_… in the catalogues."""
+    schedule = experiment.schedule
+    usual = on_path(experiment.entry, experiment.parameters, experiment.curve().plan).begin()
+    moving = schedule.start_along or schedule.start_across or schedule.clock_offset
+    if moving or not np.allclose(experiment.begin(), usual):
+        yield "start"
+    if schedule.profile is not None:
+        yield "profile"
+    if schedule.reverse_at:
+        yield "reverse"
+    for force in ("hold", "push", "wall"):
+        if len(schedule.ticks(force, time_step(experiment.parameters))):
+            yield force
 
 
 def run_bundle(text: str, experiment: Experiment, run: Trajectory, reason: str) -> dict[str, Any]:

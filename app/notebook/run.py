@@ -227,6 +227,8 @@ class Run:
     def figure(self, *others: Run, title: str = "", language: str = "en") -> LiveFigure:
         """The figure of what was recorded: a picture, and a page on which it can be tried.
 
+        On the page the robots begin on the path and are free; it says what the run had besides.
+
         Args:
             others: another run of the same robot and path, shown beside this one.
             title: title above the figure.
@@ -238,8 +240,8 @@ class Run:
         from onpath.app.notebook.display import run_figure  # slow to import
 
         runs = self._with(others)
-        alike = all(run.experiment.parameters == self.experiment.parameters for run in others)
-        return run_figure(self.experiment, runs, alike, title, language)
+        experiments = [self.experiment, *(other.experiment for other in others)]
+        return run_figure(experiments, runs, title, language)
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from onpath.app.notebook.display import run_bundle  # slow to import

@@ -1576,9 +1576,25 @@ error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 ## Eine Abbildung ohne Server
 
 standalone-path = Bahn
-standalone-hint_hold_pull = Beide Roboter festhalten oder an einer Spitze ziehen und vergleichen. Wer an der Linie unten zieht, blickt zurück.
-standalone-hint_hold = Die Roboter festhalten und vergleichen. Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_hold_pull =
+    { $robots ->
+        [one] Den Roboter festhalten oder an seiner Spitze ziehen.
+       *[other] Beide Roboter festhalten oder an einer Spitze ziehen und vergleichen.
+    } Wer an der Linie unten zieht, blickt zurück.
+standalone-hint_hold =
+    { $robots ->
+        [one] Den Roboter festhalten.
+       *[other] Die Roboter festhalten und vergleichen.
+    } Wer an der Linie unten zieht, blickt zurück.
 standalone-hint_pull = Mit der Maus oder einem Finger an einer Spitze ziehen. Wer an der Linie unten zieht, blickt zurück.
+# Die Teile, in der Reihenfolge des Laufs: standalone-recorded_start und so weiter
+standalone-recorded = Im aufgezeichneten Lauf, aber nicht auf dieser Seite: { $parts }.
+standalone-recorded_start = ein anderer Start
+standalone-recorded_profile = ein Tempo-Verlauf
+standalone-recorded_reverse = eine Umkehr
+standalone-recorded_hold = eine Bremse
+standalone-recorded_push = eine ziehende Hand
+standalone-recorded_wall = eine Wand
 standalone-scene = Der Roboter unter dem Gesetz { $law }, von der Seite gezeichnet
 standalone-law = Gesetz
 standalone-late = Die Zeit hinkt nach: Das Gerät ist zu langsam.

@@ -1214,9 +1214,25 @@ error-no_nickname = a nickname has at least one character
 ## A figure without a server
 
 standalone-path = Path
-standalone-hint_hold_pull = Hold both robots back, or pull an end-point, and compare. Drag the line below to look back.
-standalone-hint_hold = Hold the robots back, and compare. Drag the line below to look back.
+standalone-hint_hold_pull =
+    { $robots ->
+        [one] Hold the robot back, or pull its end-point.
+       *[other] Hold both robots back, or pull an end-point, and compare.
+    } Drag the line below to look back.
+standalone-hint_hold =
+    { $robots ->
+        [one] Hold the robot back.
+       *[other] Hold the robots back, and compare.
+    } Drag the line below to look back.
 standalone-hint_pull = Pull an end-point with the mouse or a finger. Drag the line below to look back.
+# The parts, in the order of the run: standalone-recorded_start and so on
+standalone-recorded = In the recorded run, but not on this page: { $parts }.
+standalone-recorded_start = another start
+standalone-recorded_profile = a speed profile
+standalone-recorded_reverse = a reversal
+standalone-recorded_hold = a brake
+standalone-recorded_push = a pulling hand
+standalone-recorded_wall = a wall
 standalone-scene = The robot under the law { $law }, drawn from the side
 standalone-law = Law
 standalone-late = Time runs late: this device is too slow.

@@ -25,6 +25,7 @@ NO_SCRIPT = "needs JavaScript"
 NO_WASM = "'wasm-unsafe-eval'"
 INLINE = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'"
 SELF = "default-src 'self'"
+HINT = "Hold both robots back"
 PICTURE = "The robots at their largest distance from the path"
 WITHOUT = "delete globalThis.WebAssembly"
 """What a browser does that has no WebAssembly."""
@@ -95,6 +96,14 @@ def test_a_browser_without_webassembly_says_so(browser: Browser, folder: Path, n
     wait_for(lambda: page.get_by_text("needs WebAssembly").is_visible(), WAIT)
     if name == "figure.html":
         assert page.get_by_alt_text(PICTURE).is_visible()
+        assert not page.get_by_text(HINT).is_visible()
+    page.close()
+
+
+def test_a_figure_that_runs_says_what_can_be_done(browser: Browser, folder: Path) -> None:
+    page = browser.new_page()
+    page.goto((folder / "figure.html").as_uri())
+    wait_for(lambda: page.get_by_text(HINT).is_visible(), WAIT)
     page.close()
 
 
@@ -102,6 +111,7 @@ def test_a_figure_without_scripts_is_a_picture(browser: Browser, folder: Path) -
     page = browser.new_context(java_script_enabled=False).new_page()
     page.goto((folder / "figure.html").as_uri())
     assert page.get_by_text(NO_SCRIPT).is_visible()
+    assert not page.get_by_text(HINT).is_visible()
     box = page.get_by_alt_text(PICTURE).bounding_box()
     assert box and box["width"] > 300 and box["height"] > 200
     page.close()

@@ -44,6 +44,7 @@ class Figure:
         choice: what the page shows; None: there is only the picture.
         recorded: the runs of the picture; None: the robots of the page are held for a second.
         reason: why there is only the picture.
+        without: what the recorded runs have and the page has not: see `figure_page`.
         title: title above the figure; may be empty.
         language: language of its words.
     """
@@ -53,6 +54,7 @@ class Figure:
     choice: FigureChoice | None
     recorded: tuple[Trajectory, ...] | None = None
     reason: str = ""
+    without: tuple[str, ...] = ()
     title: str = ""
     language: str = "en"
     _pages: dict[str, str] = field(default_factory=dict[str, str])
@@ -98,9 +100,19 @@ class Figure:
                 self._pages[language] = (
                     picture_page(self._laws(words), words, self.title, picture, self.reason)
                     if self.choice is None
-                    else figure_page(self.choice, words, self.title, self._numbers, picture)
+                    else self._live(self.choice, words, picture)
                 )
         return self._pages[language]
+
+    def _live(self, choice: FigureChoice, words: Words, picture: bytes = b"") -> str:
+        return figure_page(
+            choice,
+            words,
+            self.title,
+            numbers=self._numbers,
+            picture=picture,
+            without=self.without,
+        )
 
     def _picture(self, language: str) -> bytes:
         from onpath.app.exports.standalone.still import still  # slow to import
@@ -136,7 +148,7 @@ class Figure:
         words, picture, page = Words(self.language), b64encode(self.png).decode(), ""
         if self.choice is not None:
             with announced("OnPath: making a figure …"):
-                page = figure_page(self.choice, words, self.title, self._numbers)
+                page = self._live(self.choice, words)
         html = render(
             "standalone/cell.html",
             picture=picture,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from typing import Any
 
@@ -28,6 +28,7 @@ def figure_page(
     title: str = "",
     numbers: Mapping[str, Any] | None = None,
     picture: bytes = b"",
+    without: Sequence[str] = (),
 ) -> str:
     """The page of a figure; the same choice gives the same page.
 
@@ -35,10 +36,11 @@ def figure_page(
         title: heading above the figure; may be empty.
         numbers: see `figure_data`.
         picture: what is shown where no script runs, as a PNG file.
+        without: what a recorded run had: parts of standalone-recorded_… in the catalogues.
     """
     names, script = " / ".join(law_label(law, words) for law in figure.laws), "web/onpath.js"
     data = json_block(figure_data(figure, words, numbers))
-    text, hint = words("standalone.no_script"), _hint(figure, words)
+    text, hint = words("standalone.no_script"), _hint(figure, words, without)
     return _page(names, words, title, picture, text, hint=hint, data=data, script=inlined(script))
 
 
@@ -87,10 +89,19 @@ def _page(
     )
 
 
-def _hint(figure: FigureChoice, words: Words) -> str:
-    """What a reader can do first."""
-    acts = [act for act in ("hold", "pull") if act in figure.controls]
-    return words(f"standalone.hint_{'_'.join(acts)}") if acts else ""
+def _hint(figure: FigureChoice, words: Words, without: Sequence[str]) -> str:
+    """What a reader can do first, and what a recorded run had besides."""
+    said, robots = list[str](), len(figure.laws)
+    if {"hold", "pull"} <= set(figure.controls):
+        said.append(words("standalone.hint_hold_pull", robots=robots))
+    elif "hold" in figure.controls:
+        said.append(words("standalone.hint_hold", robots=robots))
+    elif "pull" in figure.controls:
+        said.append(words("standalone.hint_pull"))
+    if without:
+        parts = ", ".join(words(f"standalone.recorded_{part}") for part in without)
+        said.append(words("standalone.recorded", parts=parts))
+    return " ".join(said)
 
 
 def _hash(text: str) -> str:

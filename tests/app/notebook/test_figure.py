@@ -124,6 +124,25 @@ def test_a_run_s_figure_is_what_was_recorded_and_can_be_tried() -> None:
         runs[0].figure(onpath.simulate(path="clover", duration=0.05))
 
 
+def test_the_page_of_a_run_says_what_the_run_had_besides(tmp_path: Path) -> None:
+    place = (0.03, 0.0)
+    cases: tuple[tuple[dict[str, Any], tuple[str, ...]], ...] = (
+        ({}, ()),
+        ({"hold": (0.02, 0.05)}, ("a brake",)),
+        ({"start": (0.06, 0.0), "profile": [(0, 0), (1, 6)]}, ("another start", "a speed profile")),
+        ({"velocity": (0.0, 0.1), "reverse_at": 0.05}, ("another start", "a reversal")),
+        ({"push": (0, 0.02, place), "wall": (0, 0.1, place, 0.0)}, ("a pulling hand", "a wall")),
+    )
+    for values, parts in cases:
+        shown = onpath.simulate(duration=0.1, **values).figure()
+        said = "In the recorded run, but not on this page: " + ", ".join(parts) + "."
+        assert (said in shown.html) == bool(parts)
+        assert (said in page_in(shown._repr_mimebundle_())) == bool(parts)
+        assert "Hold the robot back" in shown.html and "Hold both robots" not in shown.html
+        german = shown.save(tmp_path / "a.html", language="de").read_text("utf-8")
+        assert ("Im aufgezeichneten Lauf" in german) == bool(parts)
+
+
 def test_a_run_that_no_page_can_show_is_a_picture_and_says_why() -> None:
     def called(now: Any) -> tuple[float, float]:
         return -now.K5 * (now.theta_rate - now.speed), -400 * now.xi[0] - 40 * now.xi_rate[0]

@@ -80,7 +80,7 @@ KEYS_MADE = (
     *("side.", "laws.", "obstruction.", "aim.", "key.", "keyname.", "pull.", "plot.", "axis."),
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
-    *("standalone.hint_", "arena."),
+    *("standalone.recorded_", "arena."),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )
