@@ -109,11 +109,11 @@ class Job(Generic[Item, Result]):
         Raises:
             ValueError: a law cannot be sent to another process.
         """
-        from tqdm.auto import tqdm
-
         shown = sys.stderr.isatty() or "ipykernel" in sys.modules
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a notebook without widgets shows a line of text
+            from tqdm.auto import tqdm
+
             bar = tqdm(total=len(self.items), desc=self.title, disable=not shown, leave=False)
         with bar:
             for found in self._results():

@@ -24,6 +24,7 @@ CELLS = (
     "run.figure(title='As recorded')",
     "run.to_csv('run.csv')\nonpath.identify(file='run.csv')",
     "from onpath.models.systems.catalogue import ROBOTS\nROBOTS['planar_arm']",
+    "onpath.sweep(K1=[400, 900], hold=(0.1, 0.2), duration=0.3)",
     "onpath.laws()['path_following']",
     "onpath.laws()",
     "onpath.robots()",
@@ -48,6 +49,7 @@ def test_each_cell_shows_more_than_text(browser: Browser, page: Path) -> None:
     opened.route("https://**", lambda route: route.abort())  # the exporter's own scripts
     opened.goto(page.as_uri())
     assert opened.locator(".jp-OutputArea-executeResult .jp-RenderedHTML").count() == len(CELLS)
+    assert opened.get_by_text("Warning").count() == 0  # such as of a progress bar without widgets
     opened.close()
 
 
