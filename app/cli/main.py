@@ -18,8 +18,22 @@ from onpath.app.cli.options import parsed
 from onpath.app.cli.paper import NAMES
 from onpath.app.cli.supervisor import supervised
 from onpath.models.errors import CodedError
+from onpath.models.systems.parameter_specs import unknown_name
 
 INTERRUPTED = 130
+PLAINER = (
+    (
+        r"Error parsing (\S+): no type matching .* from \[(.*?)\]\..* count (\d+) of .*",
+        r"\1: expected \3 numbers, got \2",
+    ),
+    (
+        r"Error parsing (\S+): no type matching .* from \[(.*?)\]\..*",
+        r"\1: expected numbers, got \2",
+    ),
+    (r"Error parsing (\S+): could not convert string to float: (.*)", r"\1: \2 is not a number"),
+    (r"Error parsing (\S+): invalid literal for int.*?: (.*)", r"\1: \2 is not a whole number"),
+)
+"""Patterns of tyro's complaints -> what is said instead."""
 
 
 def main() -> None:
@@ -129,7 +143,7 @@ def parsed_command(arguments: list[str]) -> Subcommand:
                 print(group_help(arguments[: used - 1]))
                 raise SystemExit(0)
             of = " ".join(arguments[:used])
-            raise ValueError(f"unknown command {of!r}: there are {', '.join(known)}")
+            raise unknown_name(of, [*known], "command")
         found = known[name]
         if not isinstance(found, Group):
             return _parsed_options(found, " ".join(["onpath", *arguments[:used]]), arguments[used:])
@@ -154,7 +168,10 @@ def _unboxed(text: str) -> str:
     lines = [_one_line(re.sub(r"[\u2500-\u257f]", " ", section)) for section in sections]
     pointers = ("For full helptext", "Argument helptext")
     kept = [line for line in lines if line and not line.startswith(pointers)]
-    return " ".join(kept).removesuffix(" (required)") or _one_line(text)
+    told = " ".join(kept).removesuffix(" (required)") or _one_line(text)
+    for pattern, plain in PLAINER:
+        told = re.sub(pattern, plain, told)
+    return told
 
 
 def _one_line(text: str) -> str:

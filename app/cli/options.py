@@ -20,6 +20,8 @@ from typing import Annotated, Any, TypeGuard, TypeVar, get_args, get_origin, get
 
 import tyro
 
+from onpath.models.systems.parameter_specs import unknown_name
+
 C = TypeVar("C")
 Repeated = Annotated[tuple[str, ...], tyro.conf.UseAppendAction]
 """The type of an option that may be repeated."""
@@ -50,7 +52,7 @@ def parsed(command: type[C], prog: str, arguments: list[str]) -> C:
     """A command with the options of a command line.
 
     Raises:
-        ValueError: an option is given twice, or has another name now.
+        ValueError: an option is unknown, is given twice, or has another name now.
         SystemExit: after the help; or with tyro's complaint on stderr.
     """
     _check_flags(command, arguments)
@@ -153,6 +155,8 @@ def _check_flags(command: type, arguments: list[str]) -> None:
         flag = word.partition("=")[0].replace("_", "-")
         if flag in FORMER and flag not in known:
             raise ValueError(f"{flag} is called {FORMER[flag]} now")
+        if flag.startswith("--") and flag not in (*known, "--help"):
+            raise unknown_name(flag, [*known], "option")
         if flag in seen and not known[flag].repeated:
             raise ValueError(f"{flag}: it is given twice, and may be given once only")
         seen |= {flag} & known.keys()

@@ -53,20 +53,22 @@ class SweepCommand:
 
         from onpath.app.cli.laws import laws_named
         from onpath.app.exports.summary_text import finite
+        from onpath.app.notebook.arguments import named_by_command
         from onpath.app.notebook.sweep import sweep
         from onpath.models.control.laws.registry import LAWS
 
         given = assignments(self.set, form="name=value,value")
         values = {name: [_value(each) for each in text.split(",")] for name, text in given.items()}
-        result = sweep(
-            _one_or_several(self.file_options.names_of(self.robot or ("five_bar",))),
-            _one_or_several(self.path or ("circle",)),
-            _one_or_several(laws_named(self.law or ("both",), list(LAWS))),
-            hold=self.hold,
-            duration=self.duration,
-            folder=self.folder,
-            **{name: _one_or_several(each) for name, each in values.items()},
-        )
+        with named_by_command():
+            result = sweep(
+                _one_or_several(self.file_options.names_of(self.robot or ("five_bar",))),
+                _one_or_several(self.path or ("circle",)),
+                _one_or_several(laws_named(self.law or ("both",), list(LAWS))),
+                hold=self.hold,
+                duration=self.duration,
+                folder=self.folder,
+                **{name: _one_or_several(each) for name, each in values.items()},
+            )
         if self.csv:
             with (
                 whole_file(self.csv) as scratch,

@@ -99,6 +99,22 @@ def looked_up(call: str) -> Iterator[None]:
         raise ValueError(f"{error} ({call} lists all)") from None
 
 
+@contextmanager
+def named_by_command() -> Iterator[None]:
+    """Raise errors for unknown names as they are without `looked_up`, for the command line.
+
+    Raises:
+        CodedError: this error.
+    """
+    try:
+        yield
+    except ValueError as error:
+        plain = error.__context__
+        if isinstance(plain, CodedError) and str(error).startswith(f"{plain} ("):
+            raise plain from None
+        raise
+
+
 def check_one(name: str, value: Any) -> None:
     """Check that an argument is not several.
 

@@ -216,6 +216,13 @@ def test_an_old_spelling_is_answered_with_the_right_one(
     assert told in capsys.readouterr().err
 
 
+def test_an_unknown_command_is_answered_with_the_nearest(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert run_command(["sweeep"]) == 2
+    assert "did you mean sweep" in capsys.readouterr().err
+
+
 def test_the_papers_figures_are_those_of_the_command() -> None:
     assert set(map(str, FIGURES)) < set(NAMES)
 
@@ -319,7 +326,7 @@ def test_command_lines_in_readmes_are_accepted(file: Path) -> None:
             try:
                 parsed_command(words)
             except ValueError as error:
-                lacking = "Missing", "Error parsing", "expected", "required"
+                lacking = "Missing", "is not a whole number", "expected", "required"
                 assert any(word in str(error) for word in lacking), (line, str(error))
 
 

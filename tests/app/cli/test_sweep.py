@@ -31,8 +31,13 @@ def test_the_table_is_that_of_python(tmp_path: Path, capsys: pytest.CaptureFixtu
     ("arguments", "told"),
     [
         (["--set", "K1=400,a"], "K1: 'a' is not a number"),
+        (["--set", "K11=400"], "K5, K4? (onpath names lists all)\n"),
         (["--law", "zzz"], "unknown law 'zzz'"),
-        (["--robot", "zzz"], "unknown robot 'zzz'"),
+        (["--robot", "fivebar"], "flexible? (onpath names lists all)\n"),
+        (["--hold", "1"], "--hold: expected 2 numbers, got '1'\n"),
+        (["--hold", "1", "b"], "--hold: expected numbers, got '1', 'b'\n"),
+        (["--duration", "a"], "--duration: 'a' is not a number\n"),
+        (["--sett", "K1=3"], "unknown option '--sett': did you mean --set"),
         (["--csv", "x.txt"], "expected a name ending in .csv"),
     ],
 )
