@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -134,6 +135,11 @@ class PathCheck:
             shape = {"points": line, "fill": "none", "stroke": "green"}
             ElementTree.SubElement(drawing, f"{{{SVG}}}polyline", shape)
         return ElementTree.tostring(drawing, encoding="unicode")
+
+    def _repr_html_(self) -> str:
+        return self._repr_svg_() + "".join(
+            f"<p>{escape(line)}</p>" for line in repr(self).split("\n")
+        )
 
 
 def check_path(

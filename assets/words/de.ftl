@@ -1758,11 +1758,11 @@ robot_file-few_joints = { $count ->
     [one] ein Gelenk bewegt
    *[other] { $count } Gelenke bewegen
  } sich auf dem Weg zur Spitze: Nötig sind mindestens { $needed }
-robot_file-no_pose = keine Stellung gefunden, in der die Spitze vor dem Fuß ist und sich in alle Richtungen bewegen kann: Geben Sie eine mit --pose an
-robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose an
-robot_file-circle = aus dieser Stellung sind Kreise bis { $circle } mm möglich, und Bahnen brauchen { $least } mm: Geben Sie eine andere mit --pose an
-robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Trägheit: Geben Sie mit --armature die Trägheit der Motoren an
-robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature }
+robot_file-no_pose = keine Stellung gefunden, in der die Spitze vor dem Fuß ist und sich in alle Richtungen bewegen kann: Geben Sie eine mit --pose (in Python pose=…) an
+robot_file-singular = aus dieser Stellung kann sich die Spitze nicht in alle Richtungen bewegen: Geben Sie eine andere mit --pose (in Python pose=…) an
+robot_file-circle = aus dieser Stellung sind Kreise bis { $circle } mm möglich, und Bahnen brauchen { $least } mm: Geben Sie eine andere mit --pose (in Python pose=…) an
+robot_file-massless = was das Gelenk { $joint } bewegt, hat keine Masse oder Trägheit: Geben Sie mit --armature (in Python armature=…) die Trägheit der Motoren an
+robot_file-damping = Reibung würde ein Gelenk in einem Bruchteil einer Millisekunde anhalten ({ $decay } 1/s); dem folgt kein Zeitschritt. In der Datei fehlt die Trägheit der Motoren: { $armature } kg m² genügen, --armature { $armature } (in Python armature=…)
 robot_file-mujoco = eine MJCF-Datei braucht MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo kann { $file } nicht lesen: { $reason }
 robot_file-mujoco_slow = MuJoCo wurde beim Lesen von { $file } beendet: Es brauchte mehr als { $seconds } s
@@ -1772,11 +1772,11 @@ robot_file-same_name = { $name } heißt schon ein anderer Roboter
 robot_file-absent_robot = diese Einstellung ist für den Roboter { $name } aus einer Datei: Starten Sie das Labor mit --robot und dieser Datei
 robot_file-still = das Gelenk { $joint } hat zwischen seinen Grenzen keinen Weg und bleibt stehen
 robot_file-triangle = die Trägheit des Glieds { $link } ist ungewöhnlich: Das größte Hauptträgheitsmoment übersteigt die Summe der anderen
-robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-mesh_left_out = das Netz { $mesh } wird weggelassen: Es ist keine .stl-, .obj- oder .dae-Datei bis 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)
 robot_file-mesh_unreadable = das Netz { $mesh } wird weggelassen: { $reason }
 robot_file-refused = <{ $element }> wird nicht gelesen, weil es andere Dateien lesen, Code ausführen oder aus einem Element viele machen kann: Lass es weg, oder lade die Datei in MuJoCo und speichere sie mit einfachen Elementen
 robot_file-unknown = in <{ $parent }> gibt es kein solches Element
-robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER)
+robot_file-mesh = das Netz { $mesh } ist keine .stl-, .obj- oder .msh-Datei von bis zu 20 MB im Ordner oder Paket des Roboters (--package NAME=ORDNER; in Python packages=…)
 robot_file-meshes = die Netze haben mehr als { $most }
 robot_file-left_out = weggelassen: { $parts }
 

@@ -1396,11 +1396,11 @@ robot_file-few_joints = { $count ->
     [one] one joint moves
    *[other] { $count } joints move
  } on the way to the tip: at least { $needed } are needed
-robot_file-no_pose = no pose was found in which the tip is in front of the base and can move in all directions: give one with --pose
-robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose
-robot_file-circle = from this pose, circles of up to { $circle } mm can be followed, but paths need { $least } mm: give another one with --pose
-robot_file-massless = what the joint { $joint } moves has no mass or inertia: add an armature with --armature
-robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² is enough, --armature { $armature }
+robot_file-no_pose = no pose was found in which the tip is in front of the base and can move in all directions: give one with --pose (in Python, pose=…)
+robot_file-singular = the tip cannot move in all directions from this pose: give another one with --pose (in Python, pose=…)
+robot_file-circle = from this pose, circles of up to { $circle } mm can be followed, but paths need { $least } mm: give another one with --pose (in Python, pose=…)
+robot_file-massless = what the joint { $joint } moves has no mass or inertia: add an armature with --armature (in Python, armature=…)
+robot_file-damping = friction would stop a joint within a fraction of a millisecond ({ $decay } 1/s), which no time step can follow. The file leaves out the inertia of the motors: { $armature } kg m² is enough, --armature { $armature } (in Python, armature=…)
 robot_file-mujoco = an MJCF file needs MuJoCo: pip install "onpath[mujoco]"
 robot_file-mjcf = MuJoCo cannot read { $file }: { $reason }
 robot_file-mujoco_slow = MuJoCo was ended while it read { $file }: it took more than { $seconds } s
@@ -1410,11 +1410,11 @@ robot_file-same_name = { $name } is the name of another robot
 robot_file-absent_robot = this set-up is for the robot { $name }, which comes from a file: start the lab with --robot and that file
 robot_file-still = the joint { $joint } has no travel between its limits, and stays still
 robot_file-triangle = the inertia of the link { $link } is unusual: the largest principal moment exceeds the sum of the others
-robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER)
+robot_file-mesh_left_out = the mesh { $mesh } is left out: it is not a .stl, .obj or .dae file of up to 20 MB in the robot's folder or package (--package NAME=FOLDER; in Python, packages=…)
 robot_file-mesh_unreadable = the mesh { $mesh } is left out: { $reason }
 robot_file-refused = <{ $element }> is not read, because it can read other files, run code or make many elements of one: leave it out, or load the file in MuJoCo and save it as plain elements
 robot_file-unknown = there is no such element in <{ $parent }>
-robot_file-mesh = the mesh { $mesh } is not a .stl, .obj or .msh file of up to 20 MB in the folder or package of the robot (--package NAME=FOLDER)
+robot_file-mesh = the mesh { $mesh } is not a .stl, .obj or .msh file of up to 20 MB in the folder or package of the robot (--package NAME=FOLDER; in Python, packages=…)
 robot_file-meshes = the meshes have more than { $most }
 robot_file-left_out = left out: { $parts }
 

@@ -70,6 +70,10 @@ class Curve:
             f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2" fill="gray"/></svg>'
         )
 
+    def _repr_html_(self) -> str:
+        """The drawing, with its dimensions."""
+        return f"{self._repr_svg_()}<p>{repr(self)[1:-1]}</p>"
+
     def _drawn(self) -> Array:
         """Points from θ = -π to π, shape (n, d), [m]."""
         return self.at(np.linspace(-np.pi, np.pi, 181))

@@ -193,6 +193,14 @@ def test_everything_shows_itself_in_a_cell() -> None:
         assert not re.search("object at 0x|functools", repr(thing)), name
 
 
+def test_a_check_of_a_path_shows_its_drawing_and_what_it_says() -> None:
+    for path in ("circle", onpath.circle(0.006), "figure of eight"):
+        check = onpath.check_path("five_bar", path)
+        html = check._repr_html_()
+        assert html.startswith(check._repr_svg_())
+        assert all(line in unescape(html) for line in repr(check).splitlines())
+
+
 def test_a_run_shows_its_numbers_and_why_it_stopped() -> None:
     run = onpath.simulate(law="set_point", path="circle", hold=(0.2, 0.5), duration=0.6)
     html = run._repr_mimebundle_()["text/html"]

@@ -285,3 +285,4 @@ def test_a_notebook_shows_a_curve_in_a_line_and_as_a_picture() -> None:
     assert places * (1, -1) / 1e3 == pytest.approx(dense(curve, count=len(places)), abs=1e-4)
     assert (float(dot.attrib["cx"]), float(dot.attrib["cy"])) == (80.0, -20.0)  # θ = 0
     assert len(curve._repr_svg_()) < 4000
+    assert curve._repr_html_() == f"{curve._repr_svg_()}<p>{repr(curve)[1:-1]}</p>"
