@@ -161,7 +161,7 @@ def simulate(
 
     >>> onpath.simulate(path="elips")
     Traceback (most recent call last):
-    ValueError: unknown path 'elips': did you mean ellipse, closed? (onpath.paths() lists all)
+    ValueError: unknown path 'elips': did you mean ellipse? (onpath.paths() lists all)
     """
     chosen, name, given = planned(
         robot,

@@ -31,7 +31,7 @@ def test_it_gives_the_numbers_of_the_command(tmp_path: Path, capsys: Any) -> Non
     laws = [f"{FILE}:SlidingMode", "path_following"]
     given = ["--only", "--robot=five_bar", "--rounds=1", "--seed=4", "--processes=1"]
     files = ["--html", str(tmp_path / "a.html"), "--csv", str(tmp_path / "a.csv"), "--no-figures"]
-    assert run_command(["arena", *laws, *given, *files]) == 0
+    assert run_command(["arena", f"--law={','.join(laws)}", *given, *files]) == 0
     shown = capsys.readouterr().out
     html, table = tmp_path / "b.html", tmp_path / "b.csv"
     result = onpath.arena(law=laws, **FEW, seed=4, html=html, csv=str(table), figures=False)
