@@ -35,7 +35,7 @@ class Subcommand(Protocol):
 
 
 @dataclass(frozen=True)
-class Group:
+class CommandGroup:
     """Subcommands that share their first word.
 
     Attributes:
@@ -59,7 +59,7 @@ class CompletionCommand:
         print(completion_script(self.shell, COMMANDS, Serve), end="")
 
 
-COMMANDS: Mapping[str, type[Subcommand] | Group] = {
+COMMANDS: Mapping[str, type[Subcommand] | CommandGroup] = {
     "serve": Serve,
     "experiment": ExperimentCommand,
     "compare": CompareCommand,
@@ -70,7 +70,7 @@ COMMANDS: Mapping[str, type[Subcommand] | Group] = {
     "identify": IdentifyCommand,
     "zero-dynamics": ZeroDynamicsCommand,
     "names": NamesCommand,
-    "lessons": Group(
+    "lessons": CommandGroup(
         "List, check, play or print the lessons, the built-in ones or your own.",
         {
             "list": ListLessons,
@@ -81,7 +81,7 @@ COMMANDS: Mapping[str, type[Subcommand] | Group] = {
             "worksheet": WriteWorksheet,
         },
     ),
-    "export": Group(
+    "export": CommandGroup(
         "Write the course as pages, or a lesson for a learning platform; both need no server.",
         {"site": ExportSite, "lesson": ExportLesson},
     ),

@@ -9,7 +9,7 @@ from textwrap import TextWrapper
 from typing import Any
 
 import onpath
-from onpath.app.cli.commands import COMMANDS, Group
+from onpath.app.cli.commands import COMMANDS, CommandGroup
 from onpath.app.cli.completion import LINES
 from onpath.app.cli.options import options
 from onpath.app.cli.serve import Serve
@@ -66,7 +66,7 @@ def group_help(words: Sequence[str]) -> str:
 
 
 def _text(command: Any) -> str:
-    return command.text if isinstance(command, Group) else command.__doc__.split("\n\n")[0]
+    return command.text if isinstance(command, CommandGroup) else command.__doc__.split("\n\n")[0]
 
 
 def _table(rows: Iterable[tuple[str, str]]) -> str:

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from importlib.metadata import version
 from typing import Any
 
-from onpath.app.cli.commands import COMMANDS, Group, Subcommand
+from onpath.app.cli.commands import COMMANDS, CommandGroup, Subcommand
 from onpath.app.cli.help import group_help, top_help
 from onpath.app.cli.options import parsed
 from onpath.app.cli.paper import NAMES
@@ -145,7 +145,7 @@ def parsed_command(arguments: list[str]) -> Subcommand:
             of = " ".join(arguments[:used])
             raise unknown_name(of, [*known], "command")
         found = known[name]
-        if not isinstance(found, Group):
+        if not isinstance(found, CommandGroup):
             return _parsed_options(found, " ".join(["onpath", *arguments[:used]]), arguments[used:])
         known = found.commands
     raise ValueError(f"{' '.join(arguments)}: expected one of {', '.join(known)} after it")

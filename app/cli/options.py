@@ -34,7 +34,7 @@ METAVARS = {Path: "FILE", int: "NUMBER", float: "NUMBER", str: "TEXT"}
 
 
 @dataclass(frozen=True)
-class Option:
+class CommandOption:
     """An option of a command.
 
     Attributes:
@@ -60,9 +60,9 @@ def parsed(command: type[C], prog: str, arguments: list[str]) -> C:
     return _finished(command, given)
 
 
-def options(command: type) -> list[Option]:
+def options(command: type) -> list[CommandOption]:
     """The options of a command, without its positional arguments."""
-    found = list[Option]()
+    found = list[CommandOption]()
     for field, hint, text in _fields(command):
         marks = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
         kind = _kind(hint)
@@ -70,7 +70,7 @@ def options(command: type) -> list[Option]:
             found += options(kind)
         elif tyro.conf.Positional not in marks:
             flag = f"--{field.name.replace('_', '-')}"
-            found.append(Option(flag, tyro.conf.UseAppendAction in marks, text))
+            found.append(CommandOption(flag, tyro.conf.UseAppendAction in marks, text))
     return found
 
 

@@ -25,7 +25,7 @@ from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import time_step
 
 
-class Table(dict[str, str]):
+class NamesTable(dict[str, str]):
     """Names and their texts: a mapping that a notebook shows as a table."""
 
     def __init__(

@@ -27,7 +27,7 @@ from onpath.app.notebook.arguments import (
     schedule_of,
     start_point,
 )
-from onpath.app.notebook.display import LawText, Table
+from onpath.app.notebook.display import LawText, NamesTable
 from onpath.app.notebook.robot import robot as robot_from
 from onpath.app.notebook.run import Run
 from onpath.models.control.laws.registry import LAWS
@@ -252,7 +252,7 @@ def robots() -> dict[str, str]:
     'Two motors, rigid links, a pen in a vertical plane.'
     """
     texts = {name: entry.text for name, entry in ROBOTS.items()}
-    return Table(texts, ("robot", "what it is"), texts.items())
+    return NamesTable(texts, ("robot", "what it is"), texts.items())
 
 
 def laws() -> dict[str, str]:
@@ -263,7 +263,7 @@ def laws() -> dict[str, str]:
     'Holds the end-point on the curve by a virtual constraint, and leaves it alone along it.'
     """
     texts = {name: LawText(name) for name in LAWS}
-    return Table(texts, ("law", "what it does"), texts.items())
+    return NamesTable(texts, ("law", "what it does"), texts.items())
 
 
 def paths() -> dict[str, str]:
@@ -276,7 +276,7 @@ def paths() -> dict[str, str]:
     'closed, 429 mm; the path crosses itself: at the crossing, the closest point is not unique'
     """
     texts = {name: _measured(design) for name, design in presets().items()}
-    return Table(texts, ("path", "what it is"), texts.items())
+    return NamesTable(texts, ("path", "what it is"), texts.items())
 
 
 def _measured(design: PathDesign) -> str:
@@ -300,7 +300,7 @@ def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
     texts = {name: _described(spec, defaults[name]) for name, spec in known.items()}
     rows = [(name, *_columns(spec, defaults[name]), spec.help) for name, spec in known.items()]
-    return Table(texts, ("setting", "default", "range", "unit", "what it does"), rows)
+    return NamesTable(texts, ("setting", "default", "range", "unit", "what it does"), rows)
 
 
 def circle(radius: float, centre: Sequence[float] = (0.0, 0.0)) -> Curve:

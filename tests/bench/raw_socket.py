@@ -43,6 +43,12 @@ def knock(
     return raw
 
 
+def say(raw: socket.socket, *payloads: bytes, opcode: Opcode = Opcode.BINARY) -> None:
+    """Write messages once the handshake is answered: until then, a server may ignore them."""
+    raw.recv(1, socket.MSG_PEEK)
+    raw.sendall(frames(*payloads, opcode=opcode))
+
+
 def is_closed(raw: socket.socket) -> bool:
     """Whether the other end has closed; discards what has been received."""
     try:

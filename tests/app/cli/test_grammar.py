@@ -22,7 +22,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import onpath
-from onpath.app.cli.commands import COMMANDS, Group
+from onpath.app.cli.commands import COMMANDS, CommandGroup
 from onpath.app.cli.help import EXAMPLES, OFTEN, top_help
 from onpath.app.cli.main import parsed_command, run_command
 from onpath.app.cli.options import PLAIN, described, items, options, parsed
@@ -41,7 +41,7 @@ READMES = [
 def commands() -> Iterator[tuple[tuple[str, ...], type]]:
     """The words of each command, and its class."""
     for name, command in COMMANDS.items():
-        if isinstance(command, Group):
+        if isinstance(command, CommandGroup):
             yield from (((name, second), each) for second, each in command.commands.items())
         else:
             yield (name,), command
@@ -301,7 +301,7 @@ def test_every_help_and_group_is_reached_by_help(capsys: pytest.CaptureFixture[s
             shown.append(capsys.readouterr().out)
         assert shown[0] == shown[1] and shown[0]
     for name, command in COMMANDS.items():
-        if isinstance(command, Group):
+        if isinstance(command, CommandGroup):
             assert run_command([name, "--help"]) == 0
             told = capsys.readouterr().out
             assert all(second in told for second in command.commands)

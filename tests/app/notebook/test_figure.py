@@ -218,9 +218,9 @@ def test_lists_are_mappings_as_before() -> None:
 @given(st.text(st.sampled_from("<>&\"'ab/ ="), min_size=1))
 @settings(max_examples=30)
 def test_no_text_in_a_cell_is_markup(text: str) -> None:
-    from onpath.app.notebook.display import Table, bundle
+    from onpath.app.notebook.display import NamesTable, bundle
 
-    table = Table({text: text}, [text], [[text]])._repr_html_()
+    table = NamesTable({text: text}, [text], [[text]])._repr_html_()
     html = (
         bundle(text, b"", title=text, before=[text], caption=text, head=[text], rows=[[text]])[
             "text/html"

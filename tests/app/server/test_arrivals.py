@@ -18,7 +18,7 @@ from onpath.app.server.arrivals import MOST_EACH, Arrival, Arrivals, Kept
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
-from tests.bench.raw_socket import frames, is_closed, knock
+from tests.bench.raw_socket import is_closed, knock, say
 from tests.support import waiting
 from tests.support.student import Student
 
@@ -30,7 +30,7 @@ wait_for = partial(waiting.wait_for, seconds=WAIT)
 def silent(server: viser.ViserServer, source: str = "127.0.0.1") -> socket.socket:
     """A tab that connects and then sends nothing."""
     raw = knock(server.get_port(), source=source)
-    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    say(raw, packed("ViewerCameraMessage", **CAMERA))
     return raw
 
 

@@ -26,7 +26,9 @@ SIGNALS = pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
 @pytest.fixture
 def served(tmp_path: Path) -> Iterator[LabProcess]:
     database = f"sqlite:///{tmp_path / 'labs.db'}"
+    under_nohup = signal.signal(signal.SIGHUP, signal.SIG_DFL)  # perhaps; then it would be ignored
     made = LabProcess(free_ports(1)[0], ["--database", database], log=tmp_path / "log")
+    signal.signal(signal.SIGHUP, under_nohup)
     made.wait_until_well()
     yield made
     made.kill()

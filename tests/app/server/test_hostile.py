@@ -41,7 +41,7 @@ from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.hostile_messages import BROKEN, GARBAGE, VERSIONS
-from tests.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock
+from tests.bench.raw_socket import WAIT, answer_questions, frames, is_closed, knock, say
 from tests.bench.simulated_browser import Browser
 from tests.support import waiting
 from tests.support.checkout import ROOT
@@ -404,7 +404,7 @@ def test_a_client_that_reads_nothing_costs_a_bounded_amount(
 def test_a_client_that_answers_nothing_is_closed() -> None:
     server = make_server(port=0, limits=Limits(silence=0.2, farewell=0.2))
     raw = knock(server.get_port())
-    raw.sendall(frames(packed("ViewerCameraMessage", **CAMERA)))
+    say(raw, packed("ViewerCameraMessage", **CAMERA))
     wait_for(server.get_clients)
     wait_for(lambda: is_closed(raw), seconds=3.0)
     wait_for(lambda: not server.get_clients())

@@ -28,7 +28,7 @@ from onpath.app.viser_adapter.data_channel import (
 )
 from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.secure_server import make_server
-from tests.bench.raw_socket import frames, is_closed, knock
+from tests.bench.raw_socket import is_closed, knock, say
 from tests.support import waiting
 
 WAIT = 10.0
@@ -229,7 +229,7 @@ def test_an_unfinished_message_closes_the_connection() -> None:
     pages = Pages(message_seconds=0.2)
     stream = pages.stream()
     raw = knock(pages.port, SUBPROTOCOL)
-    raw.sendall(frames(stream.ticket.encode(), opcode=Opcode.TEXT))
+    say(raw, stream.ticket.encode(), opcode=Opcode.TEXT)
     wait_for(lambda: stream.is_open)
     raw.sendall(Frame(Opcode.TEXT, b"{", fin=False).serialize(mask=True))
     wait_for(lambda: is_closed(raw))
@@ -242,7 +242,7 @@ def test_nothing_more_is_sent_to_a_page_that_reads_too_slowly(pages: Pages) -> N
     """Until it has read most; then it gets what was handed over, and is free for more."""
     stream, other = pages.stream(), pages.stream()
     raw = knock(pages.port, SUBPROTOCOL)
-    raw.sendall(frames(stream.ticket.encode(), opcode=Opcode.TEXT))
+    say(raw, stream.ticket.encode(), opcode=Opcode.TEXT)
     wait_for(lambda: stream.is_open)
     sent = 0
     while not stream.is_busy:
