@@ -34,6 +34,8 @@ def supervised(serve: Callable[[bool], int]) -> int:
 
     def hand_on(number: int, _: object) -> None:
         nonlocal told
+        if told:  # by a signal that came before the others were ignored
+            return
         told = number
         for each in END_SIGNALS:  # else another one would cut Python's own end short
             signal.signal(each, signal.SIG_IGN)
@@ -45,13 +47,16 @@ def supervised(serve: Callable[[bool], int]) -> int:
     while not told:
         begun = time.monotonic()
         child = 0
-        if not (child := os.fork()):
+        signal.pthread_sigmask(signal.SIG_BLOCK, END_SIGNALS)  # until it is known to whom they go
+        if not told and not (child := os.fork()):
             for number, handler in handlers.items():
                 signal.signal(number, handler)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, END_SIGNALS)
             threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
-            return 128 + told if told else serve(again)
-        if told:  # before it could be handed on
-            os.kill(child, told)
+            return serve(again)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, END_SIGNALS)
+        if not child:
+            break
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         goes_on = code < 0 or code == os.EX_SOFTWARE  # see `app.server.watchdog`
         if told or not goes_on or time.monotonic() - begun < SOON:

@@ -175,6 +175,7 @@ def cell(
     caption: str = "",
     after: Iterable[str] = (),
     picture: str = "",
+    drawing: str = "",
 ) -> str:
     """What a cell shows, as HTML: a title, texts, a table, more texts and a picture.
 
@@ -183,6 +184,7 @@ def cell(
         head: titles of the table's columns; without them, there is no table.
         rows: its rows.
         picture: a PNG file in base64.
+        drawing: an SVG image of ours, shown first.
     """
     return render(
         "notebook/cell.html",
@@ -193,4 +195,5 @@ def cell(
         caption=caption,
         after=after,
         picture=picture,
+        drawing=b64encode(drawing.encode()).decode(),
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -13,6 +12,7 @@ import numpy as np
 
 from onpath.app.common.user_files import user_file
 from onpath.app.notebook.arguments import curve_of, looked_up, plane_point
+from onpath.app.notebook.display import cell
 from onpath.app.notebook.simulate import check_names, entry_named
 from onpath.models.arrays import Array
 from onpath.models.control.settable import with_values
@@ -137,9 +137,7 @@ class PathCheck:
         return ElementTree.tostring(drawing, encoding="unicode")
 
     def _repr_html_(self) -> str:
-        return self._repr_svg_() + "".join(
-            f"<p>{escape(line)}</p>" for line in repr(self).split("\n")
-        )
+        return cell(drawing=self._repr_svg_(), after=repr(self).split("\n"))
 
 
 def check_path(

@@ -22,9 +22,9 @@ from tests.support.checkout import ROOT
 SECONDS = 30.0
 SETTLED = 100  # frames of data
 OFF, GAP, ANSWER = 0.05, 0.25, 0.5  # share of simulated time in 2 s; [s]
-OFF_EIGHT, GAP_EIGHT = 0.2, 0.5
+OFF_EIGHT, GAP_EIGHT, ANSWER_EIGHT = 0.2, 0.5, 1.0
 """With eight tabs, whose messages are made on the same two cores. The aim is the same as with one;
-measured were 0.12 to 0.14, and 0.23 to 0.30 s."""
+measured were 0.11 to 0.14, 0.23 to 0.30 s, and 0.30 to 0.53 s."""
 
 
 def test_dear_messages_are_commands_or_too_long() -> None:
@@ -38,16 +38,18 @@ def test_dear_messages_are_commands_or_too_long() -> None:
 
 @pytest.mark.soak
 @pytest.mark.parametrize(
-    ("attack", "off", "gap"),
-    [("one dear tab", OFF, GAP), ("dear tabs", OFF_EIGHT, GAP_EIGHT)],
+    ("attack", "off", "gap", "answer"),
+    [("one dear tab", OFF, GAP, ANSWER), ("dear tabs", OFF_EIGHT, GAP_EIGHT, ANSWER_EIGHT)],
 )
-def test_no_page_holds_another_lab(attack: str, off: float, gap: float, tmp_path: Path) -> None:
+def test_no_page_holds_another_lab(
+    attack: str, off: float, gap: float, answer: float, tmp_path: Path
+) -> None:
     with serving(folders(tmp_path, "data")) as server:
         server.at_rest()
         seen = asyncio.run(witnessed(server, attack))
         assert server.process.poll() is None
     assert abs(1 - seen.rates[0]) <= off and abs(1 - seen.rates[1]) <= off, seen
-    assert seen.gap <= gap and seen.answered[1] <= ANSWER, seen
+    assert seen.gap <= gap and seen.answered[1] <= answer, seen
 
 
 async def witnessed(server: Server, attack: str, seconds: float = SECONDS) -> Testimony:
