@@ -43,8 +43,8 @@ _LAWS = dict[str, bytes]()  # by name, as another process has sent them
 
 
 @dataclass(frozen=True, slots=True)
-class Luggage:
-    """What a process needs besides an item.
+class WorkerContext:
+    """What a worker needs besides an item.
 
     Attributes:
         origin: the process that has sent it.
@@ -58,7 +58,7 @@ class Luggage:
     robots: tuple[RobotEntry, ...]
     folders: tuple[str, ...]
 
-    def unpack(self) -> None:
+    def install(self) -> None:
         """Make laws and robots known in this process.
 
         Raises:
@@ -125,7 +125,7 @@ class Job(Generic[Item, Result]):
         unset = chosen is None and isinstance(backend, BACKENDS[DEFAULT_BACKEND])
         jobs = chosen or (1 if unset and self.is_small else -1)
         workers = max(1, backend.effective_n_jobs(jobs))
-        luggage = luggage_of(self.laws if workers > 1 else (), self.robots)
+        context = context_of(self.laws if workers > 1 else (), self.robots)
         waiting, losses = self._batches(workers), 0
         while waiting:
             sent, done = list[int](), set[int]()
@@ -133,7 +133,7 @@ class Job(Generic[Item, Result]):
             def calls(batches: list[list[int]] = waiting, sent: list[int] = sent) -> Iterator[Any]:
                 for number, batch in enumerate(batches):
                     sent.append(number)
-                    yield delayed(_worked)(luggage, self.work, self._given(batch), number)
+                    yield delayed(_worked)(context, self.work, self._given(batch), number)
 
             try:
                 for number, results in _parallel(jobs)(calls()):
@@ -148,13 +148,13 @@ class Job(Generic[Item, Result]):
             if losses > 1:  # something kills the processes: find out what
                 held = [waiting[number] for number in sent if number not in done]
                 for i in (i for batch in held for i in batch):
-                    yield i, self._alone(luggage, i)
+                    yield i, self._alone(context, i)
                 left = [batch for batch in left if batch not in held]
             waiting = left
 
-    def _alone(self, luggage: Luggage, i: int) -> Result:
+    def _alone(self, context: WorkerContext, i: int) -> Result:
         """The result of an item that may kill its process."""
-        call = delayed(_worked)(luggage, self.work, self._given([i]), 0)
+        call = delayed(_worked)(context, self.work, self._given([i]), 0)
         try:
             ((_, (result,)),) = _parallel(2)([call])
         except Exception as error:
@@ -178,14 +178,14 @@ class Job(Generic[Item, Result]):
         return batches
 
 
-def luggage_of(laws: Iterable[str], robots: Iterable[RobotEntry]) -> Luggage:
-    """The luggage of a job.
+def context_of(laws: Iterable[str], robots: Iterable[RobotEntry]) -> WorkerContext:
+    """The context of a job.
 
     Raises:
         ValueError: a law cannot be pickled.
     """
     own = [law for law in map(law_named, dict.fromkeys(laws)) if law.origin is not None]
-    return Luggage(
+    return WorkerContext(
         origin=_HERE,
         laws={law.name: _pickled(law) for law in own},
         robots=tuple(dict.fromkeys(robots)),
@@ -217,11 +217,11 @@ def _in_file(code: CodeType, file: str) -> CodeType:
 
 
 def _worked(
-    luggage: Luggage, work: Callable[[Any], Any], items: list[Any], number: int
+    context: WorkerContext, work: Callable[[Any], Any], items: list[Any], number: int
 ) -> tuple[int, list[Any]]:
     """The number of a batch and its results: what a process does."""
     with _ONE_AT_A_TIME:  # a cluster's process may have several threads
-        luggage.unpack()
+        context.install()
         return number, [work(item) for item in items]
 
 

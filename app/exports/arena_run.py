@@ -12,7 +12,7 @@ from typing import Any
 from joblib import parallel_config
 
 from onpath.app.common.atomic_file import check_writable, whole_file
-from onpath.app.common.kept import Kept, key_of
+from onpath.app.common.result_folder import ResultFolder, key_of
 from onpath.app.common.workers import Job
 from onpath.app.exports.arena_page import Contents, arena_page, csv_rows, markdown
 from onpath.app.exports.arena_work import Entry, FigureJob, figure_of, lost, simulated
@@ -92,7 +92,7 @@ class Arena:
             first = next(trial for trial in self._trials[0] if trial.robot == robot)
             for law in options.laws:
                 check_own_law(first.experiment(remedy=False), law)
-        self._results, self._kept = list[Result](), Kept(options.folder)
+        self._results, self._kept = list[Result](), ResultFolder(options.folder)
         self._figures = dict[tuple[str, str], str]()
 
     def _entrants(self, robot: str) -> list[Row]:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from onpath.app.common.atomic_file import check_plot, whole_file
 from onpath.app.common.user_files import user_file
+from onpath.app.notebook.run import written
 from onpath.app.notebook.simulate import entry_named
 from onpath.models.studies.log_identification import FileEstimate, identify_file
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
@@ -56,16 +56,9 @@ class IdentificationResult:
         Raises:
             ValueError: another kind of file.
         """
-        from onpath.app.exports.figures import save
         from onpath.app.exports.identification import residual_figure
 
-        figure = residual_figure(self.found)
-        if file is not None:
-            target = Path(file).expanduser()
-            check_plot(target, "file")
-            with whole_file(target) as path:
-                save(figure, path)
-        return figure
+        return written(residual_figure(self.found), file)
 
     def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
         from onpath.app.notebook.display import identification_bundle  # slow to import

@@ -282,7 +282,7 @@ def written(figure: Figure, file: str | Path | None) -> Figure:
 
     if file is not None:
         path = Path(file).expanduser()
-        check_plot(path, "plot")
+        check_plot(path, "file")
         with whole_file(path) as scratch:
             save(figure, scratch)
     return figure

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from onpath.app.common.kept import Kept, key_of
+from onpath.app.common.result_folder import ResultFolder, key_of
 from onpath.app.common.workers import Job
 from onpath.app.notebook.display import cell
 from onpath.app.notebook.run import Run, data_frame, written
@@ -199,7 +199,7 @@ def sweep(
     >>> result.run(1).summary()["max_distance_m"] == result.table[1]["max_distance_m"]
     True
     """
-    kept = Kept(folder)
+    kept = ResultFolder(folder)
     robots = [entry_named(each) for each in _values("robot", robot)]
     laws = [law_of(each) for each in _values("law", law)]
     given = {"robot": robots, "path": _values("path", path), "law": laws}
@@ -234,7 +234,7 @@ def sweep(
     return SweepResult(varied, table, [trials[number] for number in done])
 
 
-def _simulated(trials: Sequence[Trial], kept: Kept) -> Iterator[tuple[int, dict[str, Any]]]:
+def _simulated(trials: Sequence[Trial], kept: ResultFolder) -> Iterator[tuple[int, dict[str, Any]]]:
     """The number of each trial, and the numbers and the reason of its row, in any order."""
     keys = [key_of(*trial) for trial in trials] if kept.keeps else [""] * len(trials)
     wanted = list[int]()

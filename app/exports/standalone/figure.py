@@ -150,7 +150,7 @@ class Figure:
             with announced("OnPath: making a figure …"):
                 page = self._live(self.choice, words)
         html = render(
-            "standalone/cell.html",
+            "notebook/figure.html",
             picture=picture,
             described=words("standalone.still", laws=self._laws(words)),
             named=self.title or self._laws(words),

@@ -74,12 +74,12 @@ def _draw_scene(
     q = robot.system.q
     picture = ca.Function("picture", [q], [*robot.skeleton(q, ca.SX(1))])
 
-    def place(points: Array) -> Array:
+    def seen(points: Array) -> Array:
         return 1e3 * robot.seen @ robot.position(points).T
 
     path = robot.frame.lift(curve.at(np.linspace(-np.pi, np.pi, 361)))
-    axes.plot(*place(path), color=palette.GREY.hex, linewidth=1.2)
-    axes.plot(*place(run.fields["y"][max(0, row - TRACE) : row + 1]), color=colour, linewidth=1.8)
+    axes.plot(*seen(path), color=palette.GREY.hex, linewidth=1.2)
+    axes.plot(*seen(run.fields["y"][max(0, row - TRACE) : row + 1]), color=colour, linewidth=1.8)
     lines, pins = (1e3 * robot.seen @ np.array(part) for part in picture(run.fields["q"][row]))
     for begin, end in zip(lines.T[::2], lines.T[1::2], strict=True):
         axes.plot(*np.transpose([begin, end]), color=colour, linewidth=5, alpha=0.45)

@@ -17,8 +17,8 @@ from typing import Any
 import cloudpickle
 
 from onpath.models.arrays import Array
-from onpath.models.control.laws.content import content
 from onpath.models.control.laws.law import ControlAction, Law, OwnGain, View
+from onpath.models.control.laws.law_digest import digest
 from onpath.models.control.laws.law_error import error_in
 from onpath.models.control.laws.path_following import followed
 from onpath.models.errors import CodedError
@@ -91,20 +91,20 @@ def python_law(given: Any) -> Law:
         CodedError: it does not describe a law; the message has file and line.
     """
     compiled = hasattr(given, "command") and not isinstance(given, type | Law)
-    made_of = _content(given) if compiled else ""  # numbers of a callable object may change
+    made_of = _digest(given) if compiled else ""  # numbers of a callable object may change
     if id(given) not in _KNOWN or _KNOWN[id(given)][1] != made_of:
         _KNOWN[id(given)] = given, made_of, _law_of(given)
     return _KNOWN[id(given)][2]
 
 
 _KNOWN = dict[int, tuple[Any, str, Law]]()
-"""Objects with their content and law, by `id`; they are kept so that no other gets that `id`."""
+"""Objects with their digest and law, by `id`; they are kept so that no other gets that `id`."""
 
 
-def _content(given: Any) -> str:
-    """The content of an object whose command is compiled; "" if it cannot be told."""
+def _digest(given: Any) -> str:
+    """The digest of an object whose command is compiled; "" if it cannot be told."""
     try:
-        return content(given)
+        return digest(given)
     except Exception:  # of whatever it consists
         return ""
 

@@ -9,6 +9,7 @@ import random
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from inspect import signature
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -20,9 +21,10 @@ from hypothesis import strategies as st
 from joblib import Parallel, delayed, parallel_config
 
 import onpath
-from onpath.app.common.kept import FILE
+from onpath.app.common.result_folder import FILE
 from onpath.app.common.workers import Job
 from onpath.app.notebook import sweep as module
+from onpath.app.notebook.simulate import planned
 from onpath.app.notebook.sweep import SweepResult, _is_several
 from onpath.models.studies import arena
 from onpath.models.studies.experiments import run
@@ -308,3 +310,10 @@ def test_a_folder_has_a_line_for_each_run(tmp_path: Path) -> None:
     assert len({key for key, _ in lines}) == 2 and all("reason" in row for _, row in lines)
     with pytest.raises(OSError, match="no_such"):
         onpath.sweep(folder=tmp_path / "no_such" / "folder")
+
+
+def test_a_sweep_has_the_defaults_of_a_run() -> None:
+    runs, rows = (signature(each).parameters for each in (onpath.simulate, planned))
+    assert [*runs] == [*rows]
+    for name in [*runs][3:]:
+        assert runs[name] == rows[name]

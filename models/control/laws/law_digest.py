@@ -1,4 +1,4 @@
-"""What a law of one's own is made of, as a digest that is the same in another session."""
+"""A digest of what a law of one's own is made of, which is the same in another process."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ OF_A_CLASS = ("__dict__", "__weakref__", "__firstlineno__", "__static_attributes
 """Members of a class that depend on where it stands."""
 
 
-def content(value: Any) -> str:
+def digest(value: Any) -> str:
     """A digest of code and numbers: of a function, a class or an object, with what they refer to.
 
     It does not depend on the lines in which the code stands, so that a notebook that is run again

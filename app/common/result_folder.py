@@ -1,4 +1,4 @@
-"""Results of simulations in a folder, so that a study that was interrupted goes on."""
+"""A folder with the results of simulations, so that a study that was interrupted goes on."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from onpath.models.control.laws.content import content
 from onpath.models.control.laws.law import Law
+from onpath.models.control.laws.law_digest import digest
 from onpath.models.control.laws.registry import law_named
 from onpath.models.studies.experiments import Experiment
 
@@ -20,8 +20,8 @@ FILE = "results.jsonl"
 """A line for each result: its key, and the result as JSON."""
 
 
-class Kept:
-    """The results in a folder, by key; the folder is made if there is none.
+class ResultFolder:
+    """The results of simulations in a folder, by key; the folder is made if there is none.
 
     Args:
         folder: None: nothing is kept.
@@ -97,6 +97,6 @@ def _made_of(law: Law) -> str:
     if law.origin is None:
         return law.name
     try:
-        return content(replace(law, name="", origin=None))
+        return digest(replace(law, name="", origin=None))
     except Exception as error:  # of whatever it consists
         raise ValueError(f"{law.name}: its runs cannot be kept in a folder: {error}") from error
