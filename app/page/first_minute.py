@@ -47,7 +47,7 @@ def end_first_minute(client: viser.ClientHandle) -> None:
 
 
 class FirstMinute:
-    """Shows the invitations that a user has not followed yet; see assets/web/voice.ts.
+    """Shows the invitations that a user has not followed yet; see assets/web/parts/voice.ts.
 
     Args:
         lesson: name of the first lesson, to which the last invitation leads; may be empty.

@@ -1,6 +1,6 @@
 """The open step of a lesson, or its end, as the page's data channel tells it: HTML and data.
 
-See app/viser_adapter/README.md, and assets/web/column.ts, which shows it beside the robots.
+See app/viser_adapter/README.md, and assets/web/parts/column.ts, which shows it beside the robots.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from onpath.models.systems.catalogue import ROBOTS
 MOST = 2
 """Most settings that a button names."""
 RENEWED = 1.0
-"""Time between updates of spoken numbers [s]; assets/web/voice.ts reads fewer aloud."""
+"""Time between updates of spoken numbers [s]; assets/web/parts/voice.ts reads fewer aloud."""
 
 
 class Said(Struct, frozen=True):
@@ -50,7 +50,7 @@ class Said(Struct, frozen=True):
 
 
 class Narration:
-    """Collects what a page says; assets/web/voice.ts shows, speaks and plays it.
+    """Collects what a page says; assets/web/parts/voice.ts shows, speaks and plays it.
 
     Args:
         preferences: the browser's `Preferences`.

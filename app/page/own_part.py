@@ -1,4 +1,4 @@
-"""The script and the style of our own part of a page; see assets/web/lab.ts."""
+"""The script and the style of our own part of a page; see assets/web/pages/lab.ts."""
 
 from __future__ import annotations
 

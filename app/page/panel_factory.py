@@ -55,7 +55,7 @@ FREE = (
     "copy",
 )
 IN_STRIP = ("hold", "past")
-"""Controls of a lesson's step that the strip has; see assets/web/lab.ts."""
+"""Controls of a lesson's step that the strip has; see assets/web/pages/lab.ts."""
 
 
 class Part(Protocol):
@@ -96,7 +96,7 @@ class PanelFactory:
         self._files = files
 
     def beside_strip(self, first: PageSnapshot) -> list[Part]:
-        """Build all panels except those that the strip replaces; see assets/web/lab.ts."""
+        """Build all panels except those that the strip replaces; see assets/web/pages/lab.ts."""
         self._add_view()
         return [part for name in FREE for part in self._add(name, first)]
 

@@ -1,4 +1,4 @@
-"""The messages of our own part of the lab's page; see assets/web/lab.ts."""
+"""The messages of our own part of the lab's page; see assets/web/pages/lab.ts."""
 
 from __future__ import annotations
 

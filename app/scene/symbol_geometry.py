@@ -1,7 +1,7 @@
 """What a lesson's symbols of joints mean on a robot: an angle's arc, a joint, a distance.
 
 The page's data channel tells them while someone points at such a symbol. Symbols of anything else
-are drawn by the page from what it knows; see assets/web/symbols.ts.
+are drawn by the page from what it knows; see assets/web/core/symbols.ts.
 """
 
 from __future__ import annotations

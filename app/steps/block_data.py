@@ -1,4 +1,4 @@
-"""A part of a step as data for a page's script; see assets/web/lesson_data.ts."""
+"""A part of a step as data for a page's script; see assets/web/core/lesson_data.ts."""
 
 from __future__ import annotations
 

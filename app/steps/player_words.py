@@ -1,4 +1,4 @@
-"""The messages of the player of a step, wherever it is played; see assets/web/step.ts."""
+"""The messages of the player of a step, wherever it is played; see assets/web/parts/step.ts."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ _OF_TWO = ("atan2", "pow", "hypot", "fmod", "remainder")
 LIBRARY = {**{name: 1 for name in (*_CIRCULAR, *_OTHERS)}, **{name: 2 for name in _OF_TWO}}
 """Function of the C library -> number of its arguments."""
 MATHEMATICS = tuple(name for name in LIBRARY if name != "erf")
-"""The functions that a page provides to WebAssembly: assets/web/mathematics.ts."""
+"""The functions that a page provides to WebAssembly: assets/web/simulation/mathematics.ts."""
 
 
 def _called(name: str) -> Operation:

@@ -24,7 +24,7 @@ class SiteStep:
     Attributes:
         number: number of the step, from 1.
         html: its column; see `onpath.app.steps`.
-        data: data for the page's script; see assets/web/lesson_data.ts.
+        data: data for the page's script; see assets/web/core/lesson_data.ts.
         figure: data of the step's figure; empty if only the lab can show it.
         lab_only: whether its run can only be seen in the lab.
     """

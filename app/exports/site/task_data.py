@@ -1,4 +1,4 @@
-"""The checks of a task as data for a page, with their words; see assets/web/checks.ts."""
+"""The checks of a task as data for a page, with their words; see assets/web/lessons/checks.ts."""
 
 from __future__ import annotations
 

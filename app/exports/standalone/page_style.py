@@ -15,7 +15,7 @@ def page_style(template: str) -> Markup:
 
 
 def _tones(tones: Tones) -> dict[str, str]:
-    """Name -> colour, on a light or a dark page; see assets/web/ink.ts."""
+    """Name -> colour, on a light or a dark page; see assets/web/core/ink.ts."""
     is_dark = tones is DARK
     shown = {
         "ink": tones.line,

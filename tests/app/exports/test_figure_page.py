@@ -194,7 +194,7 @@ def test_one_law_and_paths_of_one_s_own() -> None:
 
 def test_what_runs_was_built_from_these_sources() -> None:
     """After a change: cd assets/web; npm ci; npm run build."""
-    sources = sorted(asset_path("web").glob("*.ts"))
+    sources = sorted(asset_path("web").glob("*/*.ts"))
     text = b"".join(file.read_bytes() for file in sources)
     built = asset_path("web/onpath.js").read_text("utf-8")
     assert built.splitlines()[0] == f"// sources: {hashlib.sha256(text).hexdigest()}"

@@ -1,0 +1,368 @@
+// The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
+// The messages are described in app/viser_adapter/README.md.
+
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
+import { AT_JOINTS } from "../core/symbols"
+import type { LessonMessage, MeasuredMessage } from "./messages"
+
+const PROTOCOL = "onpath-1"
+const SECONDS = 60 // of samples that are kept
+const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
+const HEAD = 2 // numbers of a row before those of the robots
+const PATIENCE = [0, 500, 1000, 2000] // [ms], until it connects again
+const NO_TICKET = 4001 // the ticket is not valid, or not any more
+const OTHER_VERSION = 1002
+const HANDED = 60 // [ms], at least, between two looks at the past
+const SETTLES = 400 // [ms], until what the server shows counts again
+
+interface FrameMessage {
+    is: "frame"
+    rows: number[][]
+    running: boolean
+    past: number | null
+    anew?: boolean
+    straight?: number[][]
+}
+
+/** What a symbol means on each robot: points of a line, or one for a joint. */
+interface LitMessage { is: "lit"; symbol: string; lines: number[][][] }
+
+interface PathMessage {
+    is: "path"
+    points: number[][]
+    closed: boolean
+    right: Vector
+    up: Vector
+}
+
+/** What is spoken, and what newcomers are invited to do. */
+export interface Narration {
+    /** For a screen reader; empty if it is not wanted. */
+    voice: string
+    /** A description of the screen, and how often it has been asked for. */
+    summary: string
+    summaries: number
+    /** Whether the message says why a robot has stopped, and whether its last moments are to be shown. */
+    stopped: boolean
+    replays: boolean
+    /** A label of the settings that were good, if there are any. */
+    earlier: string
+    sounds: boolean
+    /** The name of an invitation, and the command that follows it, if a button can. */
+    invitation: string
+    act: Record<string, unknown> | null
+}
+
+/** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
+ * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
+ * coordinate, and a constant. */
+export type Projection = readonly Vector[]
+
+/** Texts of the lab, and what is set. Lists have the left robot first. */
+export interface LabState {
+    is: "state"
+    v: number
+    language: string
+    titles: string[]
+    names: string[]
+    texts: string[]
+    captions: string[]
+    clocks: boolean[]
+    rate: number
+    achieved: number
+    together: boolean
+    undo: boolean
+    /** Why the lab takes no commands; empty if it does. */
+    frozen: string
+    own: boolean
+    presenting: boolean
+    /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
+    message: string
+    level: string
+    /** How many have been shown so far: the same one may be shown again. */
+    messages: number
+    said: Narration
+    height: number
+    apart: number
+    /** How the picture shows the robots. */
+    cameras: Projection[]
+    /** Length of the arrow of a force [m/N]. */
+    arrow: number
+}
+
+interface Refusal { is: "refused"; why: string }
+
+/** Comes when nothing else does. */
+interface Alive { is: "alive" }
+
+/** A path through points at evenly spaced θ from -π to π. */
+class SampledPath implements PathShape {
+    readonly lines: readonly (readonly Vector[])[]
+    readonly closed: boolean
+    readonly right: Vector
+    readonly up: Vector
+    private readonly points: readonly Vector[]
+
+    constructor({ points, closed, right, up }: Omit<PathMessage, "is">) {
+        this.points = points.map(point => point.map(each => each / LENGTH))
+        this.lines = [this.points]
+        this.closed = closed
+        this.right = right
+        this.up = up
+    }
+
+    /** The point at θ: a cubic through the four next points; an open path goes on along its end tangents. */
+    at(theta: number): Vector {
+        const { points, closed } = this
+        const last = points.length - 1
+        let place = ((theta + Math.PI) / (2 * Math.PI)) * last
+        if (closed) place = ((place % last) + last) % last
+        const begin = Math.min(Math.max(Math.floor(place), 0), last - 1)
+        const t = place - begin
+        const point = (i: number): Vector => {
+            if (closed) return points[((i % last) + last) % last]!
+            const inside = Math.min(Math.max(i, 0), last)
+            const [end, next] = [points[inside]!, points[inside === i ? inside : inside - Math.sign(i)]!]
+            return inside === i ? end : end.map((each, k) => 2 * each - next[k]!)
+        }
+        const [a, b, c, d] = [point(begin - 1), point(begin), point(begin + 1), point(begin + 2)]
+        if (t < 0 || t > 1) return b.map((each, k) => each + t * (c[k]! - each))
+        return b.map((each, k) => {
+            const [before, after] = [(c[k]! - a[k]!) / 2, (d[k]! - each) / 2]
+            const by = c[k]! - each
+            return each + t * (before + t * (3 * by - 2 * before - after + t * (before + after - 2 * by)))
+        })
+    }
+}
+
+/** One robot in a row. */
+class RowSide implements SideSample {
+    readonly held: boolean
+    readonly pulled: boolean
+
+    constructor(
+        private readonly engine: RemoteEngine,
+        private readonly row: readonly number[],
+        private readonly first: number, // of its numbers
+        private readonly p: number,
+        private readonly side: number,
+        readonly straight: Vector | null,
+    ) {
+        this.held = Boolean(row[1]! & (1 << side))
+        this.pulled = Boolean(row[1]! & (4 << side))
+    }
+
+    get distance(): number { return this.row[this.first]! / LENGTH }
+    get closest(): Vector { return this.engine.route.at(this.row[this.first + 1]! / ANGLE) }
+    get reference(): Vector | null {
+        return this.engine.lab?.clocks[this.side] ? this.engine.route.at(this.row[this.first + 2]! / ANGLE) : null
+    }
+    get tip(): Vector { return this.part(3, LENGTH) }
+    get force(): Vector { return this.part(3 + this.p, FORCE) }
+    private part(at: number, unit: number): Vector {
+        const begin = this.first + at
+        return this.row.slice(begin, begin + this.p).map(each => each / unit)
+    }
+}
+
+export class RemoteEngine implements Engine {
+    /** What the lab is called and set to; null until it is known. */
+    lab: LabState | null = null
+    route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
+    /** Whether the page hears from its lab. */
+    connected = false
+    /** How many messages it has heard, and connections opened. */
+    heard = 0
+    /** The last ticket that was not valid, when [ms], and how many in a row were not. */
+    refused = { ticket: "", at: 0, times: 0 }
+    /** Whether the lab is of another version. */
+    outdated = false
+    /** The open step of a lesson, and what is measured in it; null until they are known. */
+    lesson: LessonMessage | null = null
+    measured: MeasuredMessage | null = null
+    private samples: Sample[] = [] // the last one is the present
+    private running = false
+    private past: number | null = null
+    private looked: { at: number | null; until: number } | null = null
+    private symbol = "" // of joints, whose meaning is asked for
+    private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
+    private sending = 0 // timer of an instant to be looked at
+    private socket: WebSocket | null = null
+    private ticket = ""
+    private tries = 0
+    private again = 0 // [ms], when it may be tried again
+    private readonly listeners = new Set<(change: Change) => void>()
+
+    /** Whether there is something to show. */
+    get ready(): boolean { return this.lab !== null && this.samples.length > 0 }
+
+    /** Connect with a ticket, unless it is in use or was refused; called repeatedly. */
+    open(ticket: string): void {
+        const now = performance.now()
+        if (!ticket || ticket === this.refused.ticket || (this.socket && ticket === this.ticket) || now < this.again) return
+        this.close()
+        this.ticket = ticket
+        const socket = new WebSocket(location.href.replace(/^http/, "ws").replace(/[?#].*$/, ""), PROTOCOL)
+        this.socket = socket
+        socket.addEventListener("open", () => {
+            this.heard++
+            socket.send(ticket)
+        })
+        socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
+        socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
+    }
+
+    close(): void {
+        const { socket } = this
+        this.socket = null
+        socket?.close()
+        this.connected = false
+    }
+
+    get state(): State {
+        const { held, pulled } = this.flags
+        const looked = this.looked && performance.now() < this.looked.until ? this.looked : null
+        const past = looked ? looked.at : this.past
+        return { running: this.running && past === null, rate: this.lab?.rate ?? 1, held, pulled, past, branches: this.lab?.own ?? false, frozen: this.lab?.frozen ?? "" }
+    }
+
+    get path(): PathShape { return this.route }
+
+    get texts(): SideText[] {
+        const { titles, names, texts, captions } = this.lab!
+        return titles.map((title, i) => ({ side: i as 0 | 1, title, name: names[i]!, text: texts[i]!, caption: captions[i]! }))
+    }
+
+    get present(): Sample { return this.samples[this.samples.length - 1]! }
+
+    since(time: number): readonly Sample[] {
+        return this.samples.slice(this.samples.findLastIndex(sample => sample.time <= time) + 1, -1)
+    }
+
+    on(listener: (change: Change) => void, ended?: AbortSignal): void {
+        this.listeners.add(listener)
+        ended?.addEventListener("abort", () => this.listeners.delete(listener))
+    }
+
+    act(act: Act): void {
+        if (!this.lab?.own) return
+        if (act.do === "look") this.look(act.at)
+        else {
+            this.looked = null
+            if (act.do === "hold") this.send({ do: "Hold", on: act.on })
+            else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
+            else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
+            else this.send({ do: { step: "StepOnce", reset: "Reset", goOn: "GoOn" }[act.do] })
+        }
+    }
+
+    lit(symbol: string, side: number): readonly Vector[] {
+        return symbol && this.symbolLines.symbol === symbol ? this.symbolLines.lines[side] ?? [] : []
+    }
+
+    /** Ask what a symbol means, and be told as long as the robots move; of joints, only the server knows. */
+    light(symbol: string): void {
+        const asked = AT_JOINTS.includes(symbol) ? symbol : ""
+        if (asked === this.symbol) return
+        this.symbol = asked
+        this.send({ is: "light", symbol: asked })
+    }
+
+    /** Send a command; it is lost while there is no connection. */
+    send(command: Record<string, unknown>): void {
+        if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(command))
+    }
+
+    private get flags(): { held: boolean; pulled: boolean } {
+        const sides = this.samples.length ? this.present.sides : []
+        return { held: sides.some(each => each.held), pulled: sides.some(each => each.pulled) }
+    }
+
+    /** Show an instant at once, and let the lab show it soon. */
+    private look(at: number | null): void {
+        const sample = at === null ? undefined : sampleAt(this.samples, at)
+        this.looked = { at: sample && sample !== this.present ? sample.time : null, until: performance.now() + SETTLES }
+        this.sending ||= window.setTimeout(() => {
+            this.sending = 0
+            if (!this.looked) return
+            this.looked.until = performance.now() + SETTLES
+            this.send({ do: "LookAt", ago: this.looked.at === null ? 0 : this.present.time - this.looked.at })
+            setTimeout(() => this.tell("state"), SETTLES + 1)
+        }, HANDED)
+        this.tell("state")
+    }
+
+    private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal | Alive): void {
+        this.heard++
+        if (!this.connected) {
+            this.connected = true
+            this.tries = this.refused.times = 0
+            if (this.symbol) this.send({ is: "light", symbol: this.symbol })
+            this.tell("state")
+        }
+        if (message.is === "frame") this.frame(message)
+        else if (message.is === "path") {
+            this.route = new SampledPath(message)
+            this.tell("path")
+        } else if (message.is === "lit") {
+            const { symbol, lines } = message
+            this.symbolLines = { symbol, lines: lines.map(line => line.map(point => point.map(each => each / LENGTH))) }
+            this.tell("samples")
+        } else if (message.is === "state") {
+            this.lab = { ...this.lab, ...message } // which has only what has changed
+            this.tell("state")
+        } else if (message.is === "lesson") {
+            this.lesson = message
+            this.tell("lesson")
+        } else if (message.is === "measured") {
+            this.measured = message
+            this.tell("measured")
+        } else if (message.is === "refused") console.warn(`refused: ${message.why}`)
+    }
+
+    private frame({ rows, running, past, anew, straight }: FrameMessage): void {
+        const { samples } = this
+        const { held, pulled } = this.flags
+        let gone = 0
+        if (anew) samples.length = 0
+        while (samples.length && samples[samples.length - 1]!.time >= rows[0]![0]! / TIME) {
+            samples.pop()
+            gone++
+        }
+        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
+        for (const [i, row] of rows.entries()) samples.push(this.sample(row, straight?.[i - late] ?? null))
+        const old = samples.findIndex(sample => sample.time >= this.present.time - SECONDS)
+        if (old > 64) samples.splice(0, old)
+        const before = this.state
+        this.running = running
+        this.past = past
+        this.tell(anew || gone > 1 ? "history" : "samples")
+        const now = this.state
+        const changed = held !== now.held || pulled !== now.pulled
+        if (changed || before.running !== now.running || before.past !== now.past) this.tell("state")
+    }
+
+    private sample(row: readonly number[], straight: readonly number[] | null): Sample {
+        const size = (row.length - HEAD) / 2
+        const p = (size - 3) / 2
+        const sides = [0, 1].map(side => {
+            const rigid = straight && straight.slice(side * p, (side + 1) * p).map(each => each / LENGTH)
+            return new RowSide(this, row, HEAD + side * size, p, side, rigid)
+        })
+        return { time: row[0]! / TIME, sides }
+    }
+
+    private closed(code: number): void {
+        this.socket = null
+        this.connected = false
+        if (code === NO_TICKET) this.refused = { ticket: this.ticket, at: Date.now(), times: this.refused.times + 1 }
+        if (code === OTHER_VERSION) this.outdated = true
+        this.again = performance.now() + PATIENCE[Math.min(this.tries++, PATIENCE.length - 1)]!
+        this.tell("state")
+    }
+
+    private tell(change: Change): void {
+        if (!this.ready) return
+        for (const listener of this.listeners) listener(change)
+    }
+}

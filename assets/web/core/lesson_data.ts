@@ -1,0 +1,171 @@
+// The data that Python puts into the pages: see app/exports/site.
+
+import type { FigureData, Place } from "./figure_data"
+
+export type Robot = "tracker" | "follower"
+export const ROBOTS: Robot[] = ["tracker", "follower"]
+export type Setting = number | string
+
+/** One action of a script or a link; it has one of these fields besides `side`. */
+export interface Action {
+    hold?: boolean
+    pull?: [number, number]
+    release?: boolean
+    set?: Record<string, Setting>
+    write?: [number, number][]
+    path?: number
+    reset?: boolean
+    run?: boolean
+    rate?: number
+    side?: number | null
+}
+
+export interface Script {
+    until: number
+    do: [number, Action][]
+}
+
+export interface SiteFigure extends FigureData {
+    names: string[]
+    quantities: string[]
+    log: FigureData["log"] & Record<"theta_rate" | "speed" | "xi" | "xi_rate" | "u", Place>
+}
+
+export interface TimeWindow {
+    during: "always" | "held" | "pulled" | "free" | "released"
+    last: number
+    least: number
+}
+
+export type Said = Record<string, string>
+
+export interface Bound extends TimeWindow {
+    kind: "bound"
+    quantity: string
+    robot: Robot
+    stat: string
+    below: number | null
+    above: number | null
+    said: Said
+}
+
+export interface Compare extends TimeWindow {
+    kind: "compare"
+    quantity: string
+    larger: Robot
+    smaller: Robot
+    stat: string
+    ratio: number
+    said: Said
+}
+
+export interface EventCheck {
+    kind: "event"
+    event: string
+    name: string
+    times: number
+    since: { event: string; name: string }[]
+    said: Said
+}
+
+export interface Order {
+    kind: "order"
+    events: { event: string; name: string; said: string }[]
+}
+
+export interface SettingCheck {
+    kind: "setting"
+    name: string
+    equals: Setting | null
+    below: number | null
+    above: number | null
+    whole: boolean
+    said: Said
+    labels: Record<string, string>
+}
+
+export interface Only {
+    kind: "only"
+    names: string[]
+    labels: Record<string, string>
+}
+
+export type Check = Bound | Compare | EventCheck | Order | SettingCheck | Only
+
+export interface TaskData {
+    kind: "task"
+    id: string
+    best: string
+    checks?: Check[]
+    /** Conditions of the ways in which it may be passed; see lessons/task_schema.py. */
+    ways?: Check[]
+    /** Whether it counts nothing in a grade. */
+    exploratory?: boolean
+}
+
+export interface SketchData {
+    kind: "sketch"
+    quantity: string
+    label: string
+    unit: string
+    robots: string[]
+    seconds: number
+    top: number
+    bottom: number
+    /** Of the circle that is followed, [m]; null for another path. */
+    radius?: number | null
+}
+
+export type BlockData =
+    | { kind: "text"; links: (Action[] | null)[]; when?: [string, number[]] }
+    | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer
+    | { kind: "number"; number?: number; tolerance?: number }
+    | { kind: "open" }
+    | SketchData
+    | TaskData
+
+export interface StepData {
+    kind: "play" | "predict" | "run" | "explain" | "task" | "quiz"
+    optional: boolean
+    running: boolean
+    script: Script | null
+    truth?: Curves // of a run that only the lab can play
+    values: Record<string, Setting> & { lengths: number[]; paths: string[] }
+    blocks: BlockData[]
+    figure: number
+}
+
+export interface PageData {
+    words: Record<string, string>
+    lesson: string
+    /** What each symbol of the lesson means. */
+    symbols: Record<string, string>
+    /** Whether this is the concept test, which tells nothing. */
+    test?: boolean
+    scorm?: Package | null
+    figures: SiteFigure[]
+    steps: StepData[]
+    lessons: Record<string, { steps: number; required: number; tasks: string[] }>
+}
+
+export interface Answer {
+    option?: number
+    times?: number[]
+    values?: number[]
+    sure?: string
+    reason?: number
+    why?: string
+}
+
+export interface Curves {
+    times: number[]
+    tracker: number[]
+    follower: number[]
+}
+
+/** What kind of package this is. */
+export interface Package {
+    version: "1.2" | "2004"
+    /** Whether an unfinished lesson gets a score, too. */
+    partial: boolean
+}

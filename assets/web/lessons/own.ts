@@ -1,0 +1,37 @@
+// Shows a student's own answers: numbers in texts, and texts for some answers only.
+
+import type { BlockData, PageData } from "../core/lesson_data"
+import { general } from "../core/numbers"
+import { localized } from "../core/words"
+import type { Notes } from "./notes"
+
+const STATISTICS: Record<string, (values: number[]) => number> = {
+    max: values => Math.max(...values), min: values => Math.min(...values), final: values => values[values.length - 1]!,
+}
+
+export function accepted(given: number, { number = NaN, tolerance = 0 }: Extract<BlockData, { kind: "number" }>): boolean {
+    return Math.abs(given - number) <= tolerance * (1 + 1e-9)
+}
+
+export function showOwn(page: PageData, notes: Notes): void {
+    page.steps.forEach(({ blocks }, i) => blocks.forEach((block, j) => {
+        if (block.kind !== "text" || !block.when) return
+        const element = document.querySelector<HTMLElement>(`#step-${i + 1} [data-block="${j}"]`)!
+        element.hidden = !block.when[1].includes(answer(page, notes, block.when[0]) as number)
+    }))
+    for (const element of document.querySelectorAll<HTMLElement>("[data-own]")) {
+        const values = notes.answers[element.dataset["step"]!]?.values
+        if (!values) continue
+        const value = general(STATISTICS[element.dataset["own"]!]!(values), 3)
+        element.textContent = localized(value.replace("-", "−"), page)
+    }
+}
+
+/** As `answers_meant` in lessons/adaptive/branches.py numbers answers; undefined before there is one. */
+function answer(page: PageData, notes: Notes, key: string): number | undefined {
+    const [step, place] = key.split(".").map(Number)
+    if (place === undefined) return notes.answers[key] && (notes.answers[key].option ?? -1)
+    const block = page.steps[step!]!.blocks[place]!
+    if (block.kind !== "number") return notes.quiz[key]
+    return notes.numbers[key] === undefined ? undefined : Number(accepted(notes.numbers[key], block))
+}

@@ -1,0 +1,121 @@
+// What a student has done in a lesson, and whether it is right.
+
+import type { PageData, TaskData, Answer, Curves } from "../core/lesson_data"
+import { judge, statistic, wayOf, type Verdict } from "./checks"
+import { gradeOf } from "./grade"
+import { keep, notesOf, type Notes } from "./notes"
+import type { Progress } from "./progress"
+import type { Recorded } from "./recorded"
+
+export interface Student {
+    readonly notes: Notes
+    /** Decides the order of options, which is always the same for a student. */
+    readonly name: string
+    /** Called whenever the notes have changed. */
+    changed: () => void
+    /** A step is open; the number after the last step is the end. */
+    goes(step: number): void
+    predicts(step: number, answer: Answer): void
+    chooses(question: string, option: number): void
+    gives(question: string, number: number): void
+    writes(question: string, text: string): void
+    /** A hint of a task is read, the first of which is number 1. */
+    reads(task: string, hint: number): void
+    /** A run was seen to its end; `asked` is the step of the prediction that it shows. */
+    sees(step: number, asked: number, truth: Curves): void
+    /** How far a task is done in the present run; null if that is unknown. */
+    result(task: TaskData): Result | null
+}
+
+export interface Result {
+    verdicts: Verdict[]
+    /** Number of the run, from its beginning to a reset. */
+    run: number
+}
+
+/** Notes in this browser or a learning platform, and the checks of this page. */
+export class LocalStudent implements Student {
+    readonly notes: Notes
+    readonly name: string
+    /** What the tasks are about. */
+    recorded: Recorded | null = null
+    changed: () => void = () => {}
+
+    constructor(private readonly page: PageData, private readonly progress: Progress) {
+        this.notes = notesOf(progress, page.lesson)
+        this.name = progress.get("student") ?? crypto.getRandomValues(new Uint32Array(2)).join("-")
+        progress.set("student", this.name)
+    }
+
+    goes(step: number): void {
+        const { notes, page } = this
+        notes.step = step
+        notes.seen = Math.max(notes.seen, Math.min(step + 1, page.steps.length))
+        this.save()
+    }
+
+    predicts(step: number, answer: Answer): void {
+        this.notes.answers[String(step)] = answer
+        this.save()
+    }
+
+    chooses(question: string, option: number): void {
+        this.notes.quiz[question] = option
+        this.notes.first[question] ??= option
+        this.save()
+    }
+
+    gives(question: string, number: number): void {
+        this.notes.numbers[question] = number
+        this.notes.first[question] ??= number
+        this.save()
+    }
+
+    writes(question: string, text: string): void {
+        this.notes.written[question] = text
+        this.save()
+    }
+
+    reads(task: string, hint: number): void {
+        const { hints } = this.notes
+        if (hint <= (hints[task] ?? 0)) return
+        hints[task] = hint
+        this.save()
+    }
+
+    sees(step: number, asked: number, truth: Curves): void {
+        this.notes.truths[String(asked)] = truth
+        this.notes.played[String(step)] = true
+        this.save()
+    }
+
+    result({ checks, ways, id, best }: TaskData): Result | null {
+        if (!checks || !this.recorded) return null
+        const record = this.recorded.record()
+        const verdicts = judge(checks, record, this.page.words)
+        if (verdicts.every(verdict => verdict.passed)) {
+            const all = record.times.map(() => true)
+            const value = best ? (statistic(record, "follower", best, "max", all) ?? 0) : 0
+            this.pass(id, value, wayOf(ways ?? [], record, this.page.words))
+        }
+        return { verdicts, run: record.run }
+    }
+
+    save(): void {
+        const { page, notes, progress } = this
+        keep(progress, page.lesson, notes)
+        progress.grade(gradeOf(page.steps, notes))
+        this.changed()
+    }
+
+    /** A task is passed in a way, with a value of which the least is kept. */
+    private pass(task: string, value: number, way: number): void {
+        const { tasks, ways } = this.notes
+        const worse = tasks[task] !== undefined && value >= tasks[task]
+        if (worse && way === (ways[task] ?? 0)) return
+        if (!worse) tasks[task] = Math.round(1e3 * value) / 1e3
+        if (way) ways[task] = way
+        else delete ways[task]
+        this.save()
+    }
+}

@@ -1,0 +1,202 @@
+// Builds a figure in a page, and runs its time.
+
+import { isTyped, keyOf, made, tell } from "../core/dom"
+import type { Point } from "../core/figure_data"
+import { said, withoutNumbers } from "../core/words"
+import { notes, spoken } from "../simulation/captions"
+import { LocalEngine } from "../simulation/local"
+import type { Simulation } from "../simulation/simulation"
+import { Lens } from "../parts/lens"
+import { Strip } from "../parts/strip"
+import { View } from "../parts/view"
+import { Controls } from "./controls"
+
+const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
+const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
+const TRACE = 4 // [s], of the tips' traces
+const PULL = 0.03 // [m], by which a key pulls
+const FURTHER = 0.005 // [m], by which a key pulls further in a lesson, as in the lab
+const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] }
+
+export class Figure {
+    readonly engine = new LocalEngine(this.simulation, !this.inLesson)
+    private readonly data = this.simulation.data
+    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true)))
+    private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
+    private readonly titles = this.views.map(() => made("span", ""))
+    private readonly captions = this.views.map(() => made("span", "caption"))
+    private readonly strip = new Strip(this.data, this.engine, this.ended)
+    private readonly live = made("p", "live")
+    private readonly note = made("p", "note")
+    private readonly late = made("p", "late") // which moves nothing when it comes and goes
+    private readonly poles = made("p", "poles")
+    readonly controls = new Controls(this.simulation, this, this.ended)
+    private pending: (() => void) | null = null // a drag to be handled before the next picture
+    private stale = true
+    private kind = ""
+    private said = 0
+
+    /** `ended` stops the figure when a page puts another one in its place; in a lesson, one cannot go on from the past,
+     * and keys pull as in the lab. */
+    constructor(
+        readonly simulation: Simulation,
+        into: HTMLElement,
+        private readonly ended: AbortSignal = new AbortController().signal,
+        private readonly inLesson = false,
+    ) {
+        this.live.setAttribute("role", "status")
+        into.replaceChildren(...this.parts())
+        for (const view of this.views) this.grabs(view)
+        if (this.data.controls.includes("pull")) this.keys()
+        this.engine.on(() => (this.stale = true), ended)
+        this.changed()
+        requestAnimationFrame(() => this.frame())
+    }
+
+    private readonly drag = () => [this.pending?.(), (this.pending = null)]
+    get running(): boolean { return this.engine.running }
+
+    /** Update everything that depends on the settings. */
+    changed(): void {
+        const { simulation, data } = this
+        this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
+        this.titles.forEach((element, i) => {
+            const law = (element.textContent = simulation.title(i))
+            element.title = simulation.sides[i]!.does().text
+            const hint = data.controls.includes("drag") ? `. ${said(data, "standalone.drag_hint")}` : ""
+            this.views[i]!.canvas.setAttribute("aria-label", said(data, "standalone.scene", { law }) + hint)
+        })
+        simulation.changed("state")
+    }
+
+    /** Show on the robots what a symbol means; nothing if it is empty. */
+    light(symbol: string): void {
+        for (const picture of [...this.views, ...this.lenses]) picture.lit = symbol
+        this.engine.simulation.changed("state")
+    }
+
+    /** Advance by a number of ticks, independently of the clock. */
+    readonly advance = (ticks: number) => this.simulation.advance(ticks)
+
+    private parts(): HTMLElement[] {
+        const { data, controls } = this
+        const robots = this.views.map((view, i) => {
+            const heading = made("h2", `title side${this.engine.texts[i]!.side}`, this.titles[i]!, " ", this.captions[i]!)
+            view.canvas.setAttribute("role", "img")
+            return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
+        })
+        const { transport } = controls
+        const brakes = data.controls.includes("hold") ? transport.brakes : []
+        const title = made("h2", "", said(data, "chart.title"))
+        const strip = data.controls.includes("plot") ? [this.strip.chart.element] : []
+        return [
+            made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.past, ...brakes)),
+            this.note,
+            made("div", "bar", ...(strip.length ? [title, this.late, transport.element] : [transport.element, this.late])),
+            ...strip,
+            controls.element,
+            ...(data.controls.includes("poles") ? [this.poles] : []),
+            this.live,
+        ]
+    }
+
+    private frame(): void {
+        if (this.ended.aborted) return
+        this.drag()
+        const now = performance.now()
+        if (this.engine.pass(now)) this.stale = true
+        if (this.stale) this.draw()
+        this.strip.draw(now)
+        for (const [i, lens] of this.lenses.entries()) {
+            lens.scale = this.views[i]!.scale
+            lens.draw(now)
+        }
+        requestAnimationFrame(() => this.frame())
+    }
+
+    private draw(): void {
+        const { simulation, data, engine } = this
+        this.stale = false
+        const { past } = engine.state
+        const moments = [...engine.since((past ?? simulation.time) - TRACE), ...(past === null ? [engine.present] : [])]
+        const traced = moments.filter(moment => past === null || moment.time <= past)
+        this.views.forEach((view, i) => {
+            view.draw(simulation.followed, simulation.selected, traced.map(moment => moment.tips[i]!))
+        })
+        const captions = engine.texts.map(text => (past === null ? text.caption : ""))
+        this.captions.forEach((element, i) => tell(element, captions[i]!))
+        const late = engine.lost > LATE ? said(data, "standalone.late") : ""
+        const note = notes(simulation)
+        tell(this.note, note)
+        tell(this.late, late)
+        this.say(captions, `${note} ${late}`.trim())
+    }
+
+    /** Announce what robots do when it changes, and from time to time their millimetres. */
+    private say(captions: string[], note: string): void {
+        const line = `${spoken(this.simulation, captions)} ${note}`.trim()
+        const kind = withoutNumbers(line)
+        const now = performance.now()
+        if (line === this.live.textContent || (kind === this.kind && now < this.said + SILENCE)) return
+        this.kind = kind
+        this.said = now
+        this.live.textContent = line
+    }
+
+    /** Pull all tips, or move a point of the path, while the mouse or a finger drags one of them. */
+    private grabs(view: View): void {
+        const { simulation } = this
+        const { canvas } = view
+        const at = (place: { clientX: number; clientY: number }) =>
+            view.grabbed(place.clientX, place.clientY, simulation.followed, simulation.selected)
+        let grabbed: { what: number | "tip"; from: PointerEvent } | null = null
+        const act = (by: Point | null) => {
+            if (grabbed?.what === "tip") simulation.pull(by)
+            else if (grabbed && by) simulation.followed.drag(grabbed.what, by)
+            else simulation.followed.finish()
+            this.stale = true
+        }
+        const begin = (event: TouchEvent) => at(event.touches[0]!) !== null && event.preventDefault() // no scrolling
+        canvas.addEventListener("touchstart", begin, { passive: false })
+        canvas.addEventListener("pointerdown", event => {
+            const what = at(event)
+            if (what === null || grabbed) return
+            grabbed = { what, from: event }
+            canvas.setPointerCapture(event.pointerId)
+            if (what === "tip") act([0, 0])
+            else simulation.select(what)
+        })
+        canvas.addEventListener("pointermove", event => {
+            canvas.classList.toggle("near", grabbed !== null || at(event) !== null)
+            if (event.pointerId !== grabbed?.from.pointerId) return
+            const by = view.metres(event.clientX - grabbed.from.clientX, event.clientY - grabbed.from.clientY)
+            this.pending = () => act(by)
+        })
+        canvas.addEventListener("pointerleave", () => canvas.classList.remove("near"))
+        for (const end of ["pointerup", "pointercancel"] as const)
+            canvas.addEventListener(end, event => {
+                if (event.pointerId !== grabbed?.from.pointerId) return
+                this.drag()
+                act(null)
+                grabbed = null
+            })
+    }
+
+    /** Keys pull: while one is pressed, or in a lesson a little further each time, until X lets go. */
+    private keys(): void {
+        const { simulation, inLesson, ended: signal } = this
+        let pulling = "" // the key that pulls
+        addEventListener("keydown", event => {
+            const key = keyOf(event), direction = PULLS[key]
+            if (isTyped(event) || (event.repeat && !inLesson)) return
+            if (inLesson && key === "x") simulation.pull(null)
+            if (!direction) return
+            pulling = key
+            const [x, y] = (inLesson && simulation.sides.find(side => side.pulledBy)?.pulledBy) || [0, 0]
+            const step = inLesson ? FURTHER : PULL
+            simulation.pull([x + step * direction[0], y + step * direction[1]])
+        }, { capture: true, signal }) // also while a slider has the focus
+        addEventListener("keyup", event => !inLesson && keyOf(event) === pulling && simulation.pull(null), { capture: true, signal })
+        addEventListener("blur", () => simulation.pull(null), { signal })
+    }
+}

@@ -1,0 +1,235 @@
+// The page of the lab: viser's canvas and panel are the stage; around them stand the strip with chart, numbers and
+// buttons for time, a lens for each robot, and the robots' titles.
+
+import { made, tell } from "../core/dom"
+import { shown } from "../core/engine"
+import { retone } from "../core/ink"
+import { said, significant, written, type Texts } from "../core/words"
+import { RemoteEngine } from "../channel/channel"
+import { Connection } from "../channel/connection"
+import { Column } from "../parts/column"
+import { Lens } from "../parts/lens"
+import { Strip } from "../parts/strip"
+import { SymbolOverlay } from "../parts/symbol_overlay"
+import { Transport } from "../parts/transport"
+import { Voice } from "../parts/voice"
+
+const LOOK = 250 // [ms] between looks for what viser has put into the page
+const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
+const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is told of it
+const NUMBERS = 100 // [ms] between changes of the large numbers
+const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
+const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
+const PHONE = matchMedia("(width <= 36em)") // spelt unlike viser's query, which portrait.js rewrites
+
+/** Our part of the page, in one language. */
+class Face {
+    private readonly ended = new AbortController()
+    private readonly strip: Strip
+    private readonly lenses: Lens[]
+    private readonly overlay: SymbolOverlay
+    private readonly titles: HTMLElement[]
+    private readonly captions: HTMLElement[]
+    private readonly numbers: HTMLElement[]
+    private readonly readings: HTMLElement[]
+    private readonly stage: HTMLElement
+    private readonly sides: HTMLElement[]
+    private readonly element: HTMLElement
+    private readonly undo = made("button", "")
+    private readonly transport: Transport
+    private readonly clock = made("span", "clock")
+    private readonly column: Column
+    private readonly voice: Voice
+    private canvas: HTMLElement | null = null
+    private width = 0 // of the canvas, [px]
+    private height = 0
+    private apart = 0 // of the robots in the picture, [px]
+    private resizing = 0
+    private read = 0
+
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
+        const { signal } = this.ended
+        const indices = engine.texts.map((_, i) => i)
+        this.strip = new Strip(texts, engine, signal)
+        this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
+        this.overlay = new SymbolOverlay(engine)
+        this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
+        this.captions = indices.map(() => made("p", "caption"))
+        this.numbers = indices.map(() => made("b", "number"))
+        this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
+        this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
+        for (const reading of this.readings) reading.role = "group"
+        this.sides = indices.map(i => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))
+        this.stage = made("div", "", made("h1", "op-unseen", "OnPath"), this.overlay.element, ...this.sides)
+        this.stage.id = "op-stage"
+        Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
+        this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
+        this.transport.element.append(this.undo)
+        const title = made("h2", "", said(texts, "chart.title"))
+        const head = made("div", "head", title, this.clock, this.transport.element)
+        this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
+        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
+        this.element.id = "op-strip"
+        this.element.ariaLabel = said(texts, "chart.title")
+        this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
+        head.prepend(this.voice.invitation)
+        // Before viser's panel, so that Tab and screen readers come to them first.
+        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element)
+        document.documentElement.classList.add("op-stripped")
+        engine.on(change => {
+            if (change === "lesson") this.column.hear(engine.lesson!)
+            else if (change === "measured") this.column.measure(engine.measured!)
+            else if (change !== "samples") this.show()
+        }, signal)
+        PHONE.addEventListener("change", () => this.arrange(), { signal })
+        UPRIGHT.addEventListener("change", () => this.column.arrange(), { signal })
+        this.arrange()
+        this.show()
+        if (engine.lesson) this.column.hear(engine.lesson)
+        if (engine.measured) this.column.measure(engine.measured)
+        requestAnimationFrame(now => this.frame(now))
+    }
+
+    end(): void {
+        this.ended.abort()
+        this.column.element.remove()
+        this.stage.remove()
+        this.element.remove()
+        document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
+    }
+
+    /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
+    place(): void {
+        const canvas = document.querySelector<HTMLElement>("canvas[data-engine]")
+        const { left, top, width, height } = canvas?.getBoundingClientRect() ?? new DOMRect()
+        if (width !== this.width || height !== this.height) {
+            clearTimeout(this.resizing)
+            this.resizing = window.setTimeout(() => this.engine.send({ is: "resized" }), RESTS)
+        }
+        Object.assign(this, { width, height })
+        if (canvas !== this.canvas && canvas) {
+            this.canvas = canvas
+            const observer = new ResizeObserver(() => requestAnimationFrame(() => this.ended.signal.aborted || this.place()))
+            observer.observe(canvas)
+            this.ended.signal.addEventListener("abort", () => observer.disconnect())
+        }
+        this.voice.place(left, top, width, height)
+        this.makeRoom(this.column.open ? 0 : left)
+        Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
+    }
+
+    /** A panel on the left is as high as the window; the strip begins beside it. */
+    private makeRoom(left: number): void {
+        document.documentElement.classList.toggle("op-beside", left > 0)
+        this.element.style.left = left > 0 ? `${left}px` : ""
+    }
+
+    /** Put the lenses on the stage, or into the strip on a telephone. */
+    private arrange(): void {
+        this.lenses.forEach((lens, i) => {
+            if (PHONE.matches) this.readings[i]!.prepend(lens.element)
+            else this.sides[i]!.append(lens.element)
+        })
+        this.column.arrange()
+        this.place()
+    }
+
+    private show(): void {
+        const { engine, transport } = this
+        const { past } = engine.state
+        engine.texts.forEach(({ title, name, text, caption }, i) => {
+            const [robot, law] = this.titles[i]!.children as unknown as [HTMLElement, HTMLElement]
+            tell(robot, name)
+            tell(law, name === title ? "" : title)
+            this.titles[i]!.title = text
+            tell(this.captions[i]!, past === null ? caption : "")
+            this.readings[i]!.ariaLabel = name
+            tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, name)
+        })
+        this.undo.hidden = !engine.lab!.undo
+        transport.element.hidden = !engine.lab!.own
+        this.enlarge(engine.lab!.presenting)
+        this.read = 0
+    }
+
+    /** Show on the robots and in the lenses what a symbol means. */
+    private light(symbol: string): void {
+        this.engine.light(symbol)
+        for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
+        for (const row of document.querySelectorAll(".op-gain")) row.classList.remove("op-gain")
+        if (symbol.startsWith("K_")) sliderOf(symbol.replace("_", ""))?.classList.add("op-gain")
+    }
+
+    /** Give each robot's half of the stage the width that the robot has in the picture. */
+    private spread(apart: number): void {
+        if (Math.abs(apart - this.apart) < 1) return
+        this.apart = apart
+        this.stage.style.setProperty("--op-apart", `${apart.toFixed(0)}px`)
+    }
+
+    /** Draw for a projector, or for a screen. */
+    private enlarge(large: boolean): void {
+        document.documentElement.classList.toggle("op-large", large)
+        for (const { sheet } of [this.strip.chart, ...this.lenses]) sheet.zoom = large ? LARGER : 1
+    }
+
+    private frame(now: number): void {
+        if (this.ended.signal.aborted) return
+        const { engine, strip, lenses, texts } = this
+        strip.draw(now)
+        this.overlay.draw()
+        for (const lens of lenses) {
+            lens.scale = this.height / engine.lab!.height / lens.sheet.zoom || lens.scale
+            lens.draw(now)
+        }
+        this.spread(engine.lab!.apart * this.height / engine.lab!.height)
+        if (now > this.read + NUMBERS) {
+            this.read = now
+            const { time, sides } = shown(engine), { running } = engine.state
+            sides.forEach((side, i) => tell(this.numbers[i]!, written(texts, 1e3 * side.distance, 1)))
+            const clock = { time: written(texts, time, running ? 1 : 2), speed: significant(texts, engine.lab!.achieved, 2) }
+            tell(this.clock, said(texts, running ? "readout.running" : "readout.paused", clock))
+        }
+        requestAnimationFrame(next => this.frame(next))
+    }
+}
+
+/** The row of a gain in viser's panel, if it is shown there. */
+function sliderOf(gain: string): Element | null {
+    const labels = [...document.querySelectorAll("#root .mantine-Flex-root > * label, #root .mantine-Flex-root > label")]
+    const label = labels.find(each => each.textContent!.split(/[^\w]/)[0] === gain)
+    return label?.closest(".mantine-Flex-root") ?? null
+}
+
+/** Show our part of the page as soon as viser's has come; until then, a cover hides that. */
+export function showLab(): void {
+    const engine = new RemoteEngine(), root = document.documentElement, connection = new Connection(engine)
+    let face: Face | null = null
+    let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    root.classList.add("op-loading")
+    let source: DOMStringMap | undefined
+    const follow = () => {
+        source = document.querySelector<HTMLElement>("[data-page]")?.dataset ?? source
+        if (!source) return // the page is being built; later, its panel may be folded
+        root.classList.remove("op-loading")
+        root.lang = source["language"]!
+        connection.page(source["ticket"] ?? "")
+        if (source["parts"] !== words) {
+            face?.end()
+            face = null
+            words = source["parts"]!
+        }
+        if (!engine.ready) return
+        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> })
+        face.place()
+        if (calmed) return
+        calmed = true // users who ask for less motion begin with a lab at rest
+        engine.act({ do: "run", on: false })
+    }
+    setInterval(() => {
+        follow()
+        connection.look(face !== null)
+    }, LOOK)
+    new MutationObserver(retone).observe(root, { attributeFilter: ["data-mantine-color-scheme"] })
+    Object.assign(window, { onpathLab: engine }) // for tests
+}

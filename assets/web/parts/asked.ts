@@ -1,0 +1,79 @@
+// Questions that are answered at once: quizzes, numbers, and open questions.
+
+import { made } from "../core/dom"
+import type { BlockData, PageData } from "../core/lesson_data"
+import { localized, said } from "../core/words"
+import { accepted } from "../lessons/own"
+import type { Student } from "../lessons/student"
+
+/** The order of the options for a student, which is always the same. */
+export function ordered(list: Element, student: string, question: string): void {
+    const drawn = [...list.children].map((each, i) => [hash(`${student} ${question} ${i}`), each] as const)
+    list.append(...drawn.sort((a, b) => a[0] - b[0]).map(([, each]) => each))
+}
+
+/** Show what was chosen, whether it is right, and why, with texts from the page. */
+export function judged(page: PageData, element: Element, right: number | undefined, own: number | undefined): HTMLElement {
+    if (right === undefined) return made("div", "judged") // not told yet
+    const answers = (option: number) => [...element.querySelector(`[data-answer="${option}"]`)!.cloneNode(true).childNodes]
+    const lines: HTMLElement[] = []
+    if (own !== undefined) {
+        const verdict = made("p", own === right ? "right" : "wrong", said(page, own === right ? "lesson.right" : "lesson.not_quite"))
+        lines.push(verdict, made("div", "", ...answers(own)))
+    }
+    if (own !== right) lines.push(made("p", "", made("b", "", said(page, "report.right"))), made("div", "", ...answers(right)))
+    return made("div", "judged", ...lines)
+}
+
+/** Make a question answerable. */
+export function ask(page: PageData, element: HTMLElement, block: BlockData, key: string, student: Student): void {
+    const { notes } = student
+    const told = element.querySelector<HTMLElement>(".verdict")!
+    const after = element.querySelector<HTMLDetailsElement>(".after") // a lab sends it with its verdict
+    if (after) after.hidden = true
+    const input = element.querySelector<HTMLInputElement | HTMLTextAreaElement>("input, textarea")!
+    const button = made("button", "script-only", said(page, block.kind === "open" || page.test ? "answer.keep" : "answer.check"))
+    button.type = "button"
+    told.before(button)
+    const kept = () => (block.kind === "quiz" ? notes.quiz : block.kind === "number" ? notes.numbers : notes.written)[key]
+    const show = () => {
+        const own = kept()
+        if (own === undefined || !after) return
+        if (block.kind === "quiz") return told.replaceChildren(...judged(page, element, block.right, own as number).childNodes)
+        if (block.kind === "number") {
+            const right = accepted(own as number, block)
+            told.className = `verdict ${right ? "right" : "wrong"}`
+            told.textContent = said(page, right ? "lesson.right" : "lesson.not_quite")
+        }
+        after.hidden = false
+        after.open = true
+    }
+    const own = kept()
+    if (own !== undefined) {
+        if (block.kind === "quiz") element.querySelector<HTMLInputElement>(`input[value="${own}"]`)!.checked = true
+        else input.value = block.kind === "number" ? localized(String(own), page) : String(own)
+        show()
+    }
+    input.addEventListener("keydown", event => {
+        if (block.kind === "number" && (event as KeyboardEvent).key === "Enter") button.click()
+    })
+    button.addEventListener("click", () => {
+        if (block.kind === "quiz") {
+            const chosen = element.querySelector<HTMLInputElement>("input:checked")
+            if (!chosen) return
+            student.chooses(key, Number(chosen.value))
+        } else if (block.kind === "number") {
+            const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
+            if (!Number.isFinite(given)) return void (told.textContent = said(page, "lesson.no_number"))
+            student.gives(key, given)
+        } else if (input.value.trim()) student.writes(key, input.value.trim().slice(0, 1000))
+        else return
+        show()
+    })
+}
+
+function hash(text: string): number {
+    let value = 2166136261
+    for (const letter of text) value = Math.imul(value ^ letter.codePointAt(0)!, 16777619)
+    return Math.imul(value ^ (value >>> 15), 2246822519) >>> 0
+}

@@ -1,0 +1,288 @@
+// The column of a lesson in the lab: the open step as its server tells it, beside the robots and above the strip.
+
+import type { LessonMessage, MeasuredMessage } from "../channel/messages"
+import { isTyped, made } from "../core/dom"
+import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
+import { said, type Texts } from "../core/words"
+import type { Verdict } from "../lessons/checks"
+import { noNotes } from "../lessons/notes"
+import type { Result, Student } from "../lessons/student"
+import type { RemoteEngine } from "../channel/channel"
+import { Legend } from "./legend"
+import { compared } from "./predictions"
+import { StepView, type Robots } from "./step"
+import { radiusOf } from "./strip"
+import { Task } from "./tasks"
+
+const END = "end" // the section that stands for the end of a lesson
+
+/** Notes in the lab, where Python judges. */
+class RemoteStudent implements Student {
+    notes = noNotes()
+    readonly name = "" // the server puts options into their order
+    changed: () => void = () => {}
+    verdicts: Record<string, Verdict[]> = {}
+
+    constructor(private readonly engine: RemoteEngine) {}
+
+    goes(): void {}
+    sees(): void {}
+    predicts(_: number, { option, times, values, sure, reason, why }: Answer): void {
+        const given = { option, times, values, sure, reason, why }
+        this.engine.send({ do: "Predict", ...Object.fromEntries(Object.entries(given).filter(([, each]) => each !== undefined)) })
+    }
+    chooses(question: string, option: number): void { this.engine.send({ do: "AnswerQuiz", block: placeOf(question), option }) }
+    gives(question: string, given: number): void { this.engine.send({ do: "AnswerNumber", block: placeOf(question), given }) }
+    reads(): void {} // the server shows the hints, and so knows
+    writes(question: string, typed: string): void { this.engine.send({ do: "AnswerInWords", block: placeOf(question), typed }) }
+    result({ id }: TaskData): Result | null {
+        const verdicts = this.verdicts[id]
+        return verdicts ? { verdicts, run: 0 } : null
+    }
+}
+
+/** A question's number among the parts of its step. */
+function placeOf(question: string): number {
+    return Number(question.split(".")[1])
+}
+
+export class Column implements Robots {
+    readonly element = made("main", "lesson")
+    /** Below the robots: where one draws, and sees what happened. */
+    readonly beneath = made("div", "beneath")
+    playing = false
+    private readonly head = made("div", "head")
+    private readonly pager = made("nav", "pager")
+    private readonly live = made("p", "op-unseen")
+    private readonly student: RemoteStudent
+    private readonly page: PageData
+    private readonly legend: Legend
+    private sections: Record<string, HTMLElement> = {}
+    private sources: Record<string, string[]> = {} // HTML of the parts of the sections, as the server sent it
+    private place = "" // symbols that mean something on this robot, lesson and step
+    private view: StepView | null = null
+    private tasks: Task[] = []
+    private turned = false // whether a key has turned the page
+
+    constructor(texts: Texts, private readonly engine: RemoteEngine, private readonly isWide: () => boolean,
+        light: (symbol: string) => void, ended: AbortSignal) {
+        this.student = new RemoteStudent(engine)
+        this.page = { words: texts.words, lesson: "", symbols: {}, figures: [], steps: [], lessons: {} }
+        this.element.id = "op-column"
+        this.element.hidden = true
+        this.pager.ariaLabel = said(texts, "lesson.lessons")
+        this.live.setAttribute("role", "status")
+        this.element.append(this.live)
+        this.legend = new Legend(this.page, light, ended)
+        this.element.addEventListener("click", event => this.press(event))
+        addEventListener("keydown", event => this.key(event), { signal: ended })
+        addEventListener("resize", () => this.view?.formulas(), { signal: ended })
+        this.student.changed = () => this.show()
+    }
+
+    get open(): boolean { return !this.element.hidden }
+    get ready(): boolean { return this.engine.connected }
+
+    play(): void {
+        this.engine.send({ do: "PlayStep" })
+    }
+
+    act(block: number, link: number): void {
+        const data = this.page.steps[this.view!.index]!.blocks[block]!
+        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] })
+    }
+
+    /** Show the open step, or what has changed in it. */
+    hear(message: LessonMessage): void {
+        const { page, student, element } = this
+        element.hidden = !message.lesson
+        document.documentElement.classList.toggle("op-lesson", this.open)
+        element.dataset["version"] = String(message.version)
+        document.documentElement.classList.remove("op-waits")
+        if (!this.open) return this.leave("")
+        const place = `${Object.keys(message.symbols)} ${message.lesson}.${message.ended ? END : message.index}`
+        const isNew = place !== this.place
+        const reads = this.turned || element.contains(document.activeElement)
+        if (isNew) this.leave(place)
+        for (const step of message.steps) for (const block of step.blocks) this.bend(block)
+        Object.assign(page, { lesson: message.lesson, symbols: message.symbols, steps: message.steps, test: message.test })
+        student.notes = message.notes ?? noNotes()
+        this.playing = message.playing
+        put(this.head, message.head)
+        put(this.pager, message.pager)
+        this.fill(message)
+        if (isNew) this.begin(reads)
+        this.show()
+    }
+
+    /** Show verdicts, and draw what is happening. */
+    measure({ verdicts, truth }: MeasuredMessage): void {
+        this.student.verdicts = verdicts
+        for (const task of this.tasks) task.follow()
+        if (truth && this.playing) this.view?.draw(truth)
+    }
+
+    /** Put the board where the window has room for it. */
+    arrange(): void {
+        this.view?.place()
+        this.view?.formulas()
+    }
+
+    private get section(): HTMLElement { return this.sections[this.place.slice(this.place.lastIndexOf(".") + 1)]! }
+
+    private leave(place: string): void {
+        this.place = place
+        this.legend.clear()
+        this.element.classList.remove("turned")
+        this.view = null
+        this.tasks = []
+        for (const section of Object.values(this.sections)) section.remove()
+        this.sections = {}
+        this.sources = {}
+        this.beneath.replaceChildren()
+    }
+
+    /** A sketch is drawn on the path that the robots follow. */
+    private bend(block: BlockData): void {
+        if (block.kind === "sketch") block.radius = radiusOf(this.engine.path.lines[0] ?? [])
+    }
+
+    /** Put the sections into the page; in those that are there, parts that have changed are replaced. */
+    private fill({ sections, charts, index, ended }: LessonMessage): void {
+        const { view } = this
+        for (const [name, html] of Object.entries(sections)) {
+            const source = elementsOf(html)
+            for (const sign of source.querySelectorAll("[data-symbol]")) // without a meaning on this robot
+                if (!this.page.symbols[sign.getAttribute("data-symbol")!]) sign.removeAttribute("data-symbol")
+            const parts = [...source.children] as HTMLElement[]
+            const before = this.sources[name]
+            this.sources[name] = parts.map(part => part.outerHTML)
+            const isOpen = name === (ended ? END : String(index))
+            if (before) this.renew(name, before, parts, isOpen ? view : null)
+            else {
+                const number = name === END ? 0 : Number(name) + 1
+                const words = made("div", "words", ...parts)
+                Object.assign(words, { tabIndex: 0, role: "group" })
+                words.setAttribute("aria-labelledby", `title-${number}`)
+                const section = (this.sections[name] = made("section", `step${isOpen ? " open" : ""}`, words))
+                section.id = `step-${number}`
+                section.hidden = !isOpen
+                this.live.before(section)
+            }
+        }
+        if (!ended && !view) {
+            const { section, beneath, isWide } = this
+            this.view = new StepView(this.page, index, this.student, this, { section, beneath, isWide })
+        }
+        this.section.querySelectorAll("[data-chart]").forEach((each, i) => {
+            const { data, script, answer, truth } = charts![i]!
+            if (!each.childElementCount) each.append(compared(this.page, data, script, answer, truth ?? undefined))
+        })
+    }
+
+    /** Replace the parts of a section that have changed; the focus stays where it is. */
+    private renew(name: string, before: string[], parts: HTMLElement[], view: StepView | null): void {
+        const words = this.sections[name]!.querySelector(".words")!
+        const known = new Map<string, HTMLElement[]>() // the elements made of each part
+        ;[...words.children].filter(each => !isOurs(each)).forEach((each, i) => {
+            known.set(before[i]!, [...(known.get(before[i]!) ?? []), each as HTMLElement])
+        })
+        const focused = document.activeElement, { scrollTop } = words
+        const kept = parts.map(part => known.get(part.outerHTML)?.shift() ?? part)
+        const gone = [...known.values()].flat()
+        const at = gone.find(each => each.contains(focused))
+        const place = at ? controlsOf(at).indexOf(focused as HTMLElement) : -1
+        for (const each of gone) each.remove()
+        let next = words.firstElementChild
+        for (const each of kept) { // what stays is not moved, or it would lose the focus
+            while (next && next !== each && each.parentElement === words && isOurs(next)) next = next.nextElementSibling
+            if (next === each) next = next.nextElementSibling
+            else words.insertBefore(each, next)
+        }
+        words.scrollTop = scrollTop // the browser has lost what it would keep in its place
+        for (const each of kept) if (parts.includes(each) && each.dataset["block"]) view?.prepare(Number(each.dataset["block"]))
+        const successor = at && kept.find(each => each.dataset["block"] === at.dataset["block"])
+        if (successor) (controlsOf(successor)[place] ?? successor.querySelector<HTMLElement>("summary, button"))?.focus({ preventScroll: true })
+        if (view) this.follow()
+    }
+
+    /** A step has been opened, perhaps by a key or by someone whose focus was in the column. */
+    private begin(reads: boolean): void {
+        const { section, view } = this
+        const words = section.querySelector<HTMLElement>(".words")!
+        section.prepend(this.head)
+        section.append(this.pager)
+        if (view) this.legend.add(section)
+        this.follow()
+        view?.place()
+        words.scrollTo(0, 0)
+        if (reads) words.focus({ preventScroll: true }) // whoever turns the page reads on
+        this.turned = false
+    }
+
+    /** Follow the tasks of the open step. */
+    private follow(): void {
+        const { page, view, student } = this
+        this.tasks = page.steps[view?.index ?? -1]?.blocks.flatMap((block, i) =>
+            block.kind === "task" ? [new Task(page, view!.block(i)!, block, student, () => this.tell(said(page, "lesson.passed")))] : [],
+        ) ?? []
+        for (const task of this.tasks) task.follow()
+    }
+
+    private show(): void {
+        const { view, pager } = this
+        pager.querySelectorAll(".commit").forEach(each => each.remove())
+        if (view?.form && !view.committed) pager.querySelector(".ways")!.append(view.form.commit)
+        document.documentElement.classList.toggle("op-waits", view?.waits ?? false)
+        view?.run()
+        view?.formulas()
+    }
+
+    tell(text: string): void {
+        this.live.textContent = text
+    }
+
+    private press(event: MouseEvent): void {
+        const turn = (event.target as HTMLElement).closest<HTMLElement>(".turn")
+        if (turn) return turn.setAttribute("aria-pressed", String(this.element.classList.toggle("turned")))
+        const sent = (event.target as HTMLElement).closest<HTMLElement>("[data-send]")?.dataset["send"]
+        if (!sent) return
+        const commands = JSON.parse(sent) as Record<string, unknown> | Record<string, unknown>[]
+        for (const command of [commands].flat()) this.engine.send(command)
+    }
+
+    /** The keys that turn pages do so in a lesson, unless they are typed into a field. */
+    private key(event: KeyboardEvent): void {
+        const by = { PageDown: 1, PageUp: -1 }[event.key]
+        if (!by || !this.open || isTyped(event) || document.querySelector("[role=dialog]")) return
+        event.preventDefault()
+        this.turned = true
+        this.engine.send({ do: "GoToStep", by })
+    }
+}
+
+/** The elements of our own server's HTML. */
+function elementsOf(html: string): DocumentFragment {
+    const template = document.createElement("template")
+    template.innerHTML = html
+    return template.content
+}
+
+/** Put HTML into an element unless it is there; a focused button is replaced by its successor. */
+function put(element: HTMLElement, html: string): void {
+    if (element.dataset["html"] === html) return
+    element.dataset["html"] = html
+    const at = controlsOf(element).indexOf(document.activeElement as HTMLElement)
+    element.replaceChildren(elementsOf(html))
+    const buttons = controlsOf(element)
+    if (at >= 0) buttons[Math.min(at, buttons.length - 1)]?.focus({ preventScroll: true })
+}
+
+/** Whether the script has made an element, not the server. */
+function isOurs(element: Element): boolean {
+    return element.matches(".compared, .symbols, .before")
+}
+
+function controlsOf(element: Element): HTMLElement[] {
+    return [...element.querySelectorAll<HTMLElement>("button, input, select, textarea, summary")]
+}

@@ -1,0 +1,215 @@
+// Predictions: a choice or a curve, to which a student commits before the run.
+
+import { made, tell } from "../core/dom"
+import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves } from "../core/lesson_data"
+import { said, significant, type Texts } from "../core/words"
+import { given, type Notes } from "../lessons/notes"
+import type { Student } from "../lessons/student"
+import { judged } from "./asked"
+import { Chart, type Axes, type Span } from "./chart"
+import { Drawing } from "./drawing"
+import { radiusOf } from "./strip"
+
+export interface Prediction {
+    /** Number of the step that asks, and of the block in it. */
+    step: number
+    block: number
+    data: SketchData | Extract<BlockData, { kind: "choice" | "quiz" }>
+}
+
+/** What a step asks, or what it shows: the prediction of the step before. */
+export function predictionAt(steps: StepData[], index: number): Prediction | null {
+    const candidates = steps[index]!.kind === "run" ? [index, index - 1] : [index]
+    for (const step of candidates)
+        for (const [block, data] of (steps[step]?.blocks ?? []).entries())
+            if (data.kind === "choice" || data.kind === "sketch")
+                return { step, block, data: data as Prediction["data"] }
+    return null
+}
+
+export function elementOf(prediction: Prediction): HTMLElement {
+    return document.querySelector<HTMLElement>(`#step-${prediction.step + 1} [data-block="${prediction.block}"]`)!
+}
+
+/** The parts of a prediction that stand elsewhere on the page than its question. */
+export interface Form {
+    commit: HTMLButtonElement
+    /** Where a curve is drawn; null if there is nothing to draw. */
+    board: HTMLElement | null
+    /** Show what has been committed, if anything: it cannot be changed. */
+    show(): void
+    /** Leave it out, unless it has been made. */
+    skip(): void
+}
+
+/** Make a prediction answerable. Once committed, it cannot be changed; a skipped one can still be made. */
+export function predict(page: PageData, prediction: Prediction, student: Student): Form {
+    const element = elementOf(prediction)
+    const answerKept = () => student.notes.answers[String(prediction.step)]
+    const { data } = prediction
+    const told = element.querySelector<HTMLElement>(".verdict")!
+    const commit = element.querySelector<HTMLButtonElement>(".commit")!
+    const asked = element.querySelector<HTMLElement>(".committing")!
+    element.querySelector<HTMLElement>(".after")?.setAttribute("hidden", "")
+    let answer: Answer = {}
+    const answers = () => {
+        commit.disabled = answer.times === undefined && answer.option === undefined
+        const before = element.offsetHeight
+        element.classList.toggle("answered", !commit.disabled) // how sure, and why, is asked then
+        if (getComputedStyle(element).position === "sticky") // what was read above it is still seen
+            element.closest(".words")!.scrollTop += element.offsetHeight - before
+    }
+    let board: HTMLElement | null = null
+    let committed = (_: Answer) => {}
+    commit.disabled = true
+    if (data.kind === "sketch") {
+        const chart = chartOf(page, prediction, data, () => {
+            drawing.show()
+            chart.draw()
+        })
+        const seconds = significant(page, data.seconds, 4)
+        chart.sheet.canvas.setAttribute("aria-label", said(page, "site.sketch", { quantity: data.label, unit: data.unit, seconds }))
+        chart.ghost = curveOf(answerKept())
+        const hint = () => (chart.hint = chart.ghost ? "" : said(page, "chart.draw"))
+        hint()
+        const drawing = new Drawing(chart, () => {
+            const { times, values } = chart.ghost ?? {}
+            answer = times && values ? { times: [...times], values: [...values] } : {}
+            answers()
+            told.textContent = said(page, times ? "lesson.drawn" : "site.draw_first")
+            hint()
+            chart.draw()
+        })
+        board = chart.element
+        told.textContent = said(page, "site.draw_first")
+        committed = kept => {
+            drawing.open = false
+            chart.ghost = curveOf(kept)
+            hint()
+            chart.draw()
+        }
+    } else
+        element.addEventListener("change", event => {
+            const input = event.target as HTMLInputElement
+            if (input.type !== "radio") return
+            answer = { option: Number(input.value) }
+            answers()
+        })
+    const show = () => {
+        const kept = answerKept()
+        if (!kept) return
+        if (given(kept) || commit.disabled) tell(told, said(page, given(kept) ? "lesson.committed" : "site.skipped"))
+        if (!given(kept) || asked.hidden) return
+        asked.hidden = true
+        element.querySelectorAll<HTMLInputElement>("input").forEach(input => (input.disabled = true))
+        committed(kept)
+        if (kept.option !== undefined) element.querySelector<HTMLInputElement>(`input[value="${kept.option}"]`)!.checked = true
+    }
+    const finish = (own: Answer) => {
+        student.predicts(prediction.step, own)
+        show()
+    }
+    commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
+    show()
+    return { commit, board, show, skip: () => void (answerKept() ?? finish({})) }
+}
+
+/** How a prediction compares with what happened. */
+export class Comparison {
+    readonly elements: HTMLElement[] = []
+    private readonly chart: Chart | null = null
+    private readonly again: HTMLElement
+
+    constructor(page: PageData, private readonly prediction: Prediction, private readonly notes: Notes) {
+        const { data } = prediction
+        this.again = made("p", "", said(page, "site.again"))
+        this.again.hidden = true
+        if (data.kind === "sketch") {
+            const chart = (this.chart = chartOf(page, prediction, data, () => chart.draw()))
+            drawn(chart, data, this.answer, undefined)
+            this.elements.push(chart.element, this.again)
+        } else this.elements.push(judged(page, elementOf(prediction), data.right, this.answer?.option))
+    }
+
+    /** The verdict on a choice, in words. */
+    get words(): string[] {
+        return this.chart ? [] : this.elements.flatMap(each => [...each.children]).map(each => each.textContent!)
+    }
+
+    /** Draw what happened, too; if that is not kept, the page says how to see it again. */
+    draw(truth: Curves | undefined): void {
+        this.again.hidden = truth !== undefined
+        const { chart, prediction } = this
+        if (chart && prediction.data.kind === "sketch") drawn(chart, prediction.data, this.answer, truth)
+    }
+
+    private get answer(): Answer | undefined {
+        return this.notes.answers[String(this.prediction.step)]
+    }
+}
+
+/** A chart of a prediction, and of what happened, that stands by itself. */
+export function compared(page: Texts, data: SketchData, script: Script | null, answer: Answer | undefined, truth: Curves | undefined): HTMLElement {
+    const chart = chartWith(page, data, script, () => chart.draw())
+    drawn(chart, data, answer, truth)
+    return chart.element
+}
+
+/** Draw a prediction, and what happened. */
+function drawn(chart: Chart, { robots }: SketchData, answer: Answer | undefined, truth: Curves | undefined): void {
+    chart.ghost = curveOf(answer)
+    chart.lines = truth ? [
+        { name: robots[0]!, tone: "side0", dashed: false, times: truth.times, values: truth.tracker },
+        { name: robots[1]!, tone: "side1", dashed: true, times: truth.times, values: truth.follower },
+    ] : []
+    chart.draw()
+}
+
+/** The chart of a prediction, with what its run does. */
+function chartOf(page: PageData, { step }: Prediction, data: SketchData, changed: () => void): Chart {
+    const run = page.steps[page.steps[step]!.kind === "run" ? step : step + 1]
+    const outline = page.figures[run?.figure ?? -1]?.paths[0]?.outline ?? []
+    const points = Array.from({ length: outline.length / 2 }, (_, i) => outline.slice(2 * i, 2 * i + 2))
+    return chartWith(page, { ...data, radius: data.radius ?? radiusOf(points) }, run?.script ?? null, changed)
+}
+
+/** A chart with the axes of a prediction, and when a script holds and pulls. */
+function chartWith(page: Texts, data: SketchData, script: Script | null, changed: () => void): Chart {
+    const { label, unit, bottom, top, quantity, seconds, radius } = data
+    const axes: Axes = { label, unit, bottom, top }
+    if (quantity === "distance" && radius) axes.mark = { value: 1e3 * radius, label: said(page, "chart.centre") }
+    const chart = new Chart(page, axes, changed)
+    chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
+    chart.until = seconds
+    chart.spans = acting(script)
+    return chart
+}
+
+/** When a script holds or pulls a robot; after a reset, times mean something else. */
+function acting(script: Script | null): Span[] {
+    const found: Span[] = []
+    let span: Span | null = null
+    for (const [time, action] of [...script?.do ?? []].sort((a, b) => a[0] - b[0])) {
+        if (action.reset || action.path !== undefined) break
+        const kind = action.hold ? "held" : action.pull ? "pulled" : null
+        if (span && (action.hold === false || action.release)) {
+            span.until = time
+            span = null
+        } else if (kind && !span) found.push((span = { from: time, until: script!.until, kind }))
+    }
+    return found
+}
+
+function curveOf(answer: Answer | undefined): { times: number[]; values: number[] } | null {
+    return answer?.times && answer.values ? { times: answer.times, values: answer.values } : null
+}
+
+/** How sure the student is, and why, if stated. */
+function beside(element: HTMLElement): Answer {
+    const value = (name: string) => element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(name)?.value ?? ""
+    const found: Answer = {}
+    if (value(".sure")) found.sure = value(".sure")
+    if (value(".reason")) found.reason = Number(value(".reason"))
+    if (value(".why").trim()) found.why = value(".why").trim().slice(0, 1000)
+    return found
+}

@@ -1,0 +1,190 @@
+// A step of a lesson in a column beside the robots, wherever it is played: what it asks is made answerable, and what
+// happened stands beside what was predicted.
+
+import { made } from "../core/dom"
+import type { PageData } from "../core/lesson_data"
+import { said } from "../core/words"
+import { given, type Notes } from "../lessons/notes"
+import type { Student } from "../lessons/student"
+import { ask } from "./asked"
+import { Comparison, elementOf, predict, predictionAt, type Form, type Prediction } from "./predictions"
+
+const SMALLEST = 0.75 // of the size of a formula
+
+/** The robots, as far as a step acts on them. */
+export interface Robots {
+    /** Whether there are any on which the step's script can be played. */
+    readonly ready: boolean
+    readonly playing: boolean
+    play(): void
+    /** Say something to those who do not see the page. */
+    tell(text: string): void
+    /** Perform the actions of a link: its number among those of a text. */
+    act(block: number, link: number): void
+}
+
+/** Where the parts of a step stand. */
+export interface Places {
+    /** The column. */
+    section: HTMLElement
+    /** The place of a chart below the robots. */
+    beneath: HTMLElement
+    /** Whether there is room below the robots to draw on. */
+    isWide(): boolean
+}
+
+export class StepView {
+    /** The form of a prediction that is asked here. */
+    form: Form | null = null
+    private compared: Comparison | null = null
+    private shown = "" // what it compares
+    private played = false // whether the run was on when it was last looked at
+
+    constructor(
+        private readonly page: PageData,
+        readonly index: number,
+        private readonly student: Student,
+        private readonly robots: Robots,
+        private readonly places: Places,
+    ) {
+        const { section } = places
+        section.dataset["kind"] = page.steps[index]!.kind
+        page.steps[index]!.blocks.forEach((_, i) => this.prepare(i))
+        section.querySelector(".play button")?.addEventListener("click", () => robots.play())
+    }
+
+    /** Make a part answerable. */
+    prepare(place: number): void {
+        const { page, index, student, prediction } = this
+        const block = page.steps[index]!.blocks[place]!
+        const element = this.block(place)
+        if (!element) return // for other answers
+        if (block.kind === "text") this.links(element, place, block.links)
+        else if (block.kind === "quiz" || block.kind === "number" || block.kind === "open")
+            ask(page, element, block, `${index}.${place}`, student)
+        else if (prediction?.step === index && prediction.block === place) {
+            const before = this.form
+            before?.board?.remove()
+            this.form = predict(page, prediction, student)
+            if (before) this.place()
+        }
+    }
+
+    /** The element of a part. */
+    block(place: number): HTMLElement | null {
+        return this.places.section.querySelector<HTMLElement>(`[data-block="${place}"]`)
+    }
+
+    private get notes(): Notes { return this.student.notes }
+    /** What is predicted here; what is right is known only after the run. */
+    get prediction(): Prediction | null { return predictionAt(this.page.steps, this.index) }
+    /** Whether a prediction is pending. */
+    get waits(): boolean { return this.prediction !== null && this.notes.answers[String(this.prediction.step)] === undefined }
+    /** Whether its own prediction was committed. */
+    get committed(): boolean { return given(this.notes.answers[String(this.index)]) }
+    /** Whether the step's run has been seen; a run that only the lab can play is seen in its picture. */
+    get happened(): boolean {
+        return Boolean(this.notes.played[String(this.index)]) || !this.page.steps[this.index]!.script
+    }
+
+    /** Put the board into the strip below the robots or, on a narrow page, below its question. */
+    place(): void {
+        const { board } = this.form ?? {}
+        if (!board) return
+        const { beneath } = this.places
+        const asked = elementOf(this.prediction!).querySelector(".committing")!
+        const isWide = this.places.isWide()
+        if (isWide ? board.parentElement === beneath : board.nextElementSibling === asked) return
+        if (isWide) beneath.append(board)
+        else asked.before(board)
+        dispatchEvent(new Event("resize"))
+    }
+
+    /** Shrink formulas that are wider than the column while they can be read; others are scrolled, also by keys. */
+    formulas(): void {
+        for (const formula of this.places.section.querySelectorAll<MathMLElement>("math[display=block]")) {
+            formula.style.fontSize = ""
+            const share = formula.clientWidth / formula.scrollWidth
+            if (share < 1) formula.style.fontSize = `${Math.max(0.98 * share, SMALLEST)}em`
+            formula.tabIndex = formula.scrollWidth > formula.clientWidth ? 0 : -1
+        }
+    }
+
+    /** Show what was committed, and as much of a run as may be seen: nothing before the prediction is made, the text
+     * after it. */
+    run(): void {
+        const { page, index, notes, robots, prediction } = this
+        const { section } = this.places
+        const step = page.steps[index]!
+        this.form?.show()
+        if (step.kind !== "run") return
+        const told = section.querySelector<HTMLElement>(".play")
+        const button = told?.querySelector<HTMLButtonElement>("button:not(.read)")
+        const { waits, happened } = this
+        if (button) {
+            button.disabled = waits || !robots.ready
+            button.hidden = robots.playing
+            button.classList.toggle("main", !notes.played[String(index)])
+            button.textContent = said(page, notes.played[String(index)] ? "lesson.replay" : "lesson.play")
+        }
+        section.querySelector(".before")?.remove()
+        if (waits) (told ?? section.querySelector("h2"))!.after(made("p", "before op-text", said(page, "lesson.predict_before")))
+        told?.querySelectorAll("span").forEach(each => each.remove())
+        if (robots.playing && !section.querySelector(".op-watch")) told?.append(made("span", "", said(page, "lesson.playing")))
+        const read = section.dataset["read"] === "yes"
+        const open = !waits && (happened || read)
+        section.classList.toggle("veiled", !open)
+        if (step.script) section.querySelector(".still")?.classList.toggle("always", open && !robots.ready)
+        section.querySelector(".read")?.remove()
+        if (!open && !waits && !robots.playing) {
+            const reading = made("button", "read", said(page, "lesson.read"))
+            reading.type = "button"
+            reading.addEventListener("click", () => {
+                section.dataset["read"] = "yes"
+                this.run()
+            })
+            told?.append(" ", reading)
+        }
+        this.compare()
+        if (this.played && happened && !robots.playing)
+            robots.tell([said(page, "lesson.happened"), ...this.compared?.words ?? []].join(" "))
+        this.played = robots.playing
+        if (happened && !waits && !robots.playing) this.draw(notes.truths[String(prediction?.step)])
+    }
+
+    /** Draw what is happening, or has happened, beside what was predicted. */
+    draw(truth: Notes["truths"][string] | undefined): void {
+        this.compared?.draw(truth)
+    }
+
+    /** The chart of a run in the strip, or the verdict in the column. */
+    private compare(): void {
+        const { page, prediction, notes, robots } = this
+        const { section, beneath } = this.places
+        const sketched = prediction?.data.kind === "sketch"
+        const due = prediction !== null && !this.waits && (sketched || (this.happened && !robots.playing))
+        const shown = due ? JSON.stringify([notes.answers[String(prediction.step)], page.steps[prediction.step]!.blocks]) : ""
+        if (shown === this.shown) return // an open table stays open
+        this.shown = shown
+        for (const place of [section, beneath]) place.querySelectorAll(".compared").forEach(each => each.remove())
+        this.compared = null
+        if (!due) return
+        this.compared = new Comparison(page, prediction, notes)
+        const box = made("div", "compared", ...this.compared.elements)
+        if (sketched) return beneath.append(box)
+        box.classList.add("op-box")
+        const play = section.querySelector(".play")
+        if (play) play.after(box)
+        else (section.querySelector(".beside") ?? section.querySelector(".words")!).append(box)
+    }
+
+    private links(element: HTMLElement, place: number, links: (unknown[] | null)[]): void {
+        element.querySelectorAll<HTMLButtonElement>("button[data-link]").forEach((button, i) => {
+            if (!links[i]) {
+                button.disabled = true
+                button.append(` (${said(this.page, "site.link_only_lab")})`)
+            }
+            button.addEventListener("click", () => this.robots.act(place, i))
+        })
+    }
+}

@@ -1,0 +1,53 @@
+// A task of a step, which shows how far it is done.
+
+import { made } from "../core/dom"
+import type { PageData, TaskData } from "../core/lesson_data"
+import { general } from "../core/numbers"
+import { localized, said } from "../core/words"
+import type { Verdict } from "../lessons/checks"
+import type { Student } from "../lessons/student"
+
+export class Task {
+    private passedIn = -1 // number of the run
+    private shown = ""
+
+    constructor(
+        private readonly page: PageData,
+        private readonly element: HTMLElement,
+        private readonly data: TaskData,
+        private readonly student: Student,
+        private readonly passed: () => void,
+    ) {
+        for (const hint of element.querySelectorAll<HTMLDetailsElement>("[data-hint]"))
+            hint.addEventListener("toggle", () => {
+                if (hint.open) student.reads(data.id, Number(hint.dataset["hint"]))
+            })
+        this.show([])
+    }
+
+    follow(): void {
+        const before = this.student.notes.tasks[this.data.id]
+        const result = this.student.result(this.data)
+        if (!result) return
+        const passed = result.verdicts.every(verdict => verdict.passed)
+        if (passed || this.passedIn !== result.run) this.show(result.verdicts)
+        if (passed) this.passedIn = result.run
+        if (passed && before === undefined) this.passed()
+    }
+
+    private show(verdicts: Verdict[]): void {
+        const { page, element, data } = this
+        const best = this.student.notes.tasks[data.id]
+        const passed = best === undefined ? "" : data.best ? `: ${localized(general(best, 3), page)}` : " "
+        const way = this.student.notes.ways[data.id] ?? 0
+        const text = JSON.stringify([verdicts, passed, way])
+        if (text === this.shown) return
+        this.shown = text
+        const lines = verdicts.map(verdict => made("li", verdict.passed ? "right" : "", `${verdict.passed ? "✓" : "○"} ${verdict.words}`))
+        if (passed) lines.push(made("li", "right", `✓ ${said(page, "lesson.passed")}${passed.trim()}`))
+        element.querySelector(".verdicts")!.replaceChildren(...lines)
+        const whys = [...element.querySelectorAll<HTMLDetailsElement>(".after")]
+        const told = passed ? whys.find(each => Number(each.dataset["way"]) === way) ?? whys[0] : undefined
+        for (const each of whys) each.hidden = each !== told // closed: its title asks why
+    }
+}

@@ -1,0 +1,219 @@
+// One robot under a law: its state, the forces on it, and its drawing.
+
+import type { SideSample, Vector } from "../core/engine"
+import type { EffortData, SideData, FigureData, LawData, Point } from "../core/figure_data"
+import type { Kernels } from "./kernels"
+import type { Path } from "./path"
+
+export const MOST_TICKS = 128 // in one call of a loop
+
+/** What is kept of an instant: the row of the log that is drawn, and the state from which to go on. */
+export interface Kept {
+    row: Float64Array
+    state: Float64Array
+    law: number
+    ticks: number
+}
+
+export class Side {
+    held = false
+    /** How far its tip is pulled in the picture, from where it was when the pull began; null if it is not. */
+    pulledBy: Point | null = null
+    /** The reason why it has stopped, counted from 1 in `stops` of its law. */
+    stopped = 0
+    /** The first motor that gave more than the robot's file states, and how much. */
+    beyond: { effort: EffortData; gave: number } | null = null
+    ticks = 0
+    distance = 0
+    most = 0 // largest distance since it was held back
+    law = this.data.law
+    private readonly sizes = this.figure.sizes
+    private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
+    private readonly state = this.kernels.room(this.longest)
+    private readonly begun = this.kernels.room(this.longest) // the state at the start
+    readonly settings = this.kernels.room(this.path.data.settings.length)
+    private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
+    private readonly result = this.kernels.room(2 * this.sizes.p + 4)
+    private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
+    private readonly nearest = this.kernels.room(1 + this.sizes.p) // the distance, and the closest point
+    private readonly straight = this.kernels.room(this.sizes.n + this.sizes.p) // a configuration, and its tip
+    private readonly y = this.kernels.room(this.sizes.p)
+    private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
+    private row = this.log // the last one
+    private readonly past = this.kernels.room(this.sizes.log)
+    private looked = false // whether the row of a past instant is shown
+
+    constructor(
+        readonly data: SideData,
+        private readonly figure: FigureData,
+        private readonly kernels: Kernels,
+        private path: Path,
+    ) {
+        this.begin(path)
+    }
+
+    get pulled(): boolean { return this.pulledBy !== null }
+    readonly does = (): LawData => this.figure.laws[this.law]!
+    /** Begin anew on a path, at rest, with the path's settings. */
+    begin(path: Path): void {
+        const { kernels, state } = this
+        this.path = path
+        kernels.numbers.set(path.data.states[this.law]!, state)
+        kernels.numbers.set(path.data.settings, this.settings)
+        if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
+        this.held = this.looked = false
+        this.pulledBy = this.beyond = null
+        this.stopped = this.ticks = this.most = 0
+        this.seeStart()
+    }
+
+    /** Go on from the present state under another law, whose memory is empty. */
+    change(law: number): void {
+        if (law !== this.law) this.call(`change${this.law}to${law}`, this.state, this.state)
+        this.law = law
+        this.kernels.copy(this.state + this.figure.state.theta_ref[0], this.field("theta_ref"), 1)
+    }
+
+    readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
+    /** Advance by some ticks; a robot that stops stays as it was one tick before, as in the lab. */
+    advance(ticks: number): void {
+        if (this.stopped) return
+        const { kernels, state, settings, log, sizes } = this
+        kernels.copy(this.row, log, sizes.log)
+        kernels.loop(this.name(`loop${this.law}`), [state, settings, this.path.table, log + sizes.log], ticks)
+        for (let i = 1; i <= ticks && !this.stopped; i++, this.ticks++) {
+            this.row = log + i * sizes.log
+            this.call("fault", this.field("q"), this.field("v"), this.field("theta_ref"), this.result)
+            if ((this.stopped = kernels.numbers[this.result]!)) this.row -= sizes.log
+            this.beyond ??= this.excess()
+            if (i % 4 === 0 || i === ticks || this.stopped) this.measure()
+        }
+    }
+
+    readonly keep = (): Kept => {
+        const { law, ticks, kernels, state, longest } = this
+        return { row: this.logged(), state: kernels.numbers.slice(state, state + longest), law, ticks }
+    }
+
+    /** Draw a past instant, or the present one. */
+    show(kept: Kept | null): void {
+        this.looked = kept !== null
+        if (kept) this.kernels.numbers.set(kept.row, this.past)
+    }
+
+    /** Go on from a past instant, free, with the settings as they are. */
+    goOn({ row, state, law, ticks }: Kept): void {
+        this.kernels.numbers.set(state, this.state)
+        this.kernels.numbers.set(row, this.log)
+        Object.assign(this, { law, ticks, row: this.log, stopped: 0, looked: false })
+        this.hold(false)
+        this.pull(null)
+        this.measure()
+    }
+
+    /** Hold it back along the path where it is, or let it go. */
+    hold(on: boolean): void {
+        const { settings: places, state } = this.figure
+        if (on) {
+            const tangent = this.settings + places.hold_tangent[0]
+            this.call("tip", this.state + state.q[0], this.y)
+            this.kernels.copy(this.y, this.settings + places.hold_anchor[0], this.sizes.p)
+            this.call("brake", this.path.table, this.y, this.state + state.theta[0], tangent)
+            this.most = this.distance
+        }
+        this.held = on
+        this.set(places.hold_active[0], on ? 1 : 0)
+    }
+
+    /** Pull the tip by a vector in the picture from where it was when the pull began; null: let go. */
+    pull(by: Point | null): void {
+        const { settings: places } = this.figure
+        if (by && !this.pulled) this.kernels.copy(this.field("y"), this.grabbed, this.sizes.p)
+        this.pulledBy = by
+        this.set(places.hand_active[0], by ? 1 : 0)
+        if (!by) return
+        this.kernels.numbers.set([0, 0, ...by], this.result)
+        this.call("hand", this.grabbed, this.result, this.result + 2, this.settings + places.hand_target[0])
+    }
+
+    /** Both ends of each bar, then joints, as x and y in the picture. */
+    picture(): Float64Array {
+        const { bars, joints } = this.sizes
+        this.call("picture", this.seen("q"), this.points, this.points + 4 * bars)
+        return this.kernels.numbers.subarray(this.points, this.points + 4 * bars + 2 * joints)
+    }
+
+    readonly tip = (): Point => this.point("place", this.seen("y"))
+    /** The point that the law aims at. */
+    readonly aim = (): Point => this.aimed(this.does().aim)
+    /** The reference point, even if the law does not aim at it. */
+    readonly reference = (): Point => this.aimed("theta_ref")
+    /** The point of the path that is closest to the end-point. */
+    readonly closest = (): Point => this.aimed("theta")
+    /** The deflection of a flexible link's tip, [m], and the energy in the link, [J]. */
+    readonly measured = (): Point => this.point("measured", this.field("q"), this.field("v"))
+    /** The end of the arrow of the force. */
+    readonly arrow = (): Point => this.point("arrow", this.seen("y"), this.seen("force"))
+    /** How far a bound of the law is reached, from 0 to 1. */
+    readonly share = (name: "far" | "integral_used"): number => this.kernels.numbers[this.field(name)]!
+    /** What the page's parts know of the present instant. */
+    sample(): SideSample {
+        const { sizes, kernels, distance, held, pulled } = this
+        const vector = (place: number): Vector => [...kernels.numbers.subarray(place, place + sizes.p)]
+        const tip = vector(this.field("y")), force = vector(this.field("force")), closest = vector(this.nearest + 1)
+        let reference: Vector | null = null, straight: Vector | null = null
+        if (this.does().aim === "theta_ref") {
+            this.call("at", this.path.table, this.field("theta_ref"), this.y)
+            reference = vector(this.y)
+        }
+        if (sizes.rigid < sizes.n) {
+            const end = this.straight + sizes.n
+            kernels.copy(this.field("q"), this.straight, sizes.rigid)
+            this.call("tip", this.straight, end) // whose modes are zero
+            straight = vector(end)
+        }
+        return { distance, tip, closest, reference, force, straight, held, pulled }
+    }
+
+    /** The last row of the log. */
+    readonly logged = (): Float64Array => this.kernels.numbers.slice(this.row, this.row + this.sizes.log)
+    /** The row before the first tick: the row of a tick that is undone, without torque and force. */
+    private seeStart(): void {
+        const { kernels, figure, state, log } = this
+        kernels.copy(state, this.begun, this.longest)
+        kernels.loop(this.name(`loop${this.law}`), [state, this.settings, this.path.table, log], 1)
+        kernels.copy(this.begun, state, this.longest)
+        this.row = log
+        for (const [from, size] of [figure.log.u, figure.log.force]) kernels.numbers.fill(0, log + from, log + from + size)
+        this.measure()
+    }
+
+    private excess(): Side["beyond"] {
+        const gave = ({ motor }: EffortData) => Math.abs(this.kernels.numbers[this.field("u") + motor]!)
+        const effort = this.figure.efforts.find(each => gave(each) > each.most)
+        return effort ? { effort, gave: gave(effort) } : null
+    }
+
+    private measure(): void {
+        const { table, grid } = this.path
+        this.call("distance", table, grid, this.field("y"), this.field("theta"), this.nearest)
+        this.distance = this.kernels.numbers[this.nearest]!
+        if (this.held) this.most = Math.max(this.most, this.distance)
+    }
+
+    private aimed(at: "theta" | "theta_ref"): Point {
+        this.call("at", this.path.table, this.seen(at), this.y)
+        return this.point("place", this.y)
+    }
+
+    private point(name: string, ...places: number[]): Point {
+        this.call(name, ...places, this.result)
+        return this.kernels.pair(this.result)
+    }
+
+    private readonly seen = (name: keyof FigureData["log"]): number =>
+        (this.looked ? this.past : this.row) + this.figure.log[name][0]
+    private readonly field = (name: keyof FigureData["log"]): number => this.row + this.figure.log[name][0]
+    private readonly call = (name: string, ...places: number[]) => this.kernels.call(this.name(name), ...places)
+    private readonly name = (name: string): string => `${name}.${this.path.data.kind}`
+}

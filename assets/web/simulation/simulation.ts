@@ -1,0 +1,144 @@
+// The simulated figure: sides on a path, time, and the reader's actions. It does not depend on a page.
+
+import type { Change, Sample } from "../core/engine"
+import type { FigureData, Point } from "../core/figure_data"
+import { said } from "../core/words"
+import type { Kernels } from "./kernels"
+import { Path } from "./path"
+import { Poles } from "./poles"
+import { Side, MOST_TICKS, type Kept } from "./side"
+
+const MINUTE = 60 // [s], kept in memory
+const PERIOD = 1 / 60 // [s], between two moments, however seldom a picture is drawn
+
+/** A sample, with what is needed to draw it, and to go on from it. */
+export interface Moment extends Sample {
+    ticks: number
+    tips: Point[] // in the picture
+    robots: Kept[]
+}
+
+export class Simulation {
+    ticks = 0
+    held = false
+    path = 0
+    /** The control point that keys move. */
+    selected: number | null = null
+    readonly paths = this.data.paths.map(path => new Path(path, this.data, this.kernels))
+    readonly sides = this.data.sides.map(each => new Side(each, this.data, this.kernels, this.paths[0]!))
+    readonly values = this.data.sliders.map(slider => slider.value)
+    private readonly poles = new Poles(this.data, this.kernels)
+    private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
+    /** Called at each change. */
+    changed: (change: Change) => void = () => {}
+    /** The last minute of this run. */
+    recent: Moment[] = [this.moment()]
+
+    constructor(readonly data: FigureData, private readonly kernels: Kernels) {}
+
+    /** Simulated time, [s]. */
+    get time(): number { return this.ticks * this.data.dt }
+    get followed(): Path { return this.paths[this.path]! }
+
+    /** The name of a robot: its law, and its side if both have the same law. */
+    title(side: number): string {
+        const law = this.sides[side]!.does().title
+        const alike = this.sides.filter(each => each.does().title === law).length > 1
+        return alike ? said(this.data, "side.title", { law, side: this.sideName(side) }) : law
+    }
+
+    readonly sideName = (side: number): string => said(this.data, side ? "side.right" : "side.left")
+    /** The lines about the poles, if a law has them. */
+    lines(): string[] {
+        const side = this.data.controls.includes("poles") && this.sides.find(each => each.does().linear)
+        return side ? this.poles.lines(side.settings) : []
+    }
+
+    /** The present moment. */
+    moment(): Moment {
+        const { time, ticks, sides } = this
+        return {
+            time,
+            ticks,
+            sides: sides.map(side => side.sample()),
+            tips: sides.map(side => side.tip()),
+            robots: sides.map(side => side.keep()),
+        }
+    }
+
+    advance(ticks: number): void {
+        const { period } = this
+        if (this.followed.advance(ticks * this.data.dt)) this.changed("path")
+        for (let left = ticks; left > 0; ) {
+            const part = Math.min(left, period - (this.ticks % period))
+            for (const side of this.sides) side.advance(part)
+            this.ticks += part
+            left -= part
+            if (this.ticks % period === 0) this.remember()
+        }
+        this.changed("samples")
+    }
+
+    private remember(): void {
+        this.recent.push(this.moment())
+        while (this.recent[0]!.time < this.time - MINUTE) this.recent.shift()
+    }
+
+    /** Go on from a moment; what came after it is forgotten. */
+    goOn(moment: Moment): void {
+        this.ticks = moment.ticks
+        this.held = false
+        this.sides.forEach((side, i) => side.goOn(moment.robots[i]!))
+        this.recent.splice(this.recent.indexOf(moment) + 1)
+        this.changed("history")
+    }
+
+    /** Hold back one robot, or all. */
+    hold(on: boolean, only?: number): void {
+        if (only === undefined) {
+            if (on === this.held) return
+            this.held = on
+        }
+        for (const side of this.meant(only)) side.hold(on)
+        this.changed("state")
+    }
+
+    /** Pull the tip of one robot, or all tips, by a vector in the picture; null: let go. */
+    pull(by: Point | null, only?: number): void {
+        for (const side of this.meant(only)) side.pull(by)
+        this.changed("state")
+    }
+
+    private readonly meant = (only?: number): Side[] => (only === undefined ? this.sides : [this.sides[only]!])
+
+    /** Begin anew, with the values of the sliders. */
+    reset(): void {
+        this.ticks = 0
+        this.held = false
+        this.followed.settle()
+        for (const side of this.sides) side.begin(this.followed)
+        this.values.forEach((value, i) => this.set(i, value))
+        this.recent = [this.moment()]
+        this.changed("path")
+        this.changed("history")
+    }
+
+    /** Begin anew on another path. */
+    choose(path: number): void {
+        this.select(null)
+        this.path = path
+        this.reset()
+    }
+
+    select(point: number | null): void {
+        this.selected = point
+        this.followed.fault = null
+    }
+
+    /** Set a slider's value in the loops. */
+    set(slider: number, value: number): void {
+        this.values[slider] = value
+        const { place } = this.data.sliders[slider]!
+        if (place >= 0) for (const side of this.sides) side.set(place, value)
+    }
+}
