@@ -101,6 +101,7 @@ class Serve:
 
         from onpath.app.classroom.class_opening import given_keys, open_classes
         from onpath.app.server.lab_server import serve
+        from onpath.app.server.server_options import ServerOptions
         from onpath.app.storage.database_url import database_url
         from onpath.app.storage.engine import NotKept
         from onpath.app.storage.expiry import Retention
@@ -115,20 +116,22 @@ class Serve:
                 self.port,
                 self.lessons,
                 database_url(self.database),
-                robot=entry,
                 open_browser=self.open and self.socket is None,
-                classrooms=classrooms,
                 ready=partial(print_classes, classrooms, key_is_known=bool(keys)),
-                most_clients=self.most_clients,
-                retention=Retention(self.keep_days, self.most_labs),
-                hang_seconds=self.hang_seconds,
-                privacy_url=self.privacy_url,
-                path=self._path(entry),
-                law=law,
-                course_url=self.course_url,
-                allowed_origins=self.origin,
-                trusted_proxies=self.trusted_proxy,
-                unix_socket=self.socket,
+                options=ServerOptions(
+                    robot=entry,
+                    path=self._path(entry),
+                    law=law,
+                    classrooms=classrooms,
+                    most_clients=self.most_clients,
+                    retention=Retention(self.keep_days, self.most_labs),
+                    hang_seconds=self.hang_seconds,
+                    privacy_url=self.privacy_url,
+                    course_url=self.course_url,
+                    allowed_origins=self.origin,
+                    trusted_proxies=self.trusted_proxy,
+                    unix_socket=self.socket,
+                ),
             )
         except NotKept as error:
             print(f"onpath: {error}", file=sys.stderr)

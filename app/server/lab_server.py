@@ -6,11 +6,11 @@ import logging
 import signal
 import time
 import webbrowser
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import suppress
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import viser
 
@@ -41,13 +41,14 @@ from onpath.app.server.lab_registry import LabRegistry, RegisteredLab
 from onpath.app.server.new_lab import new_lab
 from onpath.app.server.page_data import PageData
 from onpath.app.server.robot_shapes import prepare_shapes
+from onpath.app.server.server_options import USUAL, ServerOptions
 from onpath.app.server.site_address import reachable_site, site_for_students
 from onpath.app.server.tab_visibility import TabVisibilities
 from onpath.app.server.warm_up import compile_loops, warm_up
 from onpath.app.server.watchdog import Watchdog, signs_of_life
 from onpath.app.simulation.metrics import metrics_json
 from onpath.app.simulation.simulation_thread import SimulationThread
-from onpath.app.storage.expiry import Expiry, Retention
+from onpath.app.storage.expiry import Expiry
 from onpath.app.storage.lease_keeper import LeaseKeeper
 from onpath.app.storage.records import NotKept, Records
 from onpath.app.storage.write_behind import WriteBehind
@@ -55,13 +56,10 @@ from onpath.app.viser_adapter.addresses import class_address, storage_key
 from onpath.app.viser_adapter.connections import disconnect, turn_away
 from onpath.app.viser_adapter.data_channel import DataChannel
 from onpath.app.viser_adapter.local_storage import ask_item
-from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.page_release import clear_page, release_page
 from onpath.app.viser_adapter.secure_server import make_server
-from onpath.lessons.course import Course, read_course
+from onpath.lessons.course import read_course
 from onpath.lessons.problems import LessonError
-from onpath.models.paths.path_design import PathDesign
-from onpath.models.systems.catalogue import FIVE_BAR, RobotEntry
 
 log = logging.getLogger(__name__)
 SITE_KEY = "site"  # where the browser has opened the site; see assets/page/address.js
@@ -75,7 +73,6 @@ ASKED = {  # see `Arrivals`
     QUALITY_KEY: False,
     SITE_KEY: False,
 }
-MOST_CLIENTS = 64
 LOOK = 0.5  # [s] between looks for a signal
 FREEING = 10.0  # [s] between looks for labs that were left
 
@@ -86,16 +83,6 @@ class LabServer:
     Args:
         host, port: where to listen; port 0 takes a free one.
         loop_cache: compiles and keeps the loops.
-        course: the lessons; the built-in ones if None.
-        records: where labs are stored; None stores nothing.
-        classrooms: the classes that students may join.
-        most_clients: maximum number of clients; others wait. A teacher is always admitted.
-        retention: how long labs are kept, and how many; defaults to that of the command line.
-        hang_seconds: see `Watchdog`; 0 for no watchdog.
-        privacy_url: the address of the site's privacy notice, if it has one.
-        robot: with which a new lab begins.
-        path, law: those of new labs; see `new_lab`.
-        listening: further arguments of `make_server`.
 
     Raises:
         OSError: the address is not available; the message says why and what to do.
@@ -106,26 +93,13 @@ class LabServer:
         host: str,
         port: int,
         loop_cache: LoopCache,
-        course: Course | None = None,
-        records: Records | None = None,
-        classrooms: Sequence[Classroom] = (),
-        most_clients: int = MOST_CLIENTS,
-        retention: Retention | None = None,
-        hang_seconds: float = 0.0,
-        privacy_url: str = "",
-        robot: RobotEntry = FIVE_BAR,
-        path: PathDesign | None = None,
-        law: str = "",
-        **listening: Any,
+        options: ServerOptions = USUAL,
     ) -> None:
-        listening.setdefault("limits", Limits(max_upload_bytes=path_upload.MOST_BYTES))
-        self._host, self._loop_cache, self._privacy_url = host, loop_cache, privacy_url
-        self._socket: Path | None = listening.get("unix_socket")
-        self._origins: Sequence[str] = listening.get("allowed_origins", ())
-        self._room = AdmissionQueue(most_clients)
-        self._course = lessons = course or built_in_course()
+        self._host, self._loop_cache, self._options = host, loop_cache, options
+        self._room = AdmissionQueue(options.most_clients)
+        self._course = lessons = options.course or built_in_course()
         self.thread = SimulationThread()
-        self._watchdog, self._leases = Watchdog(hang_seconds), None  # see `_start`
+        self._watchdog, self._leases = Watchdog(options.hang_seconds), None  # see `_start`
         self._channel = DataChannel()
         self.server = make_server(
             host,
@@ -136,17 +110,21 @@ class LabServer:
             health=partial(metrics_json, self.thread),
             trouble=lambda: self._watchdog.trouble,
             elsewhere=self._is_elsewhere,
-            **listening,
+            limits=options.limits,
+            allowed_origins=options.allowed_origins,
+            trusted_proxies=options.trusted_proxies,
+            unix_socket=options.unix_socket,
+            course_url=options.course_url,
         )
-        self._records, self._retention = records, retention or Retention()
+        robot, records = options.robot, options.records
         self.registry = LabRegistry(
-            self.thread, lambda: new_lab(loop_cache, lessons, robot, path, law)
+            self.thread, lambda: new_lab(loop_cache, lessons, robot, options.path, options.law)
         )
         self._memory = Periodic("memory", FREEING, self.registry.free_memory)
         self._keeper = self._expiry = None
         if records is not None:
             self._store_labs(records)
-        self._classes = ClassDirectory(classrooms, self._class_service)
+        self._classes = ClassDirectory(options.classrooms, self._class_service)
         self._prefixes = dict[int, str]()
         self._feeds = dict[int, LabFeed]()
         self._seen = dict[int, str]()  # where clients have opened the site
@@ -160,7 +138,7 @@ class LabServer:
 
     def _store_labs(self, records: Records) -> None:
         self._keeper = WriteBehind(records, lost=self._lost)
-        self._expiry = Expiry(records, self._retention, self.registry.held)
+        self._expiry = Expiry(records, self._options.retention, self.registry.held)
         registry = self.registry
         registry.load, registry.is_current = records.claim, records.is_current
         registry.keeper, registry.give_up = self._keeper, records.give_up
@@ -170,9 +148,9 @@ class LabServer:
         self._memory.start()
         if self._expiry is not None:
             self._expiry.start()
-        if self._records is not None:
+        if self._options.records is not None:
             stored = self._classes.all_stored()
-            self._leases = LeaseKeeper(self._records, self._open_here, stored, self._lost)
+            self._leases = LeaseKeeper(self._options.records, self._open_here, stored, self._lost)
             self._leases.look()
             self._leases.rounds.start()
         self._watchdog.start(signs_of_life(self.thread, self.server.get_event_loop()))
@@ -180,8 +158,8 @@ class LabServer:
     @property
     def address(self) -> str:
         """URL to open in a browser; the file of a Unix socket, which only a proxy can open."""
-        if self._socket is not None:
-            return str(self._socket)
+        if self._options.unix_socket is not None:
+            return str(self._options.unix_socket)
         host = self._host
         shown = {"127.0.0.1": "localhost", "0.0.0.0": "localhost", "::": "::1"}.get(host, host)
         shown = f"[{shown}]" if ":" in shown else shown
@@ -190,9 +168,9 @@ class LabServer:
     @property
     def site(self) -> str:
         """The address at which other devices open the lab, as far as the server knows."""
-        if self._origins:
-            return self._origins[0]
-        if self._socket is not None:
+        if self._options.allowed_origins:
+            return self._options.allowed_origins[0]
+        if self._options.unix_socket is not None:
             return ""
         return reachable_site(self._host, self.server.get_port())
 
@@ -216,8 +194,8 @@ class LabServer:
         self._classes.stop()
         if self._leases is not None:
             self._leases.stop()
-        if self._records is not None:
-            self._records.close()
+        if self._options.records is not None:
+            self._options.records.close()
 
     def _class_service(self, classroom: Classroom, prefix: str) -> ClassService:
         return ClassService(
@@ -225,7 +203,7 @@ class LabServer:
             registry=self.registry,
             prefix=prefix,
             course=self._course,
-            records=self._records,
+            records=self._options.records,
             keeper=self._keeper,
             lost=self._send_away,
         )
@@ -306,19 +284,19 @@ class LabServer:
         )
         site = site_for_students(self._seen.get(number, ""), self.site)
         teaching = service.teaching(client, lab, reopen, site) if service else None
-        keeps = self._records is not None and not self._records.warning
+        keeps = self._options.records is not None and not self._options.records.warning
         data = PageData(self._channel, lab)
         dark, plain = self._looks.get(number, (False, False))
         context = PageContext(
             code=code,
             post=lab.post,
             course=self._course,
-            keep_days=self._retention.days if keeps else 0,
+            keep_days=self._options.retention.days if keeps else 0,
             enter=partial(self._enter, client),
             seat=seat,
             dark=dark,
             plain=plain,
-            privacy_url=self._privacy_url,
+            privacy_url=self._options.privacy_url,
             ticket=data.ticket,
         )
         nickname = partial(service.nickname, code) if service else str
@@ -341,7 +319,7 @@ class LabServer:
     def _lost(self, code: str) -> None:
         """Send away the client of a lab that another process has."""
         with suppress(NotKept):
-            if self._records is not None and self._records.is_current(code):
+            if self._options.records is not None and self._options.records.is_current(code):
                 return  # it has come back meanwhile
         number = self.registry.lose(code)
         if number is not None:
@@ -387,10 +365,8 @@ def serve(
     lessons: Path | None = None,
     database: str | None = None,
     open_browser: bool = False,
-    classrooms: Sequence[Classroom] = (),
-    robot: RobotEntry = FIVE_BAR,
     ready: Callable[[str], None] = lambda _: None,
-    **listening: Any,
+    options: ServerOptions = USUAL,
 ) -> None:
     """Serve the lab until one of `END_SIGNALS`, such as Ctrl-C.
 
@@ -398,9 +374,9 @@ def serve(
         lessons: folder of the user's own lessons.
         database: URL of the database of labs; defaults to a file of the user's. If it is given, or
             if the server is behind a proxy, it must be usable; otherwise memory may replace it.
-        classrooms, robot: see `LabServer`. Loops of a robot from a file are compiled first.
         ready: called when browsers may come, with the address at which other devices open the lab.
-        listening: further arguments of `LabServer`.
+        options: all others; `course` and `records` follow from the arguments above. Loops of a
+            robot from a file are compiled first.
 
     Raises:
         LessonError: a lesson has errors.
@@ -410,24 +386,15 @@ def serve(
     course, problems = read_course([lessons] if lessons else [], built_in_course())
     if problems:
         raise LessonError(problems)
-    in_public = listening.get("allowed_origins") or listening.get("trusted_proxies")
+    in_public = options.allowed_origins or options.trusted_proxies
     records = Records(database, needed=bool(database or in_public))
     if records.warning:
         log.warning("%s", records.warning)
     loop_cache = LoopCache()
-    if robot.source is not None:
-        compile_loops(loop_cache, robot)
-        prepare_shapes(robot.source.chain)
-    lab = LabServer(
-        host,
-        port,
-        loop_cache=loop_cache,
-        course=course,
-        records=records,
-        classrooms=classrooms,
-        robot=robot,
-        **listening,
-    )
+    if options.robot.source is not None:
+        compile_loops(loop_cache, options.robot)
+        prepare_shapes(options.robot.source.chain)
+    lab = LabServer(host, port, loop_cache, replace(options, course=course, records=records))
     try:
         for number in END_SIGNALS:
             signal.signal(number, _end)
@@ -435,7 +402,7 @@ def serve(
         log.info("OnPath is ready at %s  (Ctrl-C stops it)", lab.address)
         ready(lab.site)
         if open_browser:
-            first = class_address(classrooms[0].code) if classrooms else ""
+            first = class_address(options.classrooms[0].code) if options.classrooms else ""
             webbrowser.open(f"{lab.address}{first}")
         while True:  # a signal may go to another thread and then does not wake this one
             time.sleep(LOOK)

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.models.closed_loop.simulation import (
     FREE,
     Push,
@@ -98,7 +99,7 @@ def test_a_crowd_that_is_not_served_says_so() -> None:
         async with aclosing(crowd(port, 2, 1.0, patience)) as seen:
             await anext(seen)
 
-    server = LabServer("127.0.0.1", 0, LoopCache(), most_clients=1)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(most_clients=1))
     try:
         with pytest.raises(NotServed, match=r"only 1 of 2 clients .* moving robots in 3 s"):
             asyncio.run(settle(server.server.get_port(), 3.0))

@@ -20,6 +20,7 @@ from playwright.sync_api import Browser
 from onpath.app.lab.commands import SetLanguage
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from tests.support.browser import COARSER, Tab, wait_for
 from tests.support.checkout import ROOT
 from tests.support.free_lab import fresh
@@ -222,7 +223,7 @@ def test_the_lab_in_a_folder_as_the_readme_says_with_tls(
 ) -> None:
     (port,) = free_ports(1)
     site = f"https://localhost:{port}"
-    server = LabServer("127.0.0.1", 0, LoopCache(), allowed_origins=(site,))
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(allowed_origins=(site,)))
     location = SUPPLIED.replace("$http_host", host).replace("8080", str(server.server.get_port()))
     listens = f"127.0.0.1:{port} {TLS.format(certificate(tmp_path))}"
     with nginx(tmp_path, port, f"server {{ listen {listens}; {location} }}"):

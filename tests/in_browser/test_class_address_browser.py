@@ -14,6 +14,7 @@ from playwright.sync_api import Browser
 from onpath.app.classroom.class_opening import open_classes
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from tests.support.browser import Tab
 
 pytestmark = pytest.mark.thorough
@@ -23,7 +24,7 @@ ROOMS = open_classes(["k7mf2xqa9tzr", "bn4ws8cd3vyp"])
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=ROOMS)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=ROOMS))
     yield server
     server.stop()
 

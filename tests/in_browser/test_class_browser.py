@@ -22,6 +22,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.teacher_page import TeacherPage
 from onpath.app.server.lab_feed import LabFeed
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from onpath.lessons.schema import Choice
 from tests.support.axe import violations
@@ -64,7 +65,7 @@ class InLecture(LabServer):
 def tabs(browser: Browser) -> Iterator[Class]:
     room = Classroom()
     loop_cache = LoopCache()
-    server = InLecture("127.0.0.1", 0, loop_cache, classrooms=[room])
+    server = InLecture("127.0.0.1", 0, loop_cache, ServerOptions(classrooms=[room]))
     made: list[Tab] = []
     for width, height in WINDOWS:
         context = browser.new_context(viewport={"width": width, "height": height})

@@ -20,6 +20,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.addresses import class_address
 from tests.support.axe import violations
 from tests.support.browser import THREE_FRAMES, Tab, wait_for
@@ -168,7 +169,7 @@ def test_every_step_of_a_dark_lesson_can_be_read(
 
 def test_a_dark_teachers_page_can_be_read(browser: Browser) -> None:
     room = Classroom()
-    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[room])
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
     tab = visit(browser, server, path=class_address(room.code))
     tab.open("Teacher…")
     tab.field("Teacher's key").fill(shown(room.key))

@@ -16,6 +16,7 @@ from onpath.app.exports.site.write_site import write_site
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons import formulas
 from onpath.lessons.course import Course, read_course
 from tests.support.browser import Tab
@@ -66,7 +67,7 @@ def course(home: Path, monkeypatch: pytest.MonkeyPatch) -> Course:
 
 @pytest.fixture
 def tab(browser: Browser, course: Course) -> Iterator[Tab]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), course)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=course))
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     yield Tab(server, context, draws=False)
     context.close()

@@ -15,6 +15,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.models.control.sides import SIDES
 from tests.support.browser import WAIT, Tab, wait_for
 
@@ -169,7 +170,7 @@ def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting:
 
 
 def test_a_teachers_key_is_not_shown_while_it_is_typed(browser: Browser) -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[Classroom()])
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[Classroom()]))
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     tab = Tab(server, context, draws=False)
     tab.open("Teacher…")

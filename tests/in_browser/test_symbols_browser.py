@@ -20,6 +20,7 @@ from onpath.app.lab.snapshots.take_snapshot import take_motion
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.course import read_course
 from onpath.lessons.symbols import SYMBOLS
 from onpath.models.arrays import Array
@@ -72,7 +73,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
     write_lesson(home, text, name=NAME)
     course, problems = read_course([home])
     assert problems == []
-    server = LabServer("127.0.0.1", 0, LoopCache(), course)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=course))
     yield server
     server.stop()
 

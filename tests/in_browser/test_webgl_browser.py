@@ -16,6 +16,7 @@ from playwright.sync_api import Browser, expect
 from onpath.app.lab import commands as c
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from tests.support.browser import CHROMIUM, COARSER, PLAIN, WAIT, Tab, wait_for
 from tests.support.free_lab import fresh
 
@@ -66,7 +67,7 @@ def test_a_lost_picture_is_reported_and_comes_back_with_the_lab(
 
 @pytest.fixture(scope="module")
 def with_course() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), course_url=COURSE)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course_url=COURSE))
     yield server
     server.stop()
 

@@ -11,6 +11,7 @@ import pytest
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.steps.step_html import step_html
 from onpath.assets.messages import languages
 from onpath.lessons.course import read_course
@@ -42,7 +43,9 @@ def test_every_lesson_says_it_and_keeps_the_teachers_part(language: str) -> None
 def test_a_student_reads_it_on_the_first_page_only(tmp_path: Path) -> None:
     lines = "\n".join(f'{name} = "{text}"' for name, text in TEXTS.items())
     write_lesson(tmp_path, LESSON.replace(SUMMARY, f"{SUMMARY}\n{lines}"))
-    server = LabServer("127.0.0.1", 0, LoopCache(), read_course([tmp_path])[0])
+    server = LabServer(
+        "127.0.0.1", 0, LoopCache(), ServerOptions(course=read_course([tmp_path])[0])
+    )
     try:
         with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()

@@ -10,6 +10,7 @@ import pytest
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE, questions
 from onpath.lessons.option_order import option_order
 from onpath.lessons.words import ENGLISH
@@ -24,7 +25,7 @@ TEST = COURSE.lesson(BEFORE, "en")
 
 @pytest.fixture(scope="module")
 def server() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), COURSE)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=COURSE))
     yield server
     server.stop()
 

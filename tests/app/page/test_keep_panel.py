@@ -10,6 +10,7 @@ import pytest
 from onpath.app.exports.exporter import Exporter
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.storage.expiry import Retention
 from onpath.app.storage.records import Records, file_url
 from onpath.lessons.words import ENGLISH
@@ -20,7 +21,9 @@ from tests.support.student import Student
 def student(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Student]:
     """In a lab that has a code for its user, or none."""
     records = Records(file_url(tmp_path / "labs.db")) if request.param == "kept" else None
-    server = LabServer("127.0.0.1", 0, LoopCache(), records=records, retention=Retention(30))
+    server = LabServer(
+        "127.0.0.1", 0, LoopCache(), ServerOptions(records=records, retention=Retention(30))
+    )
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         yield student

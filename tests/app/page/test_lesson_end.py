@@ -14,6 +14,7 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.course import read_course
 from onpath.lessons.progress import Answer, Truth
 from tests.support.lab import do, loop_cache, new_lab
@@ -46,7 +47,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
         write_lesson(folder, WITH_POINT, name=name)
     course, problems = read_course([folder])
     assert problems == []
-    server = LabServer("127.0.0.1", 0, LoopCache(), course)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=course))
     with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
         student.open()
         student.read(lambda: student.code)

@@ -13,6 +13,7 @@ from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.option_order import LETTERS, option_order
 from onpath.lessons.schema import Choice, Quiz
@@ -37,7 +38,7 @@ def course(tmp_path_factory: pytest.TempPathFactory) -> Course:
 
 @pytest.fixture(scope="module")
 def server(course: Course) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), course)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=course))
     yield server
     server.stop()
 

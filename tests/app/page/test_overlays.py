@@ -29,6 +29,7 @@ from onpath.app.scene.robot_labels import RobotLabels
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tube_nodes import drawn_curve, tube_shape
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.images import add_png, png_of
 from onpath.lessons.action_schema import SceneMark
 from onpath.lessons.words import ENGLISH
@@ -323,7 +324,7 @@ def test_numbers_stand_beside_the_colours_and_the_lines() -> None:
 
 @pytest.fixture
 def lessons() -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), built_in_course()[0])
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=built_in_course()[0]))
     yield server
     server.stop()
 

@@ -11,6 +11,7 @@ from onpath.app.classroom.class_state import push_data, read_push
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.lessons.words import ENGLISH
 from tests.lessons.test_routes import written
 from tests.support import waiting
@@ -21,7 +22,7 @@ wait_for = partial(waiting.wait_for, seconds=30.0)  # only ends a test that woul
 
 @pytest.mark.thorough
 def test_a_student_follows_a_route_from_the_list_to_its_end(tmp_path: Path) -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), written(tmp_path))
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(course=written(tmp_path)))
     try:
         with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()

@@ -12,6 +12,7 @@ from onpath.app.classroom.class_opening import open_classes
 from onpath.app.common.access_codes import shown
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.storage.records import Records, file_url
 from tests.support.student import Student
 from tests.support.waiting import wait_for
@@ -29,10 +30,8 @@ def file(tmp_path: Path) -> Path:
 @pytest.fixture
 def server(file: Path) -> Iterator[LabServer]:
     rooms = open_classes(KEYS)
-    made = LabServer(
-        "127.0.0.1", 0, LoopCache(), records=Records(file_url(file)), classrooms=rooms,
-        privacy_url=PRIVACY,
-    )  # fmt: skip
+    options = ServerOptions(records=Records(file_url(file)), classrooms=rooms, privacy_url=PRIVACY)
+    made = LabServer("127.0.0.1", 0, LoopCache(), options)
     yield made
     made.stop()
 

@@ -36,6 +36,7 @@ from websockets.typing import Subprotocol
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.build_queue import in_turn
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.frame_length import FRAME
 from onpath.app.viser_adapter.frame_channel import MOST_UNSENT
 from onpath.app.viser_adapter.secure_server import Limits, make_server
@@ -448,7 +449,7 @@ def test_800_connections_in_a_row(server: LabServer, witness: Witness, quiet_log
 
 
 def test_beyond_capacity_a_newcomer_is_told_to_wait_and_gets_the_first_free_place() -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), most_clients=2)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(most_clients=2))
     try:
         inside = Witness(server.server.get_port())
         leaving = Guest(server)

@@ -17,6 +17,7 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.secure_connection import FROM_BROWSER
 from onpath.app.viser_adapter.secure_server import Limits
 from onpath.lessons.words import ENGLISH
@@ -69,7 +70,7 @@ class Tab:
 
 @pytest.fixture
 def tab() -> Iterator[Tab]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), limits=WIDE)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(limits=WIDE))
     with Student(f"ws://127.0.0.1:{server.server.get_port()}") as student:
         student.open()
         student.read(lambda: student.moving > 3 and student.has_widget("K2"))

@@ -13,6 +13,7 @@ from onpath.app.classroom.classroom import Classroom
 from onpath.app.common.access_codes import shown
 from onpath.app.lab.commands import SetLanguage
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.assets.messages import languages, preferred
 from onpath.lessons.words import ENGLISH, Words
 from tests.support.lab import loop_cache
@@ -63,7 +64,7 @@ def test_a_new_lab_speaks_the_language_of_its_browser(server: LabServer) -> None
 
 def test_the_teachers_page_follows_the_teachers_language_whoever_is_shown() -> None:
     room, german = Classroom(), Words("de")
-    server = LabServer("127.0.0.1", 0, loop_cache(), classrooms=[room])
+    server = LabServer("127.0.0.1", 0, loop_cache(), ServerOptions(classrooms=[room]))
     address = f"ws://127.0.0.1:{server.server.get_port()}/c/{room.code}"
     with Student(address) as student, Student(address) as teacher:
         student.open()

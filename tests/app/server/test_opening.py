@@ -17,6 +17,7 @@ from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.page.panels.slow_presses import on_slow_press
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage.lab_state import LabState
 from onpath.app.storage.records import Records, file_url
@@ -213,7 +214,7 @@ def test_presses_while_one_is_under_way_are_dropped() -> None:
 def test_a_tab_that_presses_for_ever_is_one_of_many(tmp_path: Path) -> None:
     records = Records(file_url(tmp_path / "labs.db"))
     own = LoopCache()  # ends with the server
-    server = LabServer("127.0.0.1", 0, own, records=records, limits=WIDE)
+    server = LabServer("127.0.0.1", 0, own, ServerOptions(records=records, limits=WIDE))
     gate, loads = Gate(), []
 
     def load(code: str) -> None:

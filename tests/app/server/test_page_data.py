@@ -17,6 +17,7 @@ from websockets.typing import Subprotocol
 from onpath.app.classroom.classroom import Classroom
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from tests.support import waiting
 from tests.support.student import Student
@@ -32,7 +33,7 @@ def room() -> Classroom:
 
 @pytest.fixture(scope="module")
 def server(room: Classroom) -> Iterator[LabServer]:
-    server = LabServer("127.0.0.1", 0, LoopCache(), classrooms=[room])
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(classrooms=[room]))
     yield server
     server.stop()
 

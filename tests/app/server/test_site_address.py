@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.server.site_address import is_local, reachable_site, site_for_students
 
 SERVED = "http://192.0.2.7:8080"
@@ -85,7 +86,7 @@ def test_any_text_of_a_browser_is_an_address_or_left_out(seen: str) -> None:
 
 def test_behind_a_proxy_the_site_is_the_proxys() -> None:
     origins = ("https://lab.example.org", "https://other.example.org")
-    server = LabServer("127.0.0.1", 0, LoopCache(), allowed_origins=origins)
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(allowed_origins=origins))
     try:
         assert server.site == origins[0]
     finally:

@@ -19,6 +19,7 @@ from onpath.app.cli.main import INTERRUPTED, run_command
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.server import lab_server
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.storage import records
 from onpath.app.storage.database_url import DATABASE
 from onpath.app.storage.records import Records, file_url
@@ -148,7 +149,9 @@ def test_the_address_that_is_printed_can_be_opened(host: str) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no Unix sockets")
 def test_the_socket_is_printed_by_its_name(tmp_path: Path) -> None:
-    server = LabServer("127.0.0.1", 0, LoopCache(), unix_socket=tmp_path / "lab.sock")
+    server = LabServer(
+        "127.0.0.1", 0, LoopCache(), ServerOptions(unix_socket=tmp_path / "lab.sock")
+    )
     try:
         assert server.address == str(tmp_path / "lab.sock")
     finally:

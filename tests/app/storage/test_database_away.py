@@ -23,6 +23,7 @@ from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.server.lab_registry import LabRegistry
 from onpath.app.server.lab_server import LabServer
+from onpath.app.server.server_options import ServerOptions
 from onpath.app.simulation.simulation_thread import SimulationThread
 from onpath.app.storage import records as database
 from onpath.app.storage.engine import TRANSACTION_WAIT
@@ -210,7 +211,7 @@ def test_a_server_that_could_not_open_its_file_says_so_on_every_page(tmp_path: P
 @pytest.mark.thorough
 def test_a_browser_shows_it(tmp_path: Path, impatient: None) -> None:
     file = tmp_path / "labs.db"
-    server = LabServer("127.0.0.1", 0, LoopCache(), records=Records(file_url(file)))
+    server = LabServer("127.0.0.1", 0, LoopCache(), ServerOptions(records=Records(file_url(file))))
     try:
         with Student(f"ws://127.0.0.1:{server.server.get_port()}", channel=True) as student:
             student.open()
