@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import msgspec
-
+from onpath.app.channel.messages import encoded
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
 from onpath.app.page.background import Submit
 from onpath.app.page.lesson_message import lesson_message, measured
@@ -15,7 +14,7 @@ EVERY = 3  # snapshots between two messages while a demonstration draws its curv
 
 
 class LessonColumn:
-    """Makes the messages when the lessons have changed; see app/viser_adapter/README.md.
+    """Makes the messages when the lessons have changed.
 
     Args:
         student: code of the lab; decides the order of options, see `option_order`.
@@ -53,7 +52,7 @@ class LessonColumn:
             self._submit(lambda: self._tell(run))
         self._turn += 1
         if run.lesson is not None and not (run.playing and self._turn % EVERY):
-            self.measured = msgspec.json.encode(measured(run))
+            self.measured = encoded(measured(run))
 
     def _tell(self, run: LessonView) -> None:
-        self.message = msgspec.json.encode(lesson_message(run, self._robot), enc_hook=str)
+        self.message = encoded(lesson_message(run, self._robot))

@@ -1,6 +1,6 @@
 """The open step of a lesson, or its end, as the page's data channel tells it: HTML and data.
 
-See app/viser_adapter/README.md, and assets/web/parts/column.ts, which shows it beside the robots.
+assets/web/parts/column.ts shows it beside the robots.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from typing import Any
 
 import msgspec
 
+from onpath.app.channel.messages import LessonMessage, MeasuredMessage
 from onpath.app.common.templates import part_of_page
 from onpath.app.page.lesson_end import end_html, ended_charts
 from onpath.app.page.lesson_html import route_line
@@ -37,7 +38,7 @@ END = "end"
 """Name of the section that stands for the end of a lesson."""
 
 
-def lesson_message(run: LessonView, robot: Robot) -> dict[str, Any]:
+def lesson_message(run: LessonView, robot: Robot) -> LessonMessage:
     """The message; without a lesson, it says so.
 
     Args:
@@ -45,34 +46,29 @@ def lesson_message(run: LessonView, robot: Robot) -> dict[str, Any]:
     """
     lesson = run.lesson
     if lesson is None:
-        return {"is": "lesson", "lesson": "", "version": run.version}
-    message = {
-        "is": "lesson",
-        "lesson": lesson.name,
-        "version": run.version,
-        "index": run.index,
-        "ended": run.ended,
-        "test": run.is_test,
-        "playing": run.playing,
-        "symbols": {
+        return LessonMessage(lesson="", version=run.version)
+    return LessonMessage(
+        lesson=lesson.name,
+        version=run.version,
+        index=run.index,
+        ended=run.ended,
+        test=run.is_test,
+        playing=run.playing,
+        symbols={
             name: run.words(f"symbol.{name}")
             for name in lesson.front.symbols
             if has_meaning(name, robot)
         },
-        "head": _head(lesson, run),
-        "pager": part_of_page("lesson/pager.html", pager=pager_of(run), words=run.words),
-    }
-    return message | (_ended(run) if run.ended else _open(lesson, run))
+        head=_head(lesson, run),
+        pager=part_of_page("lesson/pager.html", pager=pager_of(run), words=run.words),
+        **(_ended(run) if run.ended else _open(lesson, run)),
+    )
 
 
-def measured(run: LessonView) -> dict[str, Any]:
-    """The verdicts on the open step's tasks, and the curves so far of a demonstration."""
-    verdicts = {
-        task: [{"passed": each.passed, "words": each.words} for each in found]
-        for task, found in run.verdicts.items()
-    }
+def measured(run: LessonView) -> MeasuredMessage:
+    """The verdicts on the open step's tasks, and the curves so far of a script."""
     truth = curves_data(run.truth) if run.playing and run.truth is not None else None
-    return {"is": "measured", "verdicts": verdicts, "truth": truth}
+    return MeasuredMessage(run.verdicts, truth)
 
 
 def _head(lesson: Lesson, run: LessonView) -> str:
@@ -89,7 +85,7 @@ def _head(lesson: Lesson, run: LessonView) -> str:
 
 
 def _ended(run: LessonView) -> dict[str, Any]:
-    return {"sections": {END: end_html(run)}, "charts": ended_charts(run), "steps": []}
+    return {"sections": {END: end_html(run)}, "charts": ended_charts(run)}
 
 
 def _open(lesson: Lesson, run: LessonView) -> dict[str, Any]:

@@ -5,8 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 
-from msgspec import Struct
-
+from onpath.app.channel.messages import Said
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.first_minute import FirstMinute
@@ -21,32 +20,6 @@ MOST = 2
 """Most settings that a button names."""
 RENEWED = 1.0
 """Time between updates of spoken numbers [s]; assets/web/parts/voice.ts reads fewer aloud."""
-
-
-class Said(Struct, frozen=True):
-    """What a page says beyond the lab's message.
-
-    Attributes:
-        voice: for a screen reader; empty if the user does not want it.
-        summary: a description of the screen.
-        summaries: number of requests for it so far.
-        stopped: whether the message says why a robot has stopped.
-        replays: whether its last moments are to be shown, unless the user wants less motion.
-        earlier: label of the button that restores the last good settings; empty if there are none.
-        sounds: whether the distances are to be heard.
-        invitation: name of what a newcomer is invited to do; empty: nothing.
-        act: the command that follows it, as JSON; None: it is followed in the scene itself.
-    """
-
-    voice: str = ""
-    summary: str = ""
-    summaries: int = 0
-    stopped: bool = False
-    replays: bool = False
-    earlier: str = ""
-    sounds: bool = False
-    invitation: str = ""
-    act: Mapping[str, str] | None = None
 
 
 class Narration:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import viser
 
+from onpath.app.channel.messages import StateMessage
 from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter
@@ -122,7 +121,7 @@ class Page:
             for part in self._parts:
                 part.follow(snapshot)
 
-    def state(self, snapshot: PageSnapshot) -> dict[str, Any]:
+    def state(self, snapshot: PageSnapshot) -> StateMessage:
         """What the data channel tells of the snapshot that is shown; see `state_message`."""
         return state_message(
             snapshot,

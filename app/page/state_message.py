@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
+from onpath.app.channel.messages import Said, StateMessage
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
-from onpath.app.page.narration import Said
 from onpath.app.scene.projection import Seen
 from onpath.app.viser_adapter.data_channel import VERSION
 from onpath.lessons.sides import displayed_names, law_text, side_titles
@@ -18,8 +17,8 @@ from onpath.models.control.laws.registry import law_named
 
 def state_message(
     snapshot: PageSnapshot, words: Words, captions: Mapping[str, str], said: Said, seen: Seen
-) -> dict[str, Any]:
-    """The message of a lab's state; see app/viser_adapter/README.md.
+) -> StateMessage:
+    """The message of a lab's state.
 
     Args:
         words: of the page.
@@ -30,30 +29,29 @@ def state_message(
     laws, run = snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
     names = displayed_names(laws, words, snapshot.key.in_lesson)
-    return {
-        "is": "state",
-        "v": VERSION,
-        "language": words.language,
-        "robot": snapshot.key.robot,
-        "titles": [titles[side] for side in laws],
-        "names": [names[side] for side in laws],
-        "texts": [law_text(law, words) for law in laws.values()],
-        "captions": [captions.get(side, "") for side in laws],
-        "clocks": [law_named(law).by_clock for law in laws.values()],
-        "stopped": [side in snapshot.stopped for side in laws],
-        "rate": run.rate,
-        "achieved": round(snapshot.achieved_speed / run.rate, 1) * run.rate,
-        "together": run.copy,
-        "undo": run.can_undo_going_on,
-        "message": snapshot.message,
-        "level": snapshot.message_level if snapshot.message else "",
-        "messages": snapshot.messages,
-        "said": said,
-        "presenting": snapshot.key.presenting,
-        "height": round(seen.height, 3),
-        "apart": round(seen.apart, 3),
-        "cameras": np.round(seen.cameras, 5).tolist(),
-        "arrow": seen.arrow,
-        "frozen": words("class.frozen") if run.frozen else "",
-        "own": not snapshot.key.student,
-    }
+    return StateMessage(
+        v=VERSION,
+        language=words.language,
+        robot=snapshot.key.robot,
+        titles=[titles[side] for side in laws],
+        names=[names[side] for side in laws],
+        texts=[law_text(law, words) for law in laws.values()],
+        captions=[captions.get(side, "") for side in laws],
+        clocks=[law_named(law).by_clock for law in laws.values()],
+        stopped=[side in snapshot.stopped for side in laws],
+        rate=run.rate,
+        achieved=round(snapshot.achieved_speed / run.rate, 1) * run.rate,
+        together=run.copy,
+        undo=run.can_undo_going_on,
+        message=snapshot.message,
+        level=snapshot.message_level if snapshot.message else "",
+        messages=snapshot.messages,
+        said=said,
+        presenting=snapshot.key.presenting,
+        height=round(seen.height, 3),
+        apart=round(seen.apart, 3),
+        cameras=np.round(seen.cameras, 5).tolist(),
+        arrow=seen.arrow,
+        frozen=words("class.frozen") if run.frozen else "",
+        own=not snapshot.key.student,
+    )

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import viser
+from msgspec.structs import replace
 from typing_extensions import override
 
+from onpath.app.channel.messages import StateMessage
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion
@@ -55,8 +55,8 @@ class TeacherPage(Page):
         return None
 
     @override
-    def state(self, snapshot: PageSnapshot) -> dict[str, Any]:
-        return super().state(snapshot) | {"presenting": self._presents}
+    def state(self, snapshot: PageSnapshot) -> StateMessage:
+        return replace(super().state(snapshot), presenting=self._presents)
 
     @override
     def _is_folded(self, snapshot: PageSnapshot) -> bool:

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
+from typing import get_args
 
 import casadi as ca
 import numpy as np
 
+from onpath.app.channel.messages import JointSymbol
 from onpath.app.lab.snapshots.snapshot import END, Motion
 from onpath.app.scene.label_geometry import Arc, arcs_of, plane_of, within_half
 from onpath.lessons.symbols import SYMBOLS
@@ -21,7 +23,7 @@ from onpath.models.systems.robots import Robot
 ARC = 0.05
 """Radius of the arc at the elbow [m]."""
 _JOINTS = {SYMBOLS[name][2]: name for name in ("q_1", "q_2")}
-AT_JOINTS = (*_JOINTS.values(), "delta", "rho")
+AT_JOINTS: tuple[JointSymbol, ...] = get_args(JointSymbol)
 """The symbols whose meaning depends on the kind of robot."""
 
 

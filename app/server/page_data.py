@@ -7,28 +7,35 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-import msgspec
 import numpy as np
+from msgspec import Struct
 
-from onpath.app.lab.commands.command_codec import NoCommand, command_from
-from onpath.app.lab.lab import Lab
-from onpath.app.lab.snapshots.data_frame import LENGTH, FrameSource, frame_message, path_message
+from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
+from onpath.app.channel.messages import (
+    Alive,
+    AskRecord,
+    Hello,
+    Light,
+    LitMessage,
+    Refused,
+    Resized,
+    Skip,
+    StateMessage,
+    changes,
+    encoded,
+    encoded_changes,
+)
+from onpath.app.channel.reading import NoPageMessage, read_message
+from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.page.page import Page
-from onpath.app.scene.symbol_geometry import AT_JOINTS, has_meaning, symbol_lines
+from onpath.app.scene.symbol_geometry import has_meaning, symbol_lines
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 from onpath.models.systems.robots import Robot
 
-RESIZED = '{"is":"resized"}'  # a message of the page: its canvas has another size
-SKIP = '{"is":"skip"}'  # the user wants no introduction
-RECORD = '{"is":"record"}'  # the student asks for the record of all lessons
-LIGHTS = {f'{{"is":"light","symbol":"{name}"}}': name for name in ("", *AT_JOINTS)}
-"""Messages that ask what a symbol of a joint means; an empty name ends it."""
-_NOTHING = object()
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
 BEAT = 1.0  # [s]; a page to which nothing else is told for so long is told that the lab lives
-ALIVE = b'{"is":"alive"}'
 
 
 class PageData:
@@ -46,7 +53,7 @@ class PageData:
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
         self._robot: object = None
-        self._state: dict[str, Any] = {}
+        self._state: StateMessage | None = None
         self._is_resized = self._wants_record = self._skips = False
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
@@ -81,7 +88,7 @@ class PageData:
         if stream.opened != self._opened:
             self._opened = stream.opened
             self._source.forget()
-            self._path, self._state = None, {}
+            self._path = self._state = None
             self._lesson = self._measured = b""
             self._symbol, self._lit = "", ("", b"")
         if self._is_resized:
@@ -94,13 +101,13 @@ class PageData:
         robot, path = lab.simulation.robot, drawn.path
         if path is not self._path or robot is not self._robot:
             self._path, self._robot = path, robot
-            messages.append(partial(path_message, robot, path))
+            messages.append(_text_of(path_message, robot, path))
         if (frame := self._source.take(lab)) is not None:
-            messages.append(partial(frame_message, frame))
+            messages.append(_text_of(frame_message, frame))
         if self._symbol:
             messages += self._light(robot, drawn)
         if not messages and time.monotonic() > self._told + BEAT:
-            messages.append(partial(bytes, ALIVE))
+            messages.append(_text_of(Alive))
         if messages:
             self._told = time.monotonic()
             stream.hand_over(*messages)
@@ -117,11 +124,10 @@ class PageData:
             return
         page.has_script = True
         messages = list[Message]()
-        state, known = page.state(snapshot), self._state
-        news = {key: value for key, value in state.items() if known.get(key, _NOTHING) != value}
-        if news:
+        state = page.state(snapshot)
+        if news := changes(state, self._state):
             self._state = state
-            messages.append(partial(msgspec.json.encode, {"is": "state", **news}))
+            messages.append(partial(encoded_changes, StateMessage, news))
         if (column := page.column) is not None and column.message:
             if column.message is not self._lesson:
                 self._lesson, self._measured = column.message, b""
@@ -141,7 +147,7 @@ class PageData:
         if now == self._lit:
             return []
         self._lit = now
-        return [partial(_lit_message, self._symbol, robot, motion)]
+        return [_text_of(_lit_message, self._symbol, robot, motion)]
 
     def send(self) -> None:
         """Send what has been handed over for all pages."""
@@ -149,34 +155,35 @@ class PageData:
 
     def _receive(self, text: str) -> bytes:
         """Post the command in a message; returns why not, if it is refused. On the event loop."""
-        if text == RESIZED:
-            self._is_resized = True
-            return b""
-        if text == SKIP:
-            self._skips = True
-            return b""
-        if text == RECORD:
-            self._wants_record = True
-            return b""
-        if text in LIGHTS:
-            self._symbol = LIGHTS[text]
-            return b""
         try:
-            command = command_from(text)
-        except NoCommand as error:
-            return _refused(str(error))
-        if not self._is_own:
-            return _refused("this lab is only shown")
-        self._own.post(command)
+            message = read_message(text)
+        except NoPageMessage as error:
+            return encoded(Refused(str(error)))
+        match message:
+            case Command() if self._is_own:
+                self._own.post(message)
+            case Command():
+                return encoded(Refused("this lab is only shown"))
+            case Resized():
+                self._is_resized = True
+            case Skip():
+                self._skips = True
+            case AskRecord():
+                self._wants_record = True
+            case Light(symbol=symbol):
+                self._symbol = symbol
+            case Hello():
+                return encoded(Refused("the channel is open"))
         return b""
 
 
-def _lit_message(symbol: str, robot: Robot, motion: Motion) -> bytes:
+def _lit_message(symbol: str, robot: Robot, motion: Motion) -> LitMessage:
     lines = [
         np.rint(LENGTH * line).astype(int).tolist() for line in symbol_lines(symbol, robot, motion)
     ]
-    return msgspec.json.encode({"is": "lit", "symbol": symbol, "lines": lines})
+    return LitMessage(symbol, lines)
 
 
-def _refused(why: str) -> bytes:
-    return msgspec.json.encode({"is": "refused", "why": why})
+def _text_of(make: Callable[..., Struct], *args: Any) -> Message:
+    """Makes a message's text, later."""
+    return lambda: encoded(make(*args))

@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from weakref import WeakValueDictionary
 
+import msgspec
 from websockets.exceptions import ConnectionClosed
 from websockets.frames import CloseCode
 from websockets.protocol import State
@@ -20,7 +21,7 @@ from websockets.protocol import State
 from onpath.app.common.error_log import log_error
 from onpath.app.viser_adapter.secure_connection import SecureConnection
 
-VERSION = 1
+VERSION = 2
 FAMILY = "onpath-"
 SUBPROTOCOL = f"{FAMILY}{VERSION}"
 GREETING = 90.0  # [s] within which the ticket must come; a page may be slow, and so may be its way
@@ -31,6 +32,24 @@ AGAIN = 0.05  # [s] until a page that reads slowly is tried again
 
 Message = Callable[[], bytes]
 """Makes a message; called on the network thread."""
+
+
+class Hello(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="hello"):
+    """The first message of a page.
+
+    Attributes:
+        ticket: that the page was given.
+    """
+
+    ticket: str
+
+
+def ticket_in(message: object) -> str:
+    """The ticket in a page's first message; empty if it has none."""
+    try:
+        return msgspec.json.decode(message, type=Hello).ticket if isinstance(message, str) else ""
+    except (ValueError, RecursionError):
+        return ""
 
 
 class PageStream:
@@ -150,11 +169,11 @@ class DataChannel:
         with suppress(ConnectionClosed):
             try:
                 async with asyncio.timeout(GREETING):
-                    ticket = await connection.recv_data()
+                    ticket = ticket_in(await connection.recv_data())
             except TimeoutError:
                 await connection.close(CloseCode.TRY_AGAIN_LATER, "expected a ticket")
                 return
-            stream = self._streams.get(ticket) if isinstance(ticket, str) else None
+            stream = self._streams.get(ticket)
             if stream is None:
                 await connection.close(NO_TICKET, "expected a valid ticket")
             else:

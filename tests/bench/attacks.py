@@ -40,6 +40,7 @@ from tests.bench.hostile_messages import (
 )
 from tests.bench.raw_socket import frames, handshake
 from tests.bench.simulated_browser import Browser, stand_back
+from tests.support.channel import hello
 
 SOURCE = "127.0.0.2" if sys.platform == "linux" else "127.0.0.1"
 RATE = 0.9 * Limits().changes_per_second  # of changed widgets or drags; no tab is closed for that
@@ -117,7 +118,7 @@ class Script(Browser):
 
     async def _speak(self, ticket: str, draw: random.Random) -> None:
         async with self._connected(DATA) as data:
-            await data.send(ticket)
+            await data.send(hello(ticket))
             reading = asyncio.create_task(_read_all(data))
             try:
                 while not reading.done():

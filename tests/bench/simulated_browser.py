@@ -35,6 +35,7 @@ from tests.bench.client_protocol import (
     packed,
     unpacked,
 )
+from tests.support.channel import hello
 
 LAST = 19  # the lowest priority
 TOGETHER = Path("/proc/self/autogroup")  # priority of a whole session, on Linux
@@ -126,7 +127,7 @@ class Browser:
     async def _read_data(self, ticket: str) -> None:
         """Read what the page's own script is told."""
         async with self._connected(DATA) as socket:
-            await socket.send(ticket)
+            await socket.send(hello(ticket))
             async for text in socket:
                 self.received += len(text)
                 self.told += 1

@@ -14,6 +14,7 @@ from websockets.asyncio.client import ClientConnection
 
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.simulated_browser import Browser
+from tests.support.channel import hello
 
 WINDOW = 2.0  # [s]
 TICKS = 1e-4  # [s], unit of times in frames
@@ -74,7 +75,7 @@ class Witness(Browser):
     @override
     async def _read_data(self, ticket: str) -> None:
         async with self._connected(DATA) as socket:
-            await socket.send(ticket)
+            await socket.send(hello(ticket))
             asking = asyncio.create_task(self._ask(socket))
             try:
                 async for text in socket:

@@ -25,6 +25,7 @@ from onpath.app.page.own_part import own_part
 from onpath.app.server.lab_server import LabServer
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.app.viser_adapter.page_scripts import our_scripts
+from tests.support.channel import hello
 from tests.support.student import Student
 
 SITE = "http://lab.example/"
@@ -149,17 +150,17 @@ NETWORK = """plan => {
             }, reachable() ? drawn() : 0.01)
         }
         send(text) {
-            if (this.ticket) return
-            this.ticket = text
+            if (this.greeting) return
+            const { ticket } = this.greeting = JSON.parse(text)
             later(() => {
-                const tab = lab.tickets.get(text)
+                const tab = lab.tickets.get(ticket)
                 if (this.mute) return
                 if (!tab) return this.end(4001)
                 later(() => {
                     if (this.mute) return
-                    if (this.readyState !== 1 || !lab.tickets.has(text)) return this.end(1001)
+                    if (this.readyState !== 1 || !lab.tickets.has(ticket)) return this.end(1001)
                     for (const message of plan.messages) this.hear(message)
-                    this.told = text
+                    this.told = ticket
                     this.beat(tab)
                 }, drawn())
             }, drawn())
@@ -299,7 +300,7 @@ def told(server: LabServer) -> Told:
         messages, kinds = list[str](), set[str]()
         protocol = [Subprotocol(SUBPROTOCOL)]
         with connect(address, subprotocols=protocol, compression=None) as socket:
-            socket.send(ticket[1])
+            socket.send(hello(ticket[1]))
             while not kinds >= {"state", "path", "frame"}:
                 student.read_what_has_come()
                 message = json.loads(socket.recv(10))

@@ -21,6 +21,7 @@ from onpath.app.viser_adapter.addresses import prefix_of, storage_key
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL as DATA
 from tests.bench.client_protocol import CAMERA, SUBPROTOCOL, answer, packed, unpacked
 from tests.bench.simulated_browser import MOVING
+from tests.support.channel import hello
 
 PATIENCE = 60.0  # [s]; only ends a test that would hang
 
@@ -235,7 +236,7 @@ class Student:
                 max_size=None,
                 close_timeout=1.0,
             )
-            self._data.send(self._ticket)
+            self._data.send(hello(self._ticket))
         assert self._data is not None
         with suppress(TimeoutError, ConnectionClosed):
             while True:

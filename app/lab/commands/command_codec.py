@@ -47,6 +47,11 @@ def page_commands() -> dict[str, type[Command]]:
     }
 
 
+def command_structs() -> list[type[msgspec.Struct]]:
+    """The commands that a page may send, as they are read."""
+    return list(_STRUCTS)
+
+
 def command_from(message: str) -> Command:
     """The command in a message.
 
@@ -105,7 +110,5 @@ def _array(kind: type, value: Any) -> Any:
 
 
 _COMMANDS = page_commands()
-_decoder = msgspec.json.Decoder(
-    Union[tuple(map(_struct, _COMMANDS.values()))],  # noqa: UP007
-    dec_hook=_array,
-)
+_STRUCTS = tuple(map(_struct, _COMMANDS.values()))
+_decoder = msgspec.json.Decoder(Union[_STRUCTS], dec_hook=_array)  # noqa: UP007

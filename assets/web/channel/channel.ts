@@ -1,11 +1,9 @@
 // The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
-// The messages are described in app/viser_adapter/README.md.
 
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
-import type { LessonMessage, MeasuredMessage } from "./messages"
+import { PROTOCOL, type Command, type FrameMessage, type LabMessage, type LessonMessage, type Light, type MeasuredMessage, type PageMessage, type PathMessage, type StateMessage } from "./messages"
 
-const PROTOCOL = "onpath-1"
 const SECONDS = 60 // of samples that are kept
 const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
 const HEAD = 2 // numbers of a row before those of the robots
@@ -14,86 +12,6 @@ const NO_TICKET = 4001 // the ticket is not valid, or not any more
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two looks at the past
 const SETTLES = 400 // [ms], until what the server shows counts again
-
-interface FrameMessage {
-    is: "frame"
-    rows: number[][]
-    running: boolean
-    past: number | null
-    anew?: boolean
-    straight?: number[][]
-}
-
-/** What a symbol means on each robot: points of a line, or one for a joint. */
-interface LitMessage { is: "lit"; symbol: string; lines: number[][][] }
-
-interface PathMessage {
-    is: "path"
-    points: number[][]
-    closed: boolean
-    right: Vector
-    up: Vector
-}
-
-/** What is spoken, and what newcomers are invited to do. */
-export interface Narration {
-    /** For a screen reader; empty if it is not wanted. */
-    voice: string
-    /** A description of the screen, and how often it has been asked for. */
-    summary: string
-    summaries: number
-    /** Whether the message says why a robot has stopped, and whether its last moments are to be shown. */
-    stopped: boolean
-    replays: boolean
-    /** A label of the settings that were good, if there are any. */
-    earlier: string
-    sounds: boolean
-    /** The name of an invitation, and the command that follows it, if a button can. */
-    invitation: string
-    act: Record<string, unknown> | null
-}
-
-/** How a camera sees a robot's output space: three rows, of which the first two divided by the third are a point in
- * the picture, from its middle to the right and down, as a share of its height. A row has a factor for each
- * coordinate, and a constant. */
-export type Projection = readonly Vector[]
-
-/** Texts of the lab, and what is set. Lists have the left robot first. */
-export interface LabState {
-    is: "state"
-    v: number
-    language: string
-    titles: string[]
-    names: string[]
-    texts: string[]
-    captions: string[]
-    clocks: boolean[]
-    rate: number
-    achieved: number
-    together: boolean
-    undo: boolean
-    /** Why the lab takes no commands; empty if it does. */
-    frozen: string
-    own: boolean
-    presenting: boolean
-    /** For the user, and how severe: "info", "warning", "error", "replay" or "stop". */
-    message: string
-    level: string
-    /** How many have been shown so far: the same one may be shown again. */
-    messages: number
-    said: Narration
-    height: number
-    apart: number
-    /** How the picture shows the robots. */
-    cameras: Projection[]
-    /** Length of the arrow of a force [m/N]. */
-    arrow: number
-}
-
-interface Refusal { is: "refused"; why: string }
-
-/** Comes when nothing else does. */
-interface Alive { is: "alive" }
 
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
@@ -167,7 +85,7 @@ class RowSide implements SideSample {
 
 export class RemoteEngine implements Engine {
     /** What the lab is called and set to; null until it is known. */
-    lab: LabState | null = null
+    lab: StateMessage | null = null
     route = new SampledPath({ points: [[0, 0], [0, 0]], closed: false, right: [1, 0], up: [0, 1] })
     /** Whether the page hears from its lab. */
     connected = false
@@ -184,7 +102,7 @@ export class RemoteEngine implements Engine {
     private running = false
     private past: number | null = null
     private looked: { at: number | null; until: number } | null = null
-    private symbol = "" // of joints, whose meaning is asked for
+    private symbol: Light["symbol"] = "" // of joints, whose meaning is asked for
     private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
@@ -206,7 +124,7 @@ export class RemoteEngine implements Engine {
         this.socket = socket
         socket.addEventListener("open", () => {
             this.heard++
-            socket.send(ticket)
+            socket.send(JSON.stringify({ is: "hello", ticket } satisfies PageMessage))
         })
         socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
         socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
@@ -252,7 +170,7 @@ export class RemoteEngine implements Engine {
             if (act.do === "hold") this.send({ do: "Hold", on: act.on })
             else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
             else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
-            else this.send({ do: { step: "StepOnce", reset: "Reset", goOn: "GoOn" }[act.do] })
+            else this.send({ do: ({ step: "StepOnce", reset: "Reset", goOn: "GoOn" } as const)[act.do] })
         }
     }
 
@@ -262,15 +180,15 @@ export class RemoteEngine implements Engine {
 
     /** Ask what a symbol means, and be told as long as the robots move; of joints, only the server knows. */
     light(symbol: string): void {
-        const asked = AT_JOINTS.includes(symbol) ? symbol : ""
+        const asked = AT_JOINTS.find(each => each === symbol) ?? ""
         if (asked === this.symbol) return
         this.symbol = asked
         this.send({ is: "light", symbol: asked })
     }
 
-    /** Send a command; it is lost while there is no connection. */
-    send(command: Record<string, unknown>): void {
-        if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(command))
+    /** Send a message; it is lost while there is no connection. */
+    send(message: Command | PageMessage): void {
+        if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message))
     }
 
     private get flags(): { held: boolean; pulled: boolean } {
@@ -292,7 +210,7 @@ export class RemoteEngine implements Engine {
         this.tell("state")
     }
 
-    private hear(message: FrameMessage | PathMessage | LitMessage | LabState | LessonMessage | MeasuredMessage | Refusal | Alive): void {
+    private hear(message: LabMessage): void {
         this.heard++
         if (!this.connected) {
             this.connected = true
@@ -309,7 +227,7 @@ export class RemoteEngine implements Engine {
             this.symbolLines = { symbol, lines: lines.map(line => line.map(point => point.map(each => each / LENGTH))) }
             this.tell("samples")
         } else if (message.is === "state") {
-            this.lab = { ...this.lab, ...message } // which has only what has changed
+            this.lab = { ...this.lab, ...message } as StateMessage // the first one has everything
             this.tell("state")
         } else if (message.is === "lesson") {
             this.lesson = message

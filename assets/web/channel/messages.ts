@@ -1,33 +1,363 @@
-// What the server of a lab says of a lesson; see app/viser_adapter/README.md.
+// The messages of the channel between a page and its lab, made by app/channel/typescript.py from
+// app/channel/messages.py and app/lab/commands: change them there.
 
-import type { Answer, Curves, Script, SketchData, StepData } from "../core/lesson_data"
-import type { Verdict } from "../lessons/checks"
+import type { ChartData, Curves, StepData } from "../core/lesson_data"
 import type { Notes } from "../lessons/notes"
 
-export interface LabMessage { is: string }
+export const PROTOCOL = "onpath-2"
 
-/** The open step of a lesson, or its end; without a lesson, `lesson` is empty. */
-export interface LessonMessage extends LabMessage {
-    is: "lesson"
-    lesson: string
-    version: number
-    index: number
-    ended: boolean
-    test: boolean
-    playing: boolean
-    symbols: Record<string, string>
-    /** HTML of what stands above and below the text, and of the steps by index. */
-    head: string
-    pager: string
-    sections: Record<string, string>
-    steps: StepData[]
-    notes?: Notes
-    charts?: { data: SketchData; script: Script | null; answer: Answer; truth: Curves | null }[]
+/** Control laws of the sides; an empty one is that of a new lab, or stays as it is. */
+export interface Laws {
+    left?: string
+    right?: string
 }
 
-/** What is measured in the open step. */
-export interface MeasuredMessage extends LabMessage {
+/** The start of both robots relative to the path; all values are 0 in a new lab. */
+export interface RunStart {
+    /** path parameter of the point near which they start, [rad]. */
+    place?: number
+    /** distance from that point, positive to the left of the path, as ξ₁, [mm]. */
+    across?: number
+    /** along the path, [mm/s]. */
+    speed?: number
+    /** velocity across the path, as ξ₂, [mm/s]. */
+    across_rate?: number
+    /** how far ahead the clock starts, for a law that has one, [rad]. */
+    lead?: number
+}
+
+/** One action on the lab. Exactly one of the fields other than `at` and `only` is given. */
+export interface Action {
+    /** time since the script began, [s]. */
+    at?: number
+    /** put the brake on, or off. */
+    hold?: boolean | null
+    /** pull the end-points from where they are by (right, up), [mm], in the path's plane. */
+    pull?: [number, number] | null
+    /** end a pull. */
+    release?: boolean | null
+    /** parameters. */
+    set?: Record<string, number | string> | null
+    /** name of a preset. */
+    path?: string | null
+    /** move a control point (index, right, up), by [mm]. */
+    move?: [number, number, number] | null
+    /** change the robot. */
+    robot?: string | null
+    /** change the control laws of the sides. */
+    laws?: Laws | null
+    /** put both robots back to the start. */
+    reset?: boolean | null
+    /** run or pause. */
+    run?: boolean | null
+    /** fit the controller's model to the measured motion. */
+    identify?: boolean | null
+    /** put both robots to another start, and begin anew there. */
+    start?: RunStart | null
+    /** how fast time goes from now on, compared with the student's own tempo; 0.25 is slow motion. */
+    rate?: number | null
+    /** the robot that hold and pull act on; empty for both. */
+    only?: "follower" | "tracker" | ""
+}
+
+/** The first message of a page. */
+export interface Hello {
+    is: "hello"
+    /** that the page was given. */
+    ticket: string
+}
+
+/** The canvas has another size: the camera is then fitted to it. */
+export interface Resized {
+    is: "resized"
+}
+
+/** The user wants no introduction any more. */
+export interface Skip {
+    is: "skip"
+}
+
+/** The student wants the record of all lessons, which comes as a file. */
+export interface AskRecord {
+    is: "record"
+}
+
+/** Tell where a symbol is found on the robots, until another one is asked for. */
+export interface Light {
+    is: "light"
+    /** empty to be told nothing more. */
+    symbol: "delta" | "q_1" | "q_2" | "rho" | ""
+}
+
+/** What changes the lab; see app/lab/commands. */
+export type Command =
+    | { do: "Act"; actions: Action[] }
+    | { do: "AddPoint" }
+    | { do: "AnswerInWords"; block: number; typed: string }
+    | { do: "AnswerNumber"; block: number; given: number }
+    | { do: "AnswerQuiz"; block: number; option: number }
+    | { do: "AskPhase"; on: boolean }
+    | { do: "BeginStepAnew" }
+    | { do: "ChooseLaw"; side: string; law: string }
+    | { do: "ChoosePath"; name: string }
+    | { do: "ChooseRobot"; name: string }
+    | { do: "CloseLesson" }
+    | { do: "DrawPath"; stroke: number[] | number[][] }
+    | { do: "EndMove" }
+    | { do: "FinishLesson" }
+    | { do: "FollowCurve"; closed: boolean; terms: number[] | number[][]; given?: number[] | number[][] | null; deviation?: number; nearest?: number[] | number[][] | null; apart?: number; remarks?: string }
+    | { do: "FollowRoute"; name: string }
+    | { do: "GoOn" }
+    | { do: "GoToStep"; by: number }
+    | { do: "Grab"; side: string; target: number[] | number[][] }
+    | { do: "Hold"; on?: boolean | null; side?: string | null }
+    | { do: "Identify" }
+    | { do: "LookAt"; ago: number }
+    | { do: "LookBack"; by: number }
+    | { do: "MoveHand"; right: number; up: number }
+    | { do: "MovePoint"; index: number; target: number[] | number[][]; finished?: boolean }
+    | { do: "MoveStart"; target: number[] | number[][] }
+    | { do: "MoveWall"; target: number[] | number[][] }
+    | { do: "NudgePoint"; right: number; up: number }
+    | { do: "NudgeWall"; right?: number; up?: number; turn?: number }
+    | { do: "OpenLesson"; name: string }
+    | { do: "PlacePoint"; first?: number | null; second?: number | null }
+    | { do: "PlaceWall"; first?: number | null; second?: number | null; angle?: number | null }
+    | { do: "PlayStep" }
+    | { do: "Predict"; option?: number | null; times?: number[]; values?: number[]; sure?: "" | "certain" | "fairly" | "guessing"; reason?: number | null; why?: string }
+    | { do: "Pulse" }
+    | { do: "Redo" }
+    | { do: "Release"; side?: string | null }
+    | { do: "RemovePoint" }
+    | { do: "ReplayBreakdown" }
+    | { do: "Reset" }
+    | { do: "ResetParameters" }
+    | { do: "SelectNext" }
+    | { do: "SelectPoint"; index: number | null }
+    | { do: "SetCopy"; on: boolean }
+    | { do: "SetExaggeration"; factor: number }
+    | { do: "SetHoldDirection"; direction: string }
+    | { do: "SetLanguage"; language: string }
+    | { do: "SetParameter"; name: string; value: number | string }
+    | { do: "SetPresenting"; on: boolean }
+    | { do: "SetRate"; rate: number }
+    | { do: "SetRunning"; running?: boolean | null }
+    | { do: "SetStart"; name: string; value: number }
+    | { do: "SetWall"; on?: boolean | null }
+    | { do: "Share" }
+    | { do: "ShowHint"; task: string }
+    | { do: "StartOnPath" }
+    | { do: "StepOnce" }
+    | { do: "SwingWall"; end: number; target: number[] | number[][] }
+    | { do: "TypeLaw"; side: string; text: string }
+    | { do: "Undo" }
+    | { do: "UndoGoOn" }
+    | { do: "UseEarlierSettings" }
+    | { do: "UseShared"; text: string }
+
+/** What a page sends besides commands. */
+export type PageMessage =
+    | Hello
+    | Resized
+    | Skip
+    | AskRecord
+    | Light
+
+/** The samples since the last frame; 20 times a second while anything in it changes, less often under load or if the page
+ * reads slowly.
+ *
+ * A row is `[time, flags, …left robot, …right robot]`. The flags are bits: left held, right held, left pulled, right
+ * pulled. A robot has p + p + 3 numbers, where p is 2 or 3: its distance from the path, θ of the closest point, θ of the
+ * reference point, end-point (p), external force on it (p). Times are in 0.1 ms, lengths in 10 µm, angles in 0.1 mrad,
+ * forces in 10 mN. End-points are coordinates of the output space, `Robot.position` of which is where they are drawn. */
+export interface FrameMessage {
+    is: "frame"
+    /** 60 per second, the oldest first; the last one is the present. They replace all samples of the page from the time of the
+     * first one on. */
+    rows: number[][]
+    /** whether time runs. */
+    running: boolean
+    /** the past instant that the lab shows [s], or null. */
+    past: number | null
+    /** whether the page must forget all its samples first; `rows` has the last minute. */
+    anew?: boolean
+    /** only for a link that bends: for each of the last rows, where the end-points would be if it did not, as end-points are
+     * given in a row. */
+    straight?: number[][]
+}
+
+/** The drawn path, when it changes. */
+export interface PathMessage {
+    is: "path"
+    /** of the output space, at evenly spaced θ from -π to π, in 10 µm. A closed path is periodic, an open one goes on along its
+     * end tangents. */
+    points: number[][]
+    /** whether it is closed. */
+    closed: boolean
+    /** two unit vectors at right angles, in which the path is seen from in front. */
+    right: number[]
+    /** two unit vectors at right angles, in which the path is seen from in front. */
+    up: number[]
+}
+
+/** Where the symbol is found that is asked for, whenever the robots have moved, at most 20 times a second. */
+export interface LitMessage {
+    is: "lit"
+    /** what is asked for. */
+    symbol: string
+    /** for each robot the points of a line, or one point for a joint, in 10 µm of the output space. */
+    lines: number[][][]
+}
+
+/** What a page says beyond the lab's message. */
+export interface Said {
+    /** for a screen reader; empty if the user does not want it. */
+    voice: string
+    /** a description of the screen. */
+    summary: string
+    /** number of requests for it so far. */
+    summaries: number
+    /** whether the message says why a robot has stopped. */
+    stopped: boolean
+    /** whether its last moments are to be shown, unless the user wants less motion. */
+    replays: boolean
+    /** label of the button that restores the last good settings; empty if there are none. */
+    earlier: string
+    /** whether the distances are to be heard. */
+    sounds: boolean
+    /** name of what a newcomer is invited to do; empty: nothing. */
+    invitation: string
+    /** the command that follows it; null: it is followed in the scene itself. */
+    act: Command | null
+}
+
+/** What the lab is called and set to: everything at first, then what has changed, at most ten times a second. */
+export interface StateMessage {
+    is: "state"
+    /** number of the protocol. */
+    v: number
+    /** of the texts. */
+    language: string
+    /** its name. */
+    robot: string
+    /** of the robots: names of their control laws. */
+    titles: string[]
+    /** what a lesson calls the robots; else the same. */
+    names: string[]
+    /** what the laws do. */
+    texts: string[]
+    /** what each robot does now; may be empty. */
+    captions: string[]
+    /** whether a law aims at the reference point by its clock; else it aims at the closest point. */
+    clocks: boolean[]
+    /** whether a robot has diverged and stands still. */
+    stopped: boolean[]
+    /** simulated seconds per second, as wanted. */
+    rate: number
+    /** what was reached lately. */
+    achieved: number
+    /** whether pulling and holding act on both robots. */
+    together: boolean
+    /** whether a discarded past can be restored. */
+    undo: boolean
+    /** for the user. */
+    message: string
+    /** how severe the message is; empty without one. */
+    level: string
+    /** how many have been shown so far: the same one may be shown again. */
+    messages: number
+    /** what is spoken, and what newcomers are invited to do. */
+    said: Said
+    /** whether large type for a projector is on. */
+    presenting: boolean
+    /** how high a part of the scene the canvas shows, at the distance of the robots [m]. */
+    height: number
+    /** how far the robots are apart in the picture [m]. */
+    apart: number
+    /** for each robot, how the picture shows a point of the output space: three rows of p factors and a constant; the first two
+     * results divided by the third are right and down from the middle, as shares of the height. */
+    cameras: number[][][]
+    /** length of the arrow of a force [m/N]. */
+    arrow: number
+    /** why the lab takes no commands, if the teacher has stopped it; else empty. */
+    frozen: string
+    /** whether commands are taken: not if a teacher looks at the lab of a student. */
+    own: boolean
+}
+
+/** The open step of a lesson, or its end; when another one is open, or anything is noted in it. A teacher's page has none.
+ *
+ * What is right is told only once the student has answered, or has seen what happens; in a test never. */
+export interface LessonMessage {
+    is: "lesson"
+    /** its name; empty: no lesson is open, and the other fields but `version` are, too. */
+    lesson: string
+    /** changes with every message. */
+    version: number
+    /** number of the open step, from 0. */
+    index: number
+    /** whether the end is shown. */
+    ended: boolean
+    /** whether it is the concept test. */
+    test: boolean
+    /** whether the lab plays the step's script. */
+    playing: boolean
+    /** names of the lesson's symbols that mean something on this robot, and what they mean. */
+    symbols: Record<string, string>
+    /** HTML of what stands above and below the text. A button's `data-send` has the messages that it sends. */
+    head: string
+    /** HTML of what stands above and below the text. A button's `data-send` has the messages that it sends. */
+    pager: string
+    /** HTML by number of the step: the open one, and the one whose prediction it shows; `end` for the end of a lesson. Both
+     * come from `assets/templates/step`, as on the course site. */
+    sections: Record<string, string>
+    /** what the script needs of each step; parts only of those in `sections`. */
+    steps: StepData[]
+    /** the answers of the open step. */
+    notes?: Notes
+    /** at the end: the curves of each prediction, in the order of the elements `[data-chart]`. */
+    charts: ChartData[]
+}
+
+/** Whether a check is satisfied, and a sentence with the measured and the required value. */
+export interface Verdict {
+    passed: boolean
+    words: string
+}
+
+/** What is measured in the open step of a lesson, at most ten times a second. */
+export interface MeasuredMessage {
     is: "measured"
+    /** on each check of each task. */
     verdicts: Record<string, Verdict[]>
+    /** while a script runs: the curves so far of the predicted quantity, three times a second; else null. */
     truth: Curves | null
 }
+
+/** Comes whenever nothing else has been told for a second. */
+export interface Alive {
+    is: "alive"
+}
+
+/** A message of the page was refused.
+ *
+ * What a command cannot do is told in `StateMessage.message`. */
+export interface Refused {
+    is: "refused"
+    /** in English, for programmers. */
+    why: string
+}
+
+/** A message with only the fields that have changed. */
+export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
+
+/** What the server sends. */
+export type LabMessage =
+    | FrameMessage
+    | PathMessage
+    | LitMessage
+    | Changes<StateMessage>
+    | LessonMessage
+    | MeasuredMessage
+    | Alive
+    | Refused

@@ -116,6 +116,9 @@ export interface SketchData {
     radius?: number | null
 }
 
+/** A sketch at the end of a lesson, with what happened. */
+export interface ChartData { data: SketchData; script: Script | null; answer: Answer; truth: Curves | null }
+
 export type BlockData =
     | { kind: "text"; links: (Action[] | null)[]; when?: [string, number[]] }
     | { kind: "choice" | "quiz"; right?: number } // a lab keeps it to itself until there is an answer

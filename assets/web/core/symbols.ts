@@ -20,7 +20,7 @@ export interface Seen {
 }
 
 /** The symbols of joints. */
-export const AT_JOINTS: readonly string[] = ["q_1", "q_2", "delta", "rho"]
+export const AT_JOINTS = ["q_1", "q_2", "delta", "rho"] as const
 
 export interface Shape {
     kind: "line" | "arrow" | "spring" | "damper" | "ring"

@@ -1,6 +1,6 @@
 // The column of a lesson in the lab: the open step as its server tells it, beside the robots and above the strip.
 
-import type { LessonMessage, MeasuredMessage } from "../channel/messages"
+import type { Action, Command, LessonMessage, MeasuredMessage, PageMessage } from "../channel/messages"
 import { isTyped, made } from "../core/dom"
 import type { Answer, BlockData, PageData, TaskData } from "../core/lesson_data"
 import { said, type Texts } from "../core/words"
@@ -13,6 +13,8 @@ import { compared } from "./predictions"
 import { StepView, type Robots } from "./step"
 import { radiusOf } from "./strip"
 import { Task } from "./tasks"
+
+type Sent = Command | PageMessage
 
 const END = "end" // the section that stands for the end of a lesson
 
@@ -89,7 +91,7 @@ export class Column implements Robots {
 
     act(block: number, link: number): void {
         const data = this.page.steps[this.view!.index]!.blocks[block]!
-        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] })
+        if (data.kind === "text") this.engine.send({ do: "Act", actions: data.links[link] as unknown as Action[] })
     }
 
     /** Show the open step, or what has changed in it. */
@@ -247,8 +249,8 @@ export class Column implements Robots {
         if (turn) return turn.setAttribute("aria-pressed", String(this.element.classList.toggle("turned")))
         const sent = (event.target as HTMLElement).closest<HTMLElement>("[data-send]")?.dataset["send"]
         if (!sent) return
-        const commands = JSON.parse(sent) as Record<string, unknown> | Record<string, unknown>[]
-        for (const command of [commands].flat()) this.engine.send(command)
+        const messages = JSON.parse(sent) as Sent | Sent[]
+        for (const message of [messages].flat()) this.engine.send(message)
     }
 
     /** The keys that turn pages do so in a lesson, unless they are typed into a field. */

@@ -4,7 +4,8 @@
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
 import { said, withoutNumbers, type Texts } from "../core/words"
-import type { LabState, RemoteEngine } from "../channel/channel"
+import type { RemoteEngine } from "../channel/channel"
+import type { Command, StateMessage } from "../channel/messages"
 
 const AGAIN = 8000 // [ms], between announcements that differ only in numbers
 const REST = 1500 // [ms], between any two
@@ -14,7 +15,6 @@ const LOUD = 0.08, SOON = 0.06 // [s]
 const TONES = 100 // [ms] between changes of the tones
 const CALM = matchMedia("(prefers-reduced-motion: reduce)")
 
-type Command = Record<string, unknown>
 const ACTS: Record<string, Command> = {
     slowly: { do: "ReplayBreakdown" },
     end: { do: "SelectPoint", index: null },
@@ -84,7 +84,7 @@ export class Voice {
         Object.assign(this.element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
     }
 
-    private get lab(): LabState { return this.engine.lab! }
+    private get lab(): StateMessage { return this.engine.lab! }
 
     private show(): void {
         const { message, level, messages, said: now } = this.lab

@@ -7,10 +7,10 @@ import re
 from html import unescape
 from typing import Any
 
-import msgspec
 import pytest
 from msgspec.structs import replace
 
+from onpath.app.channel.messages import encoded
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.commands.command_codec import command_from
@@ -49,9 +49,7 @@ def view(lab: Lab, student: str = "") -> LessonView:
 
 def told(lab: Lab, student: str = "") -> dict[str, Any]:
     """The message, as the page reads it."""
-    return json.loads(
-        msgspec.json.encode(lesson_message(view(lab, student), lab.simulation.robot), enc_hook=str)
-    )
+    return json.loads(encoded(lesson_message(view(lab, student), lab.simulation.robot)))
 
 
 def at(lab: Lab, name: str, index: int, **notes: Any) -> None:
@@ -222,7 +220,7 @@ def test_verdicts_and_curves_are_measured(lab: Lab) -> None:
     do(lab, c.SetLanguage("en"))
     at(lab, "01-path-or-timetable", 6)
     run(lab, 1.0)
-    found = json.loads(msgspec.json.encode(measured(view(lab))))
+    found = json.loads(encoded(measured(view(lab))))
     assert found["truth"] is None and found["verdicts"]
     for verdicts in found["verdicts"].values():
         assert all(set(each) == {"passed", "words"} for each in verdicts)

@@ -20,6 +20,7 @@ from onpath.app.server.lab_server import LabServer
 from onpath.app.server.server_options import ServerOptions
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from tests.support import waiting
+from tests.support.channel import hello
 from tests.support.student import Student
 
 WAIT = 30.0
@@ -64,7 +65,7 @@ class Script:
         self.socket: ClientConnection = connect(
             address, subprotocols=[Subprotocol(SUBPROTOCOL)], compression=None, close_timeout=0.5
         )
-        self.socket.send(ticket)
+        self.socket.send(hello(ticket))
         self.told: dict[str, dict[str, Any]] = {}
 
     def __enter__(self) -> Script:
@@ -102,7 +103,7 @@ def test_a_page_is_told_everything_first_and_then_what_changes(
         frame = script.read("frame")
         assert frame["anew"] and script.told["path"]["closed"]  # known before it is needed
         state = script.told.get("state") or script.read("state")  # in either order
-        assert state["v"] == 1 and state["language"] == "en" and state["own"]
+        assert state["v"] == 2 and state["language"] == "en" and state["own"]
         assert state["titles"] == ["Trajectory tracking", "Path following"]
         assert state["clocks"] == [True, False]
         later = script.read("frame")
@@ -150,7 +151,7 @@ def test_what_a_symbol_of_joints_means_is_told_while_it_is_asked_for(
             script.read("frame")
         assert "lit" not in script.told
         script.light("lambda")  # the page knows it
-        assert "required field" in script.read("refused")["why"]
+        assert "Invalid enum value" in script.read("refused")["why"]
 
 
 def test_a_symbol_without_a_meaning_on_the_robot_is_not_told(
@@ -252,7 +253,7 @@ def test_a_lab_without_a_listener_is_told_nothing(server: LabServer, student: St
     moving = student.moving
     student.read(lambda: student.moving > moving + 20)
     source = feed._data._source
-    assert source._latest == [] and source._simulation is None and feed._data._state == {}
+    assert source._latest == [] and source._simulation is None and feed._data._state is None
 
 
 def test_a_teacher_is_told_of_the_lab_that_is_shown_and_cannot_act_on_it(

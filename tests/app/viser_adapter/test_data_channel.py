@@ -30,6 +30,7 @@ from onpath.app.viser_adapter.message_filter import Limits
 from onpath.app.viser_adapter.secure_server import make_server
 from tests.bench.raw_socket import is_closed, knock, say
 from tests.support import waiting
+from tests.support.channel import hello
 
 WAIT = 10.0
 wait_for = partial(waiting.wait_for, seconds=WAIT)
@@ -51,7 +52,9 @@ class Pages:
         self.received.append(text)
         return text.upper().encode() if text.startswith("?") else b""
 
-    def tab(self, ticket: str | None, subprotocol: str = SUBPROTOCOL, **options: Any) -> Any:
+    def tab(
+        self, ticket: str | bytes | None, subprotocol: str = SUBPROTOCOL, **options: Any
+    ) -> Any:
         made = connect(
             f"ws://127.0.0.1:{self.port}",
             subprotocols=[Subprotocol(subprotocol)],
@@ -60,7 +63,7 @@ class Pages:
             **options,
         )
         if ticket is not None:
-            made.send(ticket)
+            made.send(hello(ticket) if isinstance(ticket, str) else ticket)
         return made
 
     def tell(self, stream: PageStream, *texts: bytes) -> None:
@@ -149,7 +152,7 @@ def test_a_silent_client_is_closed_and_may_come_again(
 def test_the_first_message_only_is_the_ticket(pages: Pages) -> None:
     stream = pages.stream()
     with pages.tab("?") as tab, suppress(ConnectionClosed):
-        tab.send(stream.ticket)
+        tab.send(hello(stream.ticket))
         closing(tab)
     assert not stream.is_open and pages.received == []
 
@@ -167,7 +170,7 @@ def test_a_page_has_one_connection_the_latest(pages: Pages) -> None:
         wait_for(lambda: not stream.is_open)
 
 
-@pytest.mark.parametrize("version", ["onpath-0", "onpath-2", "onpath-"])
+@pytest.mark.parametrize("version", ["onpath-1", "onpath-3", "onpath-"])
 def test_a_page_of_another_version_is_told_to_reload(pages: Pages, version: str) -> None:
     with pages.tab(None, version) as tab:
         closed = closing(tab)
@@ -229,7 +232,7 @@ def test_an_unfinished_message_closes_the_connection() -> None:
     pages = Pages(message_seconds=0.2)
     stream = pages.stream()
     raw = knock(pages.port, SUBPROTOCOL)
-    say(raw, stream.ticket.encode(), opcode=Opcode.TEXT)
+    say(raw, hello(stream.ticket).encode(), opcode=Opcode.TEXT)
     wait_for(lambda: stream.is_open)
     raw.sendall(Frame(Opcode.TEXT, b"{", fin=False).serialize(mask=True))
     wait_for(lambda: is_closed(raw))
@@ -242,7 +245,7 @@ def test_nothing_more_is_sent_to_a_page_that_reads_too_slowly(pages: Pages) -> N
     """Until it has read most; then it gets what was handed over, and is free for more."""
     stream, other = pages.stream(), pages.stream()
     raw = knock(pages.port, SUBPROTOCOL)
-    say(raw, stream.ticket.encode(), opcode=Opcode.TEXT)
+    say(raw, hello(stream.ticket).encode(), opcode=Opcode.TEXT)
     wait_for(lambda: stream.is_open)
     sent = 0
     while not stream.is_busy:
@@ -302,7 +305,7 @@ def test_a_server_without_pages_answers_no_ticket() -> None:
     server = make_server(port=0)
     tab = connect(f"ws://127.0.0.1:{server.get_port()}", subprotocols=[Subprotocol(SUBPROTOCOL)])
     with tab:
-        tab.send("ticket")
+        tab.send(hello("ticket"))
         assert code_of(closing(tab)) == NO_TICKET
     server.stop()
 

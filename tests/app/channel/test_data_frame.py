@@ -11,9 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab import commands as c
-from onpath.app.lab.lab import Lab
-from onpath.app.lab.snapshots.data_frame import (
+from onpath.app.channel.data_frame import (
     ANGLE,
     FORCE,
     LENGTH,
@@ -23,6 +21,9 @@ from onpath.app.lab.snapshots.data_frame import (
     frame_message,
     path_message,
 )
+from onpath.app.channel.messages import encoded
+from onpath.app.lab import commands as c
+from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_motion
 from onpath.models.control.sides import LEFT, RIGHT, SIDES
 from onpath.models.systems.catalogue import ROBOTS
@@ -32,7 +33,7 @@ UNIT = 1 / LENGTH
 
 
 class Reader:
-    """A page: it keeps the samples of a lab, as README.md in app/viser_adapter says."""
+    """A page: it keeps the samples of a lab, as `FrameMessage` says."""
 
     def __init__(self) -> None:
         self.source = FrameSource()
@@ -46,7 +47,7 @@ class Reader:
         frame = self.source.take(lab) if reads else None
         if frame is None:
             return False
-        message: dict[str, Any] = msgspec.json.decode(frame_message(frame))
+        message: dict[str, Any] = msgspec.json.decode(encoded(frame_message(frame)))
         assert message["is"] == "frame"
         if message.get("anew"):
             self.rows.clear()
@@ -256,7 +257,7 @@ def test_the_path_has_the_points_that_the_laws_aim_at(name: str) -> None:
         lab.advance(FRAME)
     reader.see(lab)
     simulation = lab.simulation
-    message = msgspec.json.decode(path_message(simulation.robot, take_motion(lab).path))
+    message = msgspec.json.decode(encoded(path_message(simulation.robot, take_motion(lab).path)))
     points = np.array(message["points"]) / LENGTH
     assert message["closed"] is simulation.editor.curve.closed
     right, up = np.array(message["right"]), np.array(message["up"])

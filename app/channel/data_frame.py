@@ -1,7 +1,7 @@
-"""Frames of a page's data channel: what both robots did since the last frame, as JSON.
+"""Frames of a page's data channel: what both robots did since the last frame.
 
 The simulation thread collects references only, which takes a few microseconds; the network thread
-makes numbers and text of them. The messages are described in app/viser_adapter/README.md.
+makes numbers and text of them.
 """
 
 from __future__ import annotations
@@ -11,10 +11,10 @@ from functools import lru_cache
 from math import inf
 from operator import is_
 
-import msgspec
 import numpy as np
 from msgspec import Struct
 
+from onpath.app.channel.messages import FrameMessage, PathMessage
 from onpath.app.lab.events import LabEvent
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import Slot
@@ -146,7 +146,7 @@ class FrameSource:
         return frame
 
 
-def frame_message(frame: DataFrame) -> bytes:
+def frame_message(frame: DataFrame) -> FrameMessage:
     """The message of a frame."""
     robot, latest = frame.robot, frame.latest
     slots = [(states, states.records[i]) for sample in latest for states, i in sample.slots]
@@ -156,17 +156,12 @@ def frame_message(frame: DataFrame) -> bytes:
     lines = [[*head, *row] for head, row in zip(heads, _whole(rows), strict=True)]
     if frame.earlier is not None:
         lines = [line for line in _earlier_lines(robot, frame.earlier) if line < lines[0]] + lines
-    message = {"is": "frame", "rows": lines, "running": frame.running, "past": frame.past}
-    if frame.anew:
-        message["anew"] = True
+    message = FrameMessage(lines, frame.running, frame.past, frame.anew)
     if (straight := straight_tip(robot)) is not None:
         q = log_layout(robot.system).slices["q"]
         tips = np.concatenate([straight(record[states.size :][q]) for states, record in slots])
-        message["straight"] = _whole(LENGTH * tips.reshape(len(latest), -1))
-    return _encoder.encode(message)
-
-
-_encoder = msgspec.json.Encoder()
+        message.straight = _whole(LENGTH * tips.reshape(len(latest), -1))
+    return message
 
 
 def _whole(numbers: Array) -> list[list[int]]:
@@ -175,20 +170,17 @@ def _whole(numbers: Array) -> list[list[int]]:
     return np.rint(finite).astype(np.int64).tolist()
 
 
-def path_message(robot: Robot, path: PathSnapshot) -> bytes:
+def path_message(robot: Robot, path: PathSnapshot) -> PathMessage:
     """The message of a path: its points in the output space, at evenly spaced θ from -π to π."""
     origin, first, second = robot.frame.lift(np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)]))
     right = (first - origin) / np.linalg.norm(first - origin)
     up = second - origin
     up -= up @ right * right
-    return msgspec.json.encode(
-        {
-            "is": "path",
-            "points": _whole(LENGTH * robot.output_at(path.points)),
-            "closed": path.closed,
-            "right": right.tolist(),
-            "up": (up / np.linalg.norm(up)).tolist(),
-        }
+    return PathMessage(
+        points=_whole(LENGTH * robot.output_at(path.points)),
+        closed=path.closed,
+        right=right.tolist(),
+        up=(up / np.linalg.norm(up)).tolist(),
     )
 
 

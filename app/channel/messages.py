@@ -1,0 +1,308 @@
+"""The messages of a page's data channel, in both directions; here alone they are defined.
+
+A message is a JSON object, whose `is` names its kind. Commands, which have `do` instead, are those
+of `app/lab/commands`. `assets/web/channel/messages.ts` is made of all of them by `typescript.py`.
+Lists of robots have the left one first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+import msgspec
+from msgspec import UNSET, Meta, Struct, UnsetType
+
+from onpath.app.viser_adapter.data_channel import Hello
+from onpath.lessons.checks import Verdict
+
+JointSymbol = Literal["q_1", "q_2", "delta", "rho"]
+"""The symbols of lessons whose meaning depends on the kind of robot."""
+
+# From the page
+
+
+class Resized(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="resized"):
+    """The canvas has another size: the camera is then fitted to it."""
+
+
+class Skip(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="skip"):
+    """The user wants no introduction any more."""
+
+
+class AskRecord(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="record"):
+    """The student wants the record of all lessons, which comes as a file."""
+
+
+class Light(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="light"):
+    """Tell where a symbol is found on the robots, until another one is asked for.
+
+    Attributes:
+        symbol: empty to be told nothing more.
+    """
+
+    symbol: JointSymbol | Literal[""]
+
+
+PageMessage = Hello | Resized | Skip | AskRecord | Light
+"""What a page sends besides commands; `Hello` comes first, and only once."""
+
+
+# To the page
+
+SentCommand = Annotated[Mapping[str, Any], Meta(extra={"typescript": "Command"})]
+"""A command that a button of the page sends."""
+
+
+class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
+    """The samples since the last frame; 20 times a second while anything in it changes, less often
+    under load or if the page reads slowly.
+
+    A row is `[time, flags, …left robot, …right robot]`. The flags are bits: left held, right held,
+    left pulled, right pulled. A robot has p + p + 3 numbers, where p is 2 or 3: its distance from
+    the path, θ of the closest point, θ of the reference point, end-point (p), external force on it
+    (p). Times are in 0.1 ms, lengths in 10 µm, angles in 0.1 mrad, forces in 10 mN. End-points are
+    coordinates of the output space, `Robot.position` of which is where they are drawn.
+
+    Attributes:
+        rows: 60 per second, the oldest first; the last one is the present. They replace all samples
+            of the page from the time of the first one on.
+        running: whether time runs.
+        past: the past instant that the lab shows [s], or null.
+        anew: whether the page must forget all its samples first; `rows` has the last minute.
+        straight: only for a link that bends: for each of the last rows, where the end-points would
+            be if it did not, as end-points are given in a row.
+    """
+
+    rows: list[list[int]]
+    running: bool
+    past: float | None
+    anew: bool = False
+    straight: list[list[int]] | UnsetType = UNSET
+
+
+class PathMessage(Struct, frozen=True, tag_field="is", tag="path"):
+    """The drawn path, when it changes.
+
+    Attributes:
+        points: of the output space, at evenly spaced θ from -π to π, in 10 µm. A closed path is
+            periodic, an open one goes on along its end tangents.
+        closed: whether it is closed.
+        right, up: two unit vectors at right angles, in which the path is seen from in front.
+    """
+
+    points: list[list[int]]
+    closed: bool
+    right: list[float]
+    up: list[float]
+
+
+class LitMessage(Struct, frozen=True, tag_field="is", tag="lit"):
+    """Where the symbol is found that is asked for, whenever the robots have moved, at most 20
+    times a second.
+
+    Attributes:
+        symbol: what is asked for.
+        lines: for each robot the points of a line, or one point for a joint, in 10 µm of the output
+            space.
+    """
+
+    symbol: str
+    lines: list[list[list[int]]]
+
+
+class Said(Struct, frozen=True):
+    """What a page says beyond the lab's message.
+
+    Attributes:
+        voice: for a screen reader; empty if the user does not want it.
+        summary: a description of the screen.
+        summaries: number of requests for it so far.
+        stopped: whether the message says why a robot has stopped.
+        replays: whether its last moments are to be shown, unless the user wants less motion.
+        earlier: label of the button that restores the last good settings; empty if there are none.
+        sounds: whether the distances are to be heard.
+        invitation: name of what a newcomer is invited to do; empty: nothing.
+        act: the command that follows it; null: it is followed in the scene itself.
+    """
+
+    voice: str = ""
+    summary: str = ""
+    summaries: int = 0
+    stopped: bool = False
+    replays: bool = False
+    earlier: str = ""
+    sounds: bool = False
+    invitation: str = ""
+    act: SentCommand | None = None
+
+
+class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state"):
+    """What the lab is called and set to: everything at first, then what has changed, at most ten
+    times a second.
+
+    Attributes:
+        v: number of the protocol.
+        language: of the texts.
+        robot: its name.
+        titles: of the robots: names of their control laws.
+        names: what a lesson calls the robots; else the same.
+        texts: what the laws do.
+        captions: what each robot does now; may be empty.
+        clocks: whether a law aims at the reference point by its clock; else it aims at the closest
+            point.
+        stopped: whether a robot has diverged and stands still.
+        rate: simulated seconds per second, as wanted.
+        achieved: what was reached lately.
+        together: whether pulling and holding act on both robots.
+        undo: whether a discarded past can be restored.
+        message: for the user.
+        level: how severe the message is; empty without one.
+        messages: how many have been shown so far: the same one may be shown again.
+        said: what is spoken, and what newcomers are invited to do.
+        presenting: whether large type for a projector is on.
+        height: how high a part of the scene the canvas shows, at the distance of the robots [m].
+        apart: how far the robots are apart in the picture [m].
+        cameras: for each robot, how the picture shows a point of the output space: three rows of p
+            factors and a constant; the first two results divided by the third are right and down
+            from the middle, as shares of the height.
+        arrow: length of the arrow of a force [m/N].
+        frozen: why the lab takes no commands, if the teacher has stopped it; else empty.
+        own: whether commands are taken: not if a teacher looks at the lab of a student.
+    """
+
+    v: int
+    language: str
+    robot: str
+    titles: list[str]
+    names: list[str]
+    texts: list[str]
+    captions: list[str]
+    clocks: list[bool]
+    stopped: list[bool]
+    rate: float
+    achieved: float
+    together: bool
+    undo: bool
+    message: str
+    level: str
+    messages: int
+    said: Said
+    presenting: bool
+    height: float
+    apart: float
+    cameras: list[list[list[float]]]
+    arrow: float
+    frozen: str
+    own: bool
+
+
+class LessonMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="lesson"):
+    """The open step of a lesson, or its end; when another one is open, or anything is noted in it.
+    A teacher's page has none.
+
+    What is right is told only once the student has answered, or has seen what happens; in a test
+    never.
+
+    Attributes:
+        lesson: its name; empty: no lesson is open, and the other fields but `version` are, too.
+        version: changes with every message.
+        index: number of the open step, from 0.
+        ended: whether the end is shown.
+        test: whether it is the concept test.
+        playing: whether the lab plays the step's script.
+        symbols: names of the lesson's symbols that mean something on this robot, and what they
+            mean.
+        head, pager: HTML of what stands above and below the text. A button's `data-send` has the
+            messages that it sends.
+        sections: HTML by number of the step: the open one, and the one whose prediction it shows;
+            `end` for the end of a lesson. Both come from `assets/templates/step`, as on the course
+            site.
+        steps: what the script needs of each step; parts only of those in `sections`.
+        notes: the answers of the open step.
+        charts: at the end: the curves of each prediction, in the order of the elements
+            `[data-chart]`.
+    """
+
+    lesson: str
+    version: int
+    index: int = 0
+    ended: bool = False
+    test: bool = False
+    playing: bool = False
+    symbols: dict[str, str] = {}
+    head: str = ""
+    pager: str = ""
+    sections: dict[str, str] = {}
+    steps: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "StepData[]"})] = []
+    notes: Annotated[dict[str, Any], Meta(extra={"typescript": "Notes"})] | UnsetType = UNSET
+    charts: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "ChartData[]"})] = []
+
+
+class MeasuredMessage(Struct, frozen=True, tag_field="is", tag="measured"):
+    """What is measured in the open step of a lesson, at most ten times a second.
+
+    Attributes:
+        verdicts: on each check of each task.
+        truth: while a script runs: the curves so far of the predicted quantity, three times a
+            second; else null.
+    """
+
+    verdicts: dict[str, list[Verdict]]
+    truth: Annotated[dict[str, Any], Meta(extra={"typescript": "Curves"})] | None
+
+
+class Alive(Struct, frozen=True, tag_field="is", tag="alive"):
+    """Comes whenever nothing else has been told for a second."""
+
+
+class Refused(Struct, frozen=True, tag_field="is", tag="refused"):
+    """A message of the page was refused.
+
+    What a command cannot do is told in `StateMessage.message`.
+
+    Attributes:
+        why: in English, for programmers.
+    """
+
+    why: str
+
+
+LabMessage = (
+    FrameMessage
+    | PathMessage
+    | LitMessage
+    | StateMessage
+    | LessonMessage
+    | MeasuredMessage
+    | Alive
+    | Refused
+)
+"""What the server sends."""
+
+BY_CHANGES: tuple[type[Struct], ...] = (StateMessage,)
+"""Messages of which, after the first one, only changed fields are sent; see `changes`."""
+
+
+def changes(message: Struct, before: Struct | None) -> dict[str, Any]:
+    """The fields of a message that differ from the one before; empty if there are none."""
+    names = message.__struct_fields__
+    return {
+        name: value
+        for name in names
+        if (value := getattr(message, name)) != getattr(before, name, UNSET)
+    }
+
+
+def encoded(message: Struct) -> bytes:
+    """A message as text."""
+    return _encoder.encode(message)
+
+
+def encoded_changes(kind: type[Struct], fields: Mapping[str, Any]) -> bytes:
+    """A message with only the fields that have changed, as text."""
+    config = kind.__struct_config__
+    return _encoder.encode({config.tag_field: config.tag, **fields})
+
+
+_encoder = msgspec.json.Encoder(enc_hook=str)  # texts that are safe HTML
