@@ -25,6 +25,7 @@ ORDER = [
     "app.scene",
     "app.simulation",
     "app.storage",
+    "app.view",
     "app.channel",
     "app.lab",
     "app.viser_adapter",

@@ -1573,6 +1573,20 @@ error-not_the_class_code = das ist nicht der Klassencode auf der Leinwand; vergl
 error-class_full = diese Klasse ist voll
 error-no_nickname = ein Spitzname hat mindestens ein Zeichen
 
+## Ein Formular: assets/web/parts/form.ts
+
+form-back = Zurück auf { $value }, die Vorgabe
+form-back_lesson = Zurück auf { $value }, wie in diesem Schritt
+form-back_group = Zurücksetzen: { $group }
+form-changed = geändert
+form-count_on = { $count } an
+form-is_on = an
+form-off = aus
+form-no_number = Das ist keine Zahl. Möglich ist { $low } bis { $high }.
+form-range = Möglich ist { $low } bis { $high }.
+form-differs = { $value } wurde nicht übernommen.
+form-use = Verwenden
+
 ## Eine Abbildung ohne Server
 
 standalone-path = Bahn

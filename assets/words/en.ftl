@@ -1211,6 +1211,20 @@ error-not_the_class_code = this is not the class code on the projector; compare 
 error-class_full = this class is full
 error-no_nickname = a nickname has at least one character
 
+## A form: assets/web/parts/form.ts
+
+form-back = Back to { $value }, the default
+form-back_lesson = Back to { $value }, as in this step
+form-back_group = Set back: { $group }
+form-changed = changed
+form-count_on = { $count } on
+form-is_on = on
+form-off = off
+form-no_number = That is not a number. It can be from { $low } to { $high }.
+form-range = It can be from { $low } to { $high }.
+form-differs = { $value } was not taken.
+form-use = Use
+
 ## A figure without a server
 
 standalone-path = Path

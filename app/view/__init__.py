@@ -1,0 +1,1 @@
+"""What pages show, as data: pure functions of snapshots, course and words."""
