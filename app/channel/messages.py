@@ -252,6 +252,112 @@ class MeasuredMessage(Struct, frozen=True, tag_field="is", tag="measured"):
     truth: Annotated[dict[str, Any], Meta(extra={"typescript": "Curves"})] | None
 
 
+FieldValue = float | str | bool
+"""The value of a field, in the unit in which it is kept."""
+
+
+class FormNeed(Struct, frozen=True, omit_defaults=True):
+    """A condition under which a field acts: another one has one of these values.
+
+    Attributes:
+        of: none: any but 0, "off" and false.
+    """
+
+    name: str
+    of: tuple[FieldValue, ...] = ()
+
+
+class FormOption(Struct, frozen=True, omit_defaults=True, kw_only=True):
+    """A value that may be chosen.
+
+    Attributes:
+        picture: an outline: a path of SVG in a square from -50 to 50, up is negative.
+    """
+
+    value: FieldValue
+    label: str
+    help: str = ""
+    picture: str = ""
+
+
+class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
+    """A row of a form. Its value is told by its name; a note's is what it says.
+
+    Attributes:
+        help: what one will see, in a sentence.
+        low, high, step: range of a number.
+        factor: how many of `unit` make one unit of the value.
+        on: the number to which a switch sets it, if 0 is off.
+        default: to which one goes back; None: there is no way back.
+        mark: the value of a lesson's step.
+        act: the command that a button sends.
+        tone: of a note or a button: "main", "warning" or none.
+        section: a heading above all fields of the same section.
+    """
+
+    name: str
+    kind: Literal["number", "choice", "switch", "button", "text", "note"]
+    label: str
+    symbol: str = ""
+    unit: str = ""
+    help: str = ""
+    low: float = 0.0
+    high: float = 0.0
+    step: float = 0.0
+    factor: float = 1.0
+    scale: Literal["linear", "log"] = "linear"
+    on: float | None = None
+    options: tuple[FormOption, ...] = ()
+    needs: tuple[FormNeed, ...] = ()
+    default: FieldValue | None = None
+    mark: FieldValue | None = None
+    act: SentCommand | None = None
+    tone: str = ""
+    section: str = ""
+
+
+class FormGroup(Struct, frozen=True, omit_defaults=True, kw_only=True):
+    """Fields that belong together.
+
+    Attributes:
+        level: "first": seen at once; "deeper": to be opened.
+        states: names of the fields whose values make its line while it is closed.
+        rest: its line while nothing in it is on.
+    """
+
+    name: str
+    title: str
+    fields: tuple[FormField, ...]
+    level: Literal["first", "deeper"] = "first"
+    states: tuple[str, ...] = ()
+    rest: str = ""
+
+
+class FormMessage(
+    Struct, frozen=True, omit_defaults=True, kw_only=True, tag_field="is", tag="form"
+):
+    """All fields of a place.
+
+    Attributes:
+        lacks: what the place lacks, in one line; empty if nothing.
+    """
+
+    place: Literal["lab", "step", "figure"]
+    groups: tuple[FormGroup, ...]
+    lacks: str = ""
+
+
+class ValuesMessage(Struct, frozen=True, omit_defaults=True, tag_field="is", tag="values"):
+    """Values of fields: all of them at first, then those that have changed.
+
+    Attributes:
+        refused: why the last value of a setting was refused; empty: it was not.
+    """
+
+    values: dict[str, FieldValue]
+    refused: dict[str, str] = {}
+
+
 class Alive(Struct, frozen=True, tag_field="is", tag="alive"):
     """Comes whenever nothing else has been told for a second."""
 
@@ -275,6 +381,8 @@ LabMessage = (
     | StateMessage
     | LessonMessage
     | MeasuredMessage
+    | FormMessage
+    | ValuesMessage
     | Alive
     | Refused
 )

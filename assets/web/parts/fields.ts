@@ -1,7 +1,7 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
 import { made, tell } from "../core/dom"
-import type { FormField, Value } from "../core/form_data"
+import type { FormField, FormOption } from "../channel/messages"
 import { Scale, typedNumber } from "../core/scales"
 import { said, written, type Texts } from "../core/words"
 
@@ -9,14 +9,16 @@ const RESTS = 300 // [ms] after the last touch, for which the hand's value stays
 const TOLD = 5000 // [ms] for which a row says that the lab has another value than the hand wanted
 const PAGE = 10 // steps of Page Up and Page Down
 
+export type Value = FormOption["value"]
+
 /** What a form shows, and where its changes go. */
 export interface FormHost {
     readonly texts: Texts
     /** The value of a setting; undefined if it is not known. */
     value(name: string): Value | undefined
     set(name: string, value: Value): void
-    /** Do what a button is for. */
-    act(message: Record<string, unknown>): void
+    /** Do what a button is for: its `act`, or what its name means to the page. */
+    act(button: FormField): void
     /** Why the last value of a setting was refused; empty if it was not. */
     refused(name: string): string
     /** Whether the last value that was set is still on its way, so that `value` is older. */
@@ -464,7 +466,7 @@ class ButtonRow extends Row {
     constructor(field: FormField, form: RowForm, signal: AbortSignal) {
         super(field, form, signal)
         this.button.type = "button"
-        this.button.addEventListener("click", () => this.field.act && form.host.act(this.field.act), { signal })
+        this.button.addEventListener("click", () => form.host.act(this.field), { signal })
         this.fill(this.button)
         this.name()
     }

@@ -2,7 +2,7 @@
 // its rows, and app/view/forms.py for what it is told.
 
 import { made, tell } from "../core/dom"
-import type { FormGroup, FormMessage, Need } from "../core/form_data"
+import type { FormGroup, FormMessage, FormNeed } from "../channel/messages"
 import { said } from "../core/words"
 import { rowOf, same, type FormHost, type Row, type RowForm } from "./fields"
 
@@ -91,7 +91,7 @@ export class Form implements RowForm {
     readonly row = (name: string): Row | undefined => this.rows.get(name)
 
     /** Whether a field with these conditions acts. */
-    acts(needs: readonly Need[] = []): boolean {
+    acts(needs: readonly FormNeed[] = []): boolean {
         return needs.every(need => {
             const value = this.rows.get(need.name)?.value ?? this.host.value(need.name)
             if (value === undefined) return true
