@@ -4,7 +4,7 @@
 #            processes that hang, a minute of attacks (.ci/run runs these, too)
 # make pages the other tests in Chromium, of every page and dialog: an hour
 # make fuzz  the property tests with random inputs; make test has the same ones every time
-# make check lint, format, types      make bench  the speed tables
+# make check lint, format, types, also of the pages' scripts      make bench  the speed tables
 #            (make bench ARGS="--clients 60": a class of sixty)
 # make soak  40 labs under attack for half an hour: lateness, memory and log stay within bounds
 
@@ -13,6 +13,9 @@ VENV   ?= .venv
 BIN     = $(VENV)/bin
 LAB     = $(VENV)/.installed
 TOOLS   = $(VENV)/.tools
+WEB     = assets/web
+SCRIPTS = $(WEB)/node_modules/.package-lock.json
+NPM     = PATH="$(abspath $(BIN)):$$PATH" npm --prefix $(WEB)
 # Bytecode is kept beside the tools, whatever the environment says: the processes that tests start
 # would compile all of OnPath again, each of them.
 KEPT    = env -u PYTHONDONTWRITEBYTECODE PYTHONPYCACHEPREFIX=$(abspath $(VENV))/bytecode
@@ -33,12 +36,17 @@ $(TOOLS): $(LAB)
 	$(BIN)/pip install --quiet --editable ".[dev]"
 	touch $(TOOLS)
 
+# What the pages' scripts are built, checked and tested with; Node is one of the tools.
+$(SCRIPTS): $(TOOLS) $(WEB)/package-lock.json
+	$(NPM) ci --silent
+	touch $@
+
 run: $(LAB)
 	$(BIN)/onpath $(ARGS)
 
 # Both parts run, whatever the first says: Playwright keeps a running event loop in its thread, with
 # which other tests cannot share it.
-test: $(TOOLS)
+test: $(TOOLS) $(SCRIPTS)
 	@failed=0; \
 	$(PYTEST) -m $(QUICK) --ignore=tests/in_browser $(ARGS) || failed=$$?; \
 	$(PYTEST) -m $(QUICK) tests/in_browser $(ARGS) || failed=$$?; \
@@ -62,10 +70,11 @@ build/onpath: Makefile
 	ln -s ../../onpath/__init__.py ../../onpath/__main__.py $@
 	touch $@
 
-check: $(TOOLS) build/onpath
+check: $(TOOLS) $(SCRIPTS) build/onpath
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/pyright --pythonpath $(BIN)/python
+	$(NPM) run --silent lint
 
 format: $(TOOLS)
 	$(BIN)/ruff check --fix .
@@ -86,4 +95,4 @@ wheel: $(TOOLS)
 	$(BIN)/python -m build
 
 clean:
-	rm -rf $(VENV) build dist .pytest_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(WEB)/node_modules build dist .pytest_cache .ruff_cache .hypothesis

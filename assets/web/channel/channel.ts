@@ -126,7 +126,7 @@ export class RemoteEngine implements Engine {
             this.heard++
             socket.send(JSON.stringify({ is: "hello", ticket } satisfies PageMessage))
         })
-        socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string)))
+        socket.addEventListener("message", ({ data }) => socket === this.socket && this.hear(JSON.parse(data as string) as LabMessage))
         socket.addEventListener("close", ({ code }) => socket === this.socket && this.closed(code))
     }
 

@@ -21,6 +21,8 @@ const ORIGIN = "Onpath-Origin" // asks whether pages of an origin may connect; s
 /** What is going on; connect-… of the catalogues. */
 type Cause = "opening" | "silent" | "blocked" | "offline" | "lost" | "building" | "loading" | "back" | "slow" | Final
 type Final = "forbidden" | "refused" | "version"
+/** What viser's worker tells. */
+interface Heard { type: string; versionMismatch?: boolean }
 const CALM: readonly string[] = ["opening", "building", "loading", "back"]
 
 /** Of browser_words.js, which comes before this script. */
@@ -137,10 +139,10 @@ export class Connection {
     /** Follow the worker that holds viser's websocket, decide in viser's place when it tries again, and let it be patient:
      * viser tries once a second, only in a window that has the focus, and each time gives up the attempt before. */
     private followWorkers(): void {
-        const send = Worker.prototype.postMessage
+        const send = Worker.prototype.postMessage // oxlint-disable-line typescript/unbound-method
         const follow = (worker: Worker) => {
             this.connect = () => send.call(worker, { type: "retry" })
-            worker.addEventListener("message", ({ data }) => this.hear(data))
+            worker.addEventListener("message", ({ data }) => this.hear(data as Heard))
         }
         window.Worker = class extends Worker {
             constructor(url: string | URL, options?: WorkerOptions) {
@@ -155,7 +157,7 @@ export class Connection {
         }
     }
 
-    private hear({ type, versionMismatch }: { type: string; versionMismatch?: boolean }): void {
+    private hear({ type, versionMismatch }: Heard): void {
         if (!this.hasPage) this.quiet = 0
         if (type === "connected") {
             clearTimeout(this.again)

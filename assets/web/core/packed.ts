@@ -33,10 +33,9 @@ export function packed(kept: unknown, room: number): Packed | null {
 /** The packed notes; undefined if the text is not one of ours. */
 export function unpacked(text: string): unknown {
     try {
-        return JSON.parse(text, (_, own) => {
-            if (!isCurve(own?.curve)) return own
-            const { curve, ...rest } = own
-            return { ...rest, ...drawn(curve) }
+        return JSON.parse(text, (_, own: { curve?: unknown } | null): unknown => {
+            const { curve, ...rest } = { ...own }
+            return isCurve(curve) ? { ...rest, ...drawn(curve) } : own
         })
     } catch {
         return undefined
@@ -51,7 +50,7 @@ function reduced(own: unknown, size: Size): unknown {
 }
 
 function shortened(text: string, letters: number): string {
-    const all = [...text] // so that an emoji is not cut in two
+    const all = Array.from(text) // so that an emoji is not cut in two
     return all.length <= letters ? text : `${all.slice(0, letters - 1).join("")}…`
 }
 
@@ -108,6 +107,6 @@ function isLine(own: unknown): own is number[] {
 }
 
 function isCurve(own: unknown): own is Curve {
-    const letters = Array.isArray(own) && own.length === 5 && isLine(own.slice(0, 4)) ? own[4] : null
+    const letters = Array.isArray(own) && own.length === 5 && isLine(own.slice(0, 4)) ? (own[4] as unknown) : null
     return typeof letters === "string" && /^([\w-]{4})+$/.test(letters)
 }

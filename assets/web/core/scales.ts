@@ -87,7 +87,7 @@ function tidy(value: number): number {
 /** The number in a text, with a point or a comma before the decimals, or null. `point`: that of the page's language; only
  * where it is a point do commas divide thousands. */
 export function typedNumber(text: string, point: string): number | null {
-    let plain = text.replace(/\s/g, "").replace(/[\u2212\u2013]/g, "-") // as typesetters and phones write a minus
+    let plain = text.replaceAll(/\s/g, "").replaceAll(/[\u2212\u2013]/g, "-") // as typesetters and phones write a minus
     if (point === "." && /^[-+]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?$/.test(plain)) plain = plain.replaceAll(",", "")
     plain = plain.replace(",", ".")
     if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(plain)) return null

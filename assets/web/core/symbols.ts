@@ -152,5 +152,5 @@ function circle([x, y]: Point, radius: number): Point[] {
 const away = (a: Point, b: Point): number => Math.hypot(a[0] - b[0], a[1] - b[1])
 const size = (points: Point[]): number => Math.max(...points.map(point => away(point, points[0]!)))
 const direction = (from: Point, to: Point): number => Math.atan2(to[1] - from[1], to[0] - from[0])
-const moved = (from: Point, along: Point, by: number): Point => [from[0] + by * along[0], from[1] + by * along[1]]
+const moved = (from: Point, step: Point, by: number): Point => [from[0] + by * step[0], from[1] + by * step[1]]
 const turned = ([x, y]: Point): Point => [-y, x]

@@ -13,7 +13,7 @@ export function said(texts: Texts, key: string, values: Record<string, string> =
 }
 
 export function filled(text: string, values: Record<string, string>): string {
-    return text.replace(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
+    return text.replaceAll(/\{(\w+)\}/g, (whole, name: string) => values[name] ?? whole)
 }
 
 /** A formatted number with the decimal separator of the language in place of the point. */
@@ -34,5 +34,5 @@ export function significant(texts: Texts, value: number, digits: number): string
 
 /** A text without digits: the same text when only its numbers have changed. */
 export function withoutNumbers(text: string): string {
-    return text.replace(/\d+/g, "")
+    return text.replaceAll(/\d+/g, "")
 }

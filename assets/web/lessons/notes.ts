@@ -46,7 +46,7 @@ export function given(answer: Answer | undefined): boolean {
 
 /** All notes of a course as a file. */
 export function exported(progress: Progress, page: PageData): string {
-    const kept = Object.keys(page.lessons).map(name => [name, notesOf(progress, name)])
+    const kept = Object.keys(page.lessons).map(name => [name, notesOf(progress, name)] as const)
     return JSON.stringify({ format: FORMAT, lessons: Object.fromEntries(kept) })
 }
 
@@ -70,7 +70,7 @@ function key(lesson: string): string {
 
 export function parsed(text: string): unknown {
     try {
-        return JSON.parse(text)
+        return JSON.parse(text) as unknown
     } catch {
         return null
     }

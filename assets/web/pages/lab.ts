@@ -197,7 +197,7 @@ class Face {
 /** The row of a gain in viser's panel, if it is shown there. */
 function sliderOf(gain: string): Element | null {
     const labels = [...document.querySelectorAll("#root .mantine-Flex-root > * label, #root .mantine-Flex-root > label")]
-    const label = labels.find(each => each.textContent!.split(/[^\w]/)[0] === gain)
+    const label = labels.find(each => each.textContent.split(/[^\w]/)[0] === gain)
     return label?.closest(".mantine-Flex-root") ?? null
 }
 

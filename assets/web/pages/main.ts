@@ -56,7 +56,7 @@ function showPage(page: PageData): void {
 }
 
 const source = document.getElementById("data")
-const data: unknown = source && JSON.parse(source.textContent!)
+const data: unknown = source && JSON.parse(source.textContent)
 const figure = document.getElementById("figure")
 if (!source) showLab()
 else if (figure) void showFigure(data as FigureData, figure)

@@ -41,7 +41,7 @@ export class Player implements Robots {
         this.student.changed = () => this.show()
         this.next.addEventListener("click", () => this.go(1))
         this.back.addEventListener("click", () => this.go(-1))
-        addEventListener("hashchange", () => this.open(this.asked()))
+        addEventListener("hashchange", () => void this.open(this.asked()))
         addEventListener("keydown", event => this.key(event))
         addEventListener("resize", () => {
             this.view?.place()
@@ -242,7 +242,7 @@ export class Player implements Robots {
         page.steps.forEach((_, i) => {
             const found = this.views[i]!.prediction
             if (found?.step !== i) return
-            const question = elementOf(found).querySelector(".question")!.textContent!
+            const question = elementOf(found).querySelector(".question")!.textContent
             const answer = notes.answers[String(i)]
             const truth = notes.truths[String(i)]
             const comparison = new Comparison(page, found, notes)

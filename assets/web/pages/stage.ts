@@ -67,9 +67,9 @@ export class Stage {
     /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
     play(script: Script, ended: (whole: boolean) => void): void {
         const { simulation, figure } = this
-        const rate = (rate: number) => figure.engine.act({ do: "rate", rate })
-        simulation.play(script, action => action.rate && rate(action.rate), whole => {
-            rate(1)
+        const go = (rate: number) => figure.engine.act({ do: "rate", rate })
+        simulation.play(script, action => action.rate && go(action.rate), whole => {
+            go(1)
             if (whole) this.run(false)
             ended(whole)
         })

@@ -64,7 +64,10 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
             student.chooses(key, Number(chosen.value))
         } else if (block.kind === "number") {
             const given = Number(input.value.trim().replace(page.words["point"]!, ".").replace("−", "-") || NaN)
-            if (!Number.isFinite(given)) return void (told.textContent = said(page, "lesson.no_number"))
+            if (!Number.isFinite(given)) {
+                told.textContent = said(page, "lesson.no_number")
+                return
+            }
             student.gives(key, given)
         } else if (input.value.trim()) student.writes(key, input.value.trim().slice(0, 1000))
         else return

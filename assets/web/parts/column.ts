@@ -102,7 +102,7 @@ export class Column implements Robots {
         element.dataset["version"] = String(message.version)
         document.documentElement.classList.remove("op-waits")
         if (!this.open) return this.leave("")
-        const place = `${Object.keys(message.symbols)} ${message.lesson}.${message.ended ? END : message.index}`
+        const place = `${Object.keys(message.symbols).join()} ${message.lesson}.${message.ended ? END : message.index}`
         const isNew = place !== this.place
         const reads = this.turned || element.contains(document.activeElement)
         if (isNew) this.leave(place)
@@ -177,7 +177,7 @@ export class Column implements Robots {
             this.view = new StepView(this.page, index, this.student, this, { section, beneath, isWide })
         }
         this.section.querySelectorAll("[data-chart]").forEach((each, i) => {
-            const { data, script, answer, truth } = charts![i]!
+            const { data, script, answer, truth } = charts[i]!
             if (!each.childElementCount) each.append(compared(this.page, data, script, answer, truth ?? undefined))
         })
     }
@@ -266,7 +266,7 @@ export class Column implements Robots {
 /** The elements of our own server's HTML. */
 function elementsOf(html: string): DocumentFragment {
     const template = document.createElement("template")
-    template.innerHTML = html
+    template.innerHTML = html // oxlint-disable-line no-restricted-properties
     return template.content
 }
 

@@ -284,7 +284,7 @@ class NumberRow extends Row {
         }, { signal })
         slider.addEventListener("input", () => {
             const { valueAsNumber: at } = slider, { scale } = this
-            const meant = [this.base, this.field.default, 0].filter(each => typeof each === "number").map(each => this.inUnits(each as number))
+            const meant = [this.base, this.field.default, 0].filter(each => typeof each === "number").map(each => this.inUnits(each))
             this.pick(scale.settled(scale.isLog ? scale.at(at) : scale.rounded(at), meant.filter(each => each === scale.clamped(each))))
         }, { signal })
         this.goesBack(slider)
@@ -292,7 +292,7 @@ class NumberRow extends Row {
         box.addEventListener("keydown", event => this.typed(event), { signal })
         box.addEventListener("input", () => ((this.typing = true), this.touched()), { signal })
         box.addEventListener("focus", () => box.select(), { signal })
-        box.addEventListener("blur", () => this.typing && this.commit() === false && this.undo(), { signal })
+        box.addEventListener("blur", () => this.typing && !this.commit() && this.undo(), { signal })
     }
 
     private key(event: KeyboardEvent): void {

@@ -36,7 +36,7 @@ export class Legend {
     private button(words: HTMLElement, name: string): HTMLElement {
         const sign = words.querySelector(`[data-symbol="${name}"]`)!.cloneNode(true) as HTMLElement
         const inMath = sign.namespaceURI !== document.documentElement.namespaceURI
-        const shown = inMath ? document.createElementNS(sign.namespaceURI!, "math") : made("b", "")
+        const shown = inMath ? document.createElementNS(sign.namespaceURI, "math") : made("b", "")
         shown.append(sign)
         const button = made("button", "", shown, ` ${this.page.symbols[name]}`)
         button.type = "button"

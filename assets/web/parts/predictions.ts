@@ -23,7 +23,7 @@ export function predictionAt(steps: StepData[], index: number): Prediction | nul
     for (const step of candidates)
         for (const [block, data] of (steps[step]?.blocks ?? []).entries())
             if (data.kind === "choice" || data.kind === "sketch")
-                return { step, block, data: data as Prediction["data"] }
+                return { step, block, data: data }
     return null
 }
 
@@ -133,7 +133,7 @@ export class Comparison {
 
     /** The verdict on a choice, in words. */
     get words(): string[] {
-        return this.chart ? [] : this.elements.flatMap(each => [...each.children]).map(each => each.textContent!)
+        return this.chart ? [] : this.elements.flatMap(each => [...each.children]).map(each => each.textContent)
     }
 
     /** Draw what happened, too; if that is not kept, the page says how to see it again. */

@@ -117,8 +117,8 @@ export class View {
         if (Math.hypot(end[0] - begin[0], end[1] - begin[1]) >= 6) arrow(ink, begin, end, tones().force, 3)
     }
 
-    private line(ink: CanvasRenderingContext2D, points: Point[], colour: string, width: number): void {
-        stroke(ink, points.map(point => this.pixel(point)), colour, width)
+    private line(ink: CanvasRenderingContext2D, line: Point[], colour: string, width: number): void {
+        stroke(ink, line.map(point => this.pixel(point)), colour, width)
     }
 
     private disc(ink: CanvasRenderingContext2D, place: Point, radius: number, colour: string): void {

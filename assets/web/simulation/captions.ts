@@ -26,8 +26,8 @@ export function caption(side: Side, data: FigureData): string {
 /** One line with the captions of all robots that have one. */
 export function spoken(simulation: Simulation, captions: string[]): string {
     const { data } = simulation
-    const line = (caption: string, i: number) => said(data, "caption.spoken", { robot: simulation.title(i), caption })
-    return captions.map((caption, i) => caption && line(caption, i)).filter(Boolean).join(" ")
+    const line = (text: string, i: number) => said(data, "caption.spoken", { robot: simulation.title(i), caption: text })
+    return captions.map((text, i) => text && line(text, i)).filter(Boolean).join(" ")
 }
 
 /** Why robots have stopped, why the path goes no further, or which point the keys move. */

@@ -21,6 +21,6 @@ const remainder = (x: number, y: number) => {
 }
 
 export const mathematics = {
-    ...{ sin, cos, tan, asin, acos, atan, exp, log, expm1, log1p },
-    ...{ sinh, cosh, tanh, asinh, acosh, atanh, atan2, hypot, pow, fmod, remainder },
+    sin, cos, tan, asin, acos, atan, exp, log, expm1, log1p,
+    sinh, cosh, tanh, asinh, acosh, atanh, atan2, hypot, pow, fmod, remainder,
 }

@@ -1,0 +1,83 @@
+// A page for tests in Node: a document without layout, canvases that note what is written on them, and texts that are their
+// keys. Import it before what is tested.
+
+import { Window } from "happy-dom"
+
+const window = new Window({ url: "http://localhost/", width: 1280, height: 800 })
+const NAMES = [
+    "document", "Node", "Element", "HTMLElement", "HTMLCanvasElement", "Event", "CustomEvent", "KeyboardEvent", "PointerEvent",
+    "MouseEvent", "CSS", "getComputedStyle", "requestAnimationFrame", "cancelAnimationFrame", "location", "localStorage", "matchMedia",
+] as const
+const values = Object.fromEntries(NAMES.map(name => [name, (window as unknown as Record<string, unknown>)[name]]))
+for (const [name, value] of Object.entries({ window, self: window, ...values }))
+    Object.defineProperty(globalThis, name, { value, configurable: true, writable: true })
+for (const name of ["addEventListener", "removeEventListener", "dispatchEvent"] as const)
+    Object.defineProperty(globalThis, name, { value: window[name].bind(window), configurable: true })
+
+const observers = new Map<Element, (size: { width: number; height: number }) => void>()
+class FakeResizeObserver {
+    constructor(private readonly tell: (entries: unknown[]) => void) {}
+    observe(element: Element): void {
+        observers.set(element, contentRect => this.tell([{ contentRect }]))
+    }
+    unobserve(element: Element): void { observers.delete(element) }
+    disconnect(): void {}
+}
+Object.assign(globalThis, { ResizeObserver: FakeResizeObserver })
+
+/** Give an element a size, of which its observer hears. */
+export function resize(element: Element, width: number, height: number): void {
+    observers.get(element)?.({ width, height })
+}
+
+/** What is written on a canvas since it was cleared last. */
+export class Ink {
+    texts: { text: string; x: number; y: number }[] = []
+    lines: (readonly [number, number])[][] = []
+    private line: (readonly [number, number])[] = []
+    measureText(text: string): { width: number } { return { width: 7 * text.length } }
+    clearRect(): void {
+        this.texts = []
+        this.lines = []
+    }
+    beginPath(): void { this.line = [] }
+    lineTo(x: number, y: number): void { this.line.push([x, y]) }
+    moveTo(x: number, y: number): void { this.line.push([x, y]) }
+    stroke(): void { if (this.line.length) this.lines.push(this.line) }
+    fillText(text: string, x: number, y: number): void { this.texts.push({ text, x, y }) }
+    static readonly nothing = (): void => {}
+}
+for (const name of ["setTransform", "fill", "arc", "rect", "clip", "save", "restore", "setLineDash", "fillRect", "strokeText",
+    "strokeRect", "closePath", "translate", "rotate", "scale", "drawImage", "ellipse", "bezierCurveTo", "quadraticCurveTo"])
+    Object.assign(Ink.prototype, { [name]: Ink.nothing })
+
+const inks = new WeakMap<object, Ink>()
+Object.assign(window.HTMLCanvasElement.prototype, {
+    getContext(this: object): Ink {
+        const ink = inks.get(this) ?? new Ink()
+        inks.set(this, ink)
+        return ink
+    },
+})
+
+export function inkOf(canvas: HTMLCanvasElement): Ink {
+    return canvas.getContext("2d") as unknown as Ink
+}
+
+/** Texts that are their keys. */
+export const TEXTS = {
+    words: new Proxy<Record<string, string>>({}, { get: (_, key) => (key === "point" ? "." : String(key)), has: () => true }),
+}
+
+/** The element with a role and a name, as a reader finds it. */
+export function found(within: Element, role: string, name: string): HTMLElement {
+    const roles: Record<string, string> = { button: "button, [role=button]", combobox: "select", slider: "[role=slider], input[type=range]" }
+    const all = [...within.querySelectorAll<HTMLElement>(roles[role] ?? `[role=${role}]`)]
+    const one = all.find(each => [each.ariaLabel, each.getAttribute("aria-label"), each.textContent].includes(name))
+    if (!one) throw new Error(`no ${role} named ${name}`)
+    return one
+}
+
+export function press(element: Element, key: string): boolean {
+    return element.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true, cancelable: true }))
+}
