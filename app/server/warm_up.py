@@ -77,9 +77,15 @@ def warm_up(loop_cache: LoopCache, course: Course, rest: float = REST) -> Thread
 
 
 def build_robots(loop_cache: LoopCache) -> None:
-    """Build the equations and drawings of all robots, before somebody chooses one."""
+    """Build the equations, checks and drawings of all robots, before somebody chooses one."""
+    home = np.zeros((1, 2))
     for entry in ROBOTS.values():
-        take_page_snapshot(Lab(loop_cache, entry), 1.0)
+        lab = Lab(loop_cache, entry)
+        take_page_snapshot(lab, 1.0)
+        robot = lab.simulation.robot
+        robot.margin(home)
+        q = robot.rest(robot.frame.lift(home))
+        robot.fault(q, np.zeros_like(q), lab.simulation.parameters)
 
 
 def compile_loops(loop_cache: LoopCache, entry: RobotEntry) -> None:

@@ -77,6 +77,49 @@ def test_what_fails_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
     assert {*warm_up.LATER} <= {*done}
 
 
+BUILT_BEFORE = """
+from threading import Thread
+import casadi as ca
+from onpath.app.lab.lab import Lab
+from onpath.app.lab.loops.loop_cache import LoopCache
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
+from onpath.app.server.warm_up import build_robots
+from onpath.models.systems.catalogue import ROBOTS
+
+made = []
+
+class Function(ca.Function):
+    def __init__(self, name, *rest):
+        made.append(name)
+        super().__init__(name, *rest)
+
+def use_robots():
+    for name, entry in ROBOTS.items():
+        made.clear()
+        lab = Lab(cache, entry)
+        simulation, state = lab.simulation, next(iter(lab.simulation.runs.values())).state
+        n = simulation.robot.system.n
+        simulation.robot.margin(simulation.editor.design.points)
+        simulation.robot.fault(state[None, :n], state[None, n : 2 * n], simulation.parameters)
+        take_page_snapshot(lab, 1.0)
+        if made:
+            print(name, made)
+
+cache = LoopCache()
+build_robots(cache)
+ca.Function = Function
+thread = Thread(target=use_robots)
+thread.start()
+thread.join()
+"""
+
+
+@pytest.mark.thorough
+def test_another_thread_builds_no_function_of_a_robot_again() -> None:
+    run = subprocess.run([sys.executable, "-c", BUILT_BEFORE], capture_output=True, text=True)
+    assert (run.stdout, run.stderr) == ("", "")
+
+
 @pytest.mark.thorough
 def test_the_loops_of_a_robots_first_lab_are_compiled_with_progress(
     caplog: pytest.LogCaptureFixture,
