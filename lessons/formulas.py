@@ -35,6 +35,8 @@ COMMA = re.compile(r"<mn>(\d+)</mn><mrow><mo>,</mo></mrow><mn>(\d+)</mn>")
 """A decimal comma, 0{,}5 in LaTeX, which the converter writes as an operator between spaces."""
 LARGEST = 400_000
 """Largest size of a picture, [B]."""
+QUOTED = 80
+"""Longest part of a formula in a message, [characters]."""
 
 
 class TextError(ValueError):
@@ -52,14 +54,18 @@ def mathml(latex: str, options: dict[str, Any]) -> str:
         TextError: the LaTeX cannot be converted.
     """
     if faults := list(brace_faults(latex)):
-        raise TextError(f"formula {latex!r}: {'; '.join(faults)}")
+        raise TextError(f"formula {_quoted(latex)}: {'; '.join(faults)}")
     try:
         written = _converted(latex, "block" if options.get("display_mode") else "inline")
     except Exception as error:  # the library raises many kinds
-        raise TextError(f"formula {latex!r}: {error or type(error).__name__}") from None
+        raise TextError(f"formula {_quoted(latex)}: {error or type(error).__name__}") from None
     if faults := [*latex_faults(latex, written), *refused(written)]:
-        raise TextError(f"formula {latex!r}: {'; '.join(faults)}")
+        raise TextError(f"formula {_quoted(latex)}: {'; '.join(faults)}")
     return COMMA.sub(r"<mn>\1,\2</mn>", written)
+
+
+def _quoted(latex: str) -> str:
+    return repr(latex if len(latex) <= QUOTED else f"{latex[:QUOTED]}…")
 
 
 def _converted(latex: str, display: str) -> str:

@@ -85,6 +85,12 @@ class Serve:
             raise ValueError(f"--privacy-url {self.privacy_url}: expected https://… or http://…")
         if self.course_url and not _is_web_address(self.course_url):
             raise ValueError(f"--course-url {self.course_url}: expected https://… or http://…")
+        for origin in self.origin:
+            if not _is_origin(origin):
+                raise ValueError(
+                    f"--origin {origin}: expected a web address without a path, such as"
+                    " https://lab.example.org"
+                )
         gc.disable()  # a collection finds nothing while modules are imported; see SimulationThread
         try:
             return self._serve()
@@ -184,6 +190,19 @@ def _is_web_address(text: str) -> bool:
         return False
     plain = text.isprintable() and not any(c.isspace() or c == "\\" for c in text)
     return plain and parts.scheme in ("http", "https") and bool(parts.hostname)
+
+
+def _is_origin(text: str) -> bool:
+    """Whether a text is what a browser sends as the origin of a page."""
+    if not _is_web_address(text):
+        return False
+    parts = urlsplit(text)
+    try:
+        _ = parts.port
+    except ValueError:  # not a number from 0 to 65535
+        return False
+    plain = parts.path in ("", "/") and "?" not in text and "#" not in text
+    return plain and "@" not in parts.netloc
 
 
 def print_classes(classrooms: Sequence[Classroom], site: str, *, key_is_known: bool) -> None:

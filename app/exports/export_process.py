@@ -23,7 +23,11 @@ class ExportError(Exception):
 
 
 class ExportDied(ExportError):
-    """The process died, or took too long and was killed."""
+    """The process died, for instance because the machine had no memory left."""
+
+
+class ExportLate(ExportError):
+    """The call took too long, so its process was killed."""
 
 
 class ExportStopped(ExportError):
@@ -61,7 +65,8 @@ class ExportProcess:
 
         Raises:
             ExportError: the call failed, or its time was over before its turn.
-            ExportDied: it took too long, or its process died.
+            ExportDied: its process died.
+            ExportLate: it took too long.
             ExportStopped: `stop` was called in the meantime.
         """
         stops = self._stops
@@ -72,7 +77,13 @@ class ExportProcess:
             if self._stops != stops:
                 raise ExportStopped("stopped before its turn")
             process = self._started()
-            limit = threading.Timer(seconds, process.kill)
+            is_late = threading.Event()
+
+            def give_up() -> None:
+                is_late.set()
+                process.kill()
+
+            limit = threading.Timer(seconds, give_up)
             limit.start()
             try:
                 for add, added in self._added:  # the new process finds only our own
@@ -83,8 +94,9 @@ class ExportProcess:
                 self._end()
                 if self._stops != stops:
                     raise ExportStopped("stopped") from error
-                reason = "the export process has died, or has been ended after its time"
-                raise ExportDied(f"{reason}: {process.returncode}") from error
+                if is_late.is_set():
+                    raise ExportLate(f"the export process was ended after {seconds:g} s") from error
+                raise ExportDied(f"the export process has died: {process.returncode}") from error
             finally:
                 limit.cancel()
                 self._begin_resting()

@@ -14,8 +14,8 @@ from importlib import import_module
 
 from onpath.app.common.error_log import log_error
 from onpath.app.exports.export_process import (
-    ExportDied,
     ExportError,
+    ExportLate,
     ExportProcess,
     ExportStopped,
 )
@@ -121,8 +121,8 @@ class PathReader:
                 return  # the server is stopping
             except ExportError as error:
                 log_error(error)
-                died = isinstance(error, ExportDied)
-                refuse(CodedError("error.file_takes_long" if died else "error.file_failed"))
+                late = isinstance(error, ExportLate)
+                refuse(CodedError("error.file_takes_long" if late else "error.file_failed"))
             finally:
                 self._busy = False
 

@@ -12,7 +12,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from onpath.lessons.adaptive.own_numbers import filled, marked
-from onpath.lessons.formulas import TextError, folded, reader, to_html
+from onpath.lessons.formulas import TextError, folded, mathml, reader, to_html
 from onpath.lessons.parse import read_lesson
 from onpath.lessons.problems import LessonError
 from onpath.lessons.progress import Answer, Notes
@@ -228,3 +228,10 @@ def test_blocks_have_no_pictures_and_no_other_links(tmp_path: Path, place: str, 
     (problem,) = caught.value.problems
     begin = whole[: whole.index(text)].count("\n") + 1
     assert begin - 8 <= problem.line <= begin
+
+
+@pytest.mark.parametrize("latex", ["x" * 5000 + "{", r"\bogus" * 3000, "a" * 5000 + r"\left("])
+def test_a_long_formula_is_quoted_in_part(latex: str) -> None:
+    with pytest.raises(TextError) as refusal:
+        mathml(latex, {})
+    assert len(str(refusal.value)) < 300
