@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from math import inf
 from operator import is_
+from typing import Any
 
 import numpy as np
 from msgspec import Struct
@@ -18,13 +19,16 @@ from onpath.app.channel.messages import FrameMessage, PathMessage
 from onpath.app.lab.events import LabEvent
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loop_states import Slot
-from onpath.app.lab.plot_samples import sample_layout
+from onpath.app.lab.plot_rows import ASKED, MOST_LINES, XI, rounding
+from onpath.app.lab.plot_samples import sample_layout, samples_of
 from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.robot_geometry import straight_tip
 from onpath.app.lab.snapshots.snapshot import PathSnapshot
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import log_layout
 from onpath.models.control.sides import SIDES
+from onpath.models.systems.law_parameters import LEVEL_SET
+from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
 MOST = 30  # samples that are kept while a page reads slowly; then they are read from the history
@@ -55,18 +59,21 @@ class Earlier(Struct, frozen=True, eq=False):
         times: [s].
         values: see `sample_layout`.
         events: of the lab.
+        across_since: time since which ξ has had its present unit, [s].
     """
 
     times: Array
     values: Array
     events: Sequence[LabEvent]
+    across_since: float
 
 
 class DataFrame(Struct, frozen=True, eq=False):
     """What a page is told at once.
 
     Attributes:
-        robot: of the samples.
+        robot, parameters: of the samples.
+        fields: that the page plots, besides those of every frame.
         anew: whether the page must forget its earlier samples.
         earlier: samples that come before the latest, or None.
         latest: samples since the last frame, the last of which is the present.
@@ -75,6 +82,8 @@ class DataFrame(Struct, frozen=True, eq=False):
     """
 
     robot: Robot
+    parameters: Parameters
+    fields: tuple[str, ...]
     anew: bool
     earlier: Earlier | None
     latest: list[Sample]
@@ -87,13 +96,21 @@ class FrameSource:
 
     def __init__(self) -> None:
         self._latest = list[Sample]()  # the last one sent, and all since then
+        self.fields: tuple[str, ...] = ()
         self.forget()
+
+    def ask(self, fields: Sequence[str]) -> None:
+        """Tell these fields, too, also of the past; unknown ones are left out."""
+        known = tuple([name for name in ASKED if name in fields])
+        if known != self.fields:
+            self.fields = known
+            self.forget()
 
     def forget(self) -> None:
         """Tell the page everything anew."""
         self._latest.clear()
         self._simulation: Simulation | None = None
-        self._run, self._history = 0, None
+        self._run, self._history, self._is_area = 0, None, False
         self._anew, self._behind = True, False
         self._sent: tuple[bool, float | None] = False, None
 
@@ -104,13 +121,12 @@ class FrameSource:
             simulation is not self._simulation
             or simulation.run_number != self._run
             or simulation.history is not self._history
+            or (simulation.parameters.across == LEVEL_SET) is not self._is_area
         ):
             self.forget()
-            self._simulation, self._run, self._history = (
-                simulation,
-                simulation.run_number,
-                simulation.history,
-            )
+            self._simulation, self._run = simulation, simulation.run_number
+            self._history = simulation.history
+            self._is_area = simulation.parameters.across == LEVEL_SET  # another unit of ξ
         flags = _flags(simulation)
         if latest:
             last = latest[-1]
@@ -135,6 +151,8 @@ class FrameSource:
             earlier = _earlier(simulation, since)
         frame = DataFrame(
             robot=simulation.robot,
+            parameters=simulation.parameters,
+            fields=_plotted(simulation.robot, self.fields),
             anew=self._anew,
             earlier=earlier,
             latest=new if earlier is None else [latest[-1]],
@@ -153,15 +171,49 @@ def frame_message(frame: DataFrame) -> FrameMessage:
     numbers = [record.take(_columns(robot, states.size, len(record))) for states, record in slots]
     rows = _units(robot) * np.concatenate(numbers).reshape(len(latest), -1)
     heads = [[round(TIME * sample.time), sample.flags] for sample in latest]
-    lines = [[*head, *row] for head, row in zip(heads, _whole(rows), strict=True)]
+    more = _more(frame, slots) if frame.fields else [()] * len(latest)
+    lines = [
+        [*head, *row, *others] for head, row, others in zip(heads, _whole(rows), more, strict=True)
+    ]
     if frame.earlier is not None:
-        lines = [line for line in _earlier_lines(robot, frame.earlier) if line < lines[0]] + lines
+        earlier = _earlier_lines(frame, frame.earlier)
+        lines = [line for line in earlier if line[:2] < lines[0][:2]] + lines
     message = FrameMessage(lines, frame.running, frame.past, frame.anew)
+    if frame.anew:
+        message.fields = _field_units(frame)
     if (straight := straight_tip(robot)) is not None:
         q = log_layout(robot.system).slices["q"]
         tips = np.concatenate([straight(record[states.size :][q]) for states, record in slots])
         message.straight = _whole(LENGTH * tips.reshape(len(latest), -1))
     return message
+
+
+def _plotted(robot: Robot, fields: Sequence[str]) -> tuple[str, ...]:
+    """The fields that the robot has."""
+    return tuple([name for name in fields if name in sample_layout(robot).slices])
+
+
+def _field_units(frame: DataFrame) -> list[tuple[str, int, float]]:
+    """For each field that is plotted, how many of its numbers are told, and units per SI unit."""
+    is_area, sizes = frame.parameters.across == LEVEL_SET, dict(sample_layout(frame.robot).fields)
+    return [(name, min(sizes[name], MOST_LINES), rounding(name, is_area)) for name in frame.fields]
+
+
+def _more(frame: DataFrame, slots: Sequence[tuple[Any, Array]]) -> list[list[int]]:
+    """The plotted numbers of the latest samples: a line for each, with all robots."""
+    rows = np.array([record[states.size : -2] for states, record in slots])
+    distances = np.array([record[-2] for _, record in slots])
+    values = samples_of(frame.robot, frame.parameters, rows, distances)
+    return _whole(_chosen(frame, values).reshape(len(frame.latest), -1))
+
+
+def _chosen(frame: DataFrame, values: Array) -> Array:
+    """The plotted numbers of samples, (..., fields), in units of the channel."""
+    slices = sample_layout(frame.robot).slices
+    parts = [
+        unit * values[..., slices[name]][..., :size] for name, size, unit in _field_units(frame)
+    ]
+    return np.concatenate(parts, axis=-1)
 
 
 def _whole(numbers: Array) -> list[list[int]]:
@@ -199,7 +251,12 @@ def _earlier(simulation: Simulation, since: float) -> Earlier | None:
     if not len(times):
         return None
     run = simulation.run_number
-    return Earlier(times, values, [event for event in simulation.events if event.run == run])
+    return Earlier(
+        times=times,
+        values=values,
+        events=[event for event in simulation.events if event.run == run],
+        across_since=simulation.across_since,
+    )
 
 
 def _flags_at(times: Array, events: Sequence[LabEvent]) -> Array:
@@ -219,12 +276,23 @@ _FLAGS = {"hold": (0, True), "let_go": (0, False), "pull": (PULLED, True)}
 _FLAGS |= {"release": (PULLED, False)}
 
 
-def _earlier_lines(robot: Robot, earlier: Earlier) -> list[list[int]]:
-    slices = sample_layout(robot).slices
+def _earlier_lines(frame: DataFrame, earlier: Earlier) -> list[list[int | None]]:
+    slices, robot = sample_layout(frame.robot).slices, frame.robot
     columns = np.concatenate([np.r_[slices[name]] for name in ("distance", *FIELDS)])
     rows = _units(robot) * earlier.values[..., columns].reshape(len(earlier.times), -1)
     heads = np.column_stack([TIME * earlier.times, _flags_at(earlier.times, earlier.events)])
-    return _whole(np.column_stack([heads, rows]))
+    lines: list[list[int | None]] = [*_whole(np.column_stack([heads, rows]))]
+    if not frame.fields:
+        return lines
+    more: list[list[int | None]] = [
+        *_whole(_chosen(frame, earlier.values).reshape(len(earlier.times), -1))
+    ]
+    sizes = [(name in XI, size) for name, size, _ in _field_units(frame)]
+    is_across = [across for across, size in sizes for _ in range(size)] * len(SIDES)
+    for time, line in zip(earlier.times, more, strict=True):
+        if time < earlier.across_since:  # in another unit
+            line[:] = [None if each else x for each, x in zip(is_across, line, strict=True)]
+    return [line + others for line, others in zip(lines, more, strict=True)]
 
 
 @lru_cache(maxsize=64)

@@ -44,7 +44,17 @@ class Light(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
     symbol: JointSymbol | Literal[""]
 
 
-PageMessage = Hello | Resized | Skip | AskRecord | Light
+class Plot(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="plots"):
+    """Tell more of each sample, also of the past, until another one comes.
+
+    Attributes:
+        fields: that the page plots; see `ASKED` in app/lab/plot_rows.py.
+    """
+
+    fields: Annotated[tuple[str, ...], Meta(max_length=20)]
+
+
+PageMessage = Hello | Resized | Skip | AskRecord | Light | Plot
 """What a page sends besides commands; `Hello` comes first, and only once."""
 
 
@@ -62,7 +72,9 @@ class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
     left pulled, right pulled. A robot has p + p + 3 numbers, where p is 2 or 3: its distance from
     the path, θ of the closest point, θ of the reference point, end-point (p), external force on it
     (p). Times are in 0.1 ms, lengths in 10 µm, angles in 0.1 mrad, forces in 10 mN. End-points are
-    coordinates of the output space, `Robot.position` of which is where they are drawn.
+    coordinates of the output space, `Robot.position` of which is where they are drawn. After both
+    robots come the numbers of `fields`, all of the left robot, then all of the right one; null where
+    ξ had another unit than now.
 
     Attributes:
         rows: 60 per second, the oldest first; the last one is the present. They replace all samples
@@ -70,14 +82,17 @@ class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
         running: whether time runs.
         past: the past instant that the lab shows [s], or null.
         anew: whether the page must forget all its samples first; `rows` has the last minute.
+        fields: with `anew`: for each field that the page has asked for and the robots have, its name,
+            how many of its numbers are told, and how many units an SI unit has.
         straight: only for a link that bends: for each of the last rows, where the end-points would
             be if it did not, as end-points are given in a row.
     """
 
-    rows: list[list[int]]
+    rows: list[list[int | None]]
     running: bool
     past: float | None
     anew: bool = False
+    fields: list[tuple[str, int, float]] | UnsetType = UNSET
     straight: list[list[int]] | UnsetType = UNSET
 
 
@@ -169,6 +184,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         arrow: length of the arrow of a force [m/N].
         frozen: why the lab takes no commands, if the teacher has stopped it; else empty.
         own: whether commands are taken: not if a teacher looks at the lab of a student.
+        rows: what can be plotted of these robots.
     """
 
     v: int
@@ -195,6 +211,7 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     arrow: float
     frozen: str
     own: bool
+    rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
 
 
 class LessonMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="lesson"):
@@ -218,7 +235,7 @@ class LessonMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="less
         sections: HTML by number of the step: the open one, and the one whose prediction it shows;
             `end` for the end of a lesson. Both come from `assets/templates/step`, as on the course
             site.
-        steps: what the script needs of each step; parts only of those in `sections`.
+        steps: what the script needs of each step; parts and plots only of those in `sections`.
         notes: the answers of the open step.
         charts: at the end: the curves of each prediction, in the order of the elements
             `[data-chart]`.

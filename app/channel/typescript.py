@@ -30,6 +30,7 @@ CHANGES = """\
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 """
 IMPORTED = {
+    "../core/engine": ("RowData",),
     "../core/lesson_data": ("ChartData", "Curves", "StepData"),
     "../lessons/notes": ("Notes",),
 }

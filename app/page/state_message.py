@@ -7,12 +7,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from onpath.app.channel.messages import Said, StateMessage
+from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.scene.projection import Seen
 from onpath.app.viser_adapter.data_channel import VERSION
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
+from onpath.models.systems.law_parameters import LEVEL_SET
 
 
 def state_message(
@@ -28,6 +30,7 @@ def state_message(
     """
     laws, run = snapshot.laws, snapshot.run
     titles = side_titles(laws, words)
+    is_level_set = snapshot.parameters["across"] == LEVEL_SET
     names = displayed_names(laws, words, snapshot.key.in_lesson)
     return StateMessage(
         v=VERSION,
@@ -54,4 +57,5 @@ def state_message(
         arrow=seen.arrow,
         frozen=words("class.frozen") if run.frozen else "",
         own=not snapshot.key.student,
+        rows=row_data(snapshot.key.fields, is_level_set, words),
     )

@@ -17,6 +17,7 @@ from onpath.app.channel.messages import (
     Hello,
     Light,
     LitMessage,
+    Plot,
     Refused,
     Resized,
     Skip,
@@ -57,6 +58,7 @@ class PageData:
         self._is_resized = self._wants_record = self._skips = False
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
+        self._plotted: tuple[str, ...] = ()  # fields that are asked for
         self._lit: tuple[str, bytes] = "", b""  # the last one told, and the robots at that time
         self._told = 0.0  # when anything was told last, [s]
 
@@ -91,6 +93,8 @@ class PageData:
             self._path = self._state = None
             self._lesson = self._measured = b""
             self._symbol, self._lit = "", ("", b"")
+            self._plotted = ()
+        self._source.ask(self._plotted)
         if self._is_resized:
             self._is_resized = False
             on_resize()
@@ -172,6 +176,8 @@ class PageData:
                 self._wants_record = True
             case Light(symbol=symbol):
                 self._symbol = symbol
+            case Plot(fields=fields):
+                self._plotted = fields
             case Hello():
                 return encoded(Refused("the channel is open"))
         return b""

@@ -72,13 +72,15 @@ def page_functions(robot: Robot, kind: Kind) -> Mapping[str, ca.Function]:
 
 
 def measurements(robot: Robot, parameters: Parameters) -> dict[str, ca.Function]:
-    """For a robot with a flexible link: (q, v) -> its tip's deflection [m], modes' energy [J]."""
+    """For a robot with a flexible link: (q, v) -> its tip's deflection [m], the modes' energy [J],
+    and the share of each mode in the deflection [m]."""
     if not robot.extras.keys() >= {"deflection", "internal_energy"}:
         return {}
     system = robot.system
-    both = ca.vertcat(robot.extras["deflection"], robot.extras["internal_energy"])
+    extras = robot.extras
+    measured = ca.vertcat(extras["deflection"], extras["internal_energy"], extras["modes"])
     plant = ca.SX(ca.DM(robot.plant(parameters)))
-    values = ca.substitute(both, system.parameters, plant)
+    values = ca.substitute(measured, system.parameters, plant)
     return {"measured": ca.Function("measured", [system.q, system.v], [_dense(values)])}
 
 

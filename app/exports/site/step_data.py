@@ -61,6 +61,7 @@ def site_step(
         "running": lesson.scene_at(index).running,
         "script": script,
         "values": _values(step, figure),
+        "plots": figure.plots,
         "blocks": [_block(part, lesson, index, figure, words) for part in parts],
     }
     lab_only = step.script is not None and script is None

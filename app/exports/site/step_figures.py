@@ -28,8 +28,6 @@ ALWAYS = ("pull", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
 MOST = 8  # figures in the cache; those of one lesson follow each other
 _SHARED: dict[Any, dict[str, Any]] = {}
-RECORDED = ("theta_rate", "speed", "xi", "xi_rate", "u")
-"""Fields of a log row that the checks need, besides those of every figure."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +38,7 @@ class StepFigure:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
         drawings: what is drawn besides the robots, in the lab.
-        plots: plots that the step shows in the lab.
+        plots: that the step shows besides that of the distance.
         faithful: whether the figure begins where the lab does; only then is it shown.
         changing: names of the parameters that sliders, links or the script change.
     """
@@ -145,11 +143,8 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
         stop_texts(choice, law, curve, "alpha" in figure.changing, words)
         for law in choice.every_law
     ]
-    log = choice.kernel(choice.laws[0], curve).log
-    places = {n: [(s := log.slices[n]).start, s.stop - s.start] for n in RECORDED}
     return {
         **data,
-        "log": data["log"] | places,
         "laws": [
             {**law, "stops": texts, **names}
             for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
@@ -201,7 +196,6 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
         for name in figure.lacking
     ]
     named += [words(f"show.{name}") for name in figure.drawings]
-    named += [words("site.plot", plot=words(f"plot.{plot}")) for plot in figure.plots]
     return ", ".join(named)
 
 

@@ -20,6 +20,8 @@ from onpath.app.exports.standalone.figure_module import (
 )
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.lab.path_editor import BLEND, HALVINGS
+from onpath.app.lab.plot_rows import row_data
+from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.scene.captions import FULL, OFF, RETURNS
 from onpath.lessons.labels import parameter_help, parameter_label, parameter_unit, path_label
 from onpath.lessons.sides import law_text, law_titles
@@ -44,6 +46,7 @@ from onpath.models.standalone.edit import OUTLINE, ROW
 from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.efforts import efforts
+from onpath.models.systems.law_parameters import LEVEL_SET
 from onpath.models.systems.parameters import time_step
 from onpath.models.systems.robots import Robot
 
@@ -84,7 +87,7 @@ def figure_data(
         "state": _places(kernel.state, ("q", "theta", "theta_ref")),
         "settings": _places(kernel.settings, _SET),
         "log": _places(
-            kernel.log, ("q", "v", "y", "theta", "theta_ref", "u", "force", "far", "integral_used")
+            kernel.log, ("q", "v", "y", "theta", "theta_ref", "far", "integral_used", *PLOTTED)
         ),
         "sides": _sides(figure),
         "laws": _laws(figure, words),
@@ -101,6 +104,7 @@ def figure_data(
         "returns": RETURNS,
         "full": FULL,
         "strip": robot.drawing.strip,
+        "rows": row_data(sample_layout(robot).fields, figure.parameters.across == LEVEL_SET, words),
         "efforts": _efforts(robot),
         "poles": numbers["poles"],
         "edit": _EDIT,
@@ -108,6 +112,8 @@ def figure_data(
     }
 
 
+PLOTTED = ("speed", "theta_rate", "xi", "xi_rate", "u", "force")
+"""Fields of a log row that are plotted, besides those that are drawn."""
 NUDGE = 0.001  # [m], as app/page/panels/keys.py has it
 _EDIT = {
     "piece": PIECE,

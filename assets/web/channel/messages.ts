@@ -1,6 +1,7 @@
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
 // app/channel/messages.py and app/lab/commands: change them there.
 
+import type { RowData } from "../core/engine"
 import type { ChartData, Curves, StepData } from "../core/lesson_data"
 import type { Notes } from "../lessons/notes"
 
@@ -89,6 +90,13 @@ export interface Light {
     symbol: "delta" | "q_1" | "q_2" | "rho" | ""
 }
 
+/** Tell more of each sample, also of the past, until another one comes. */
+export interface Plot {
+    is: "plots"
+    /** that the page plots; see `ASKED` in app/lab/plot_rows.py. */
+    fields: string[]
+}
+
 /** What changes the lab; see app/lab/commands. */
 export type Command =
     | { do: "Act"; actions: Action[] }
@@ -162,6 +170,7 @@ export type PageMessage =
     | Skip
     | AskRecord
     | Light
+    | Plot
 
 /** The samples since the last frame; 20 times a second while anything in it changes, less often under load or if the page
  * reads slowly.
@@ -169,18 +178,23 @@ export type PageMessage =
  * A row is `[time, flags, …left robot, …right robot]`. The flags are bits: left held, right held, left pulled, right
  * pulled. A robot has p + p + 3 numbers, where p is 2 or 3: its distance from the path, θ of the closest point, θ of the
  * reference point, end-point (p), external force on it (p). Times are in 0.1 ms, lengths in 10 µm, angles in 0.1 mrad,
- * forces in 10 mN. End-points are coordinates of the output space, `Robot.position` of which is where they are drawn. */
+ * forces in 10 mN. End-points are coordinates of the output space, `Robot.position` of which is where they are drawn.
+ * After both robots come the numbers of `fields`, all of the left robot, then all of the right one; null where ξ had
+ * another unit than now. */
 export interface FrameMessage {
     is: "frame"
     /** 60 per second, the oldest first; the last one is the present. They replace all samples of the page from the time of the
      * first one on. */
-    rows: number[][]
+    rows: ((number | null)[])[]
     /** whether time runs. */
     running: boolean
     /** the past instant that the lab shows [s], or null. */
     past: number | null
     /** whether the page must forget all its samples first; `rows` has the last minute. */
     anew?: boolean
+    /** with `anew`: for each field that the page has asked for and the robots have, its name, how many of its numbers are told,
+     * and how many units an SI unit has. */
+    fields?: [string, number, number][]
     /** only for a link that bends: for each of the last rows, where the end-points would be if it did not, as end-points are
      * given in a row. */
     straight?: number[][]
@@ -283,6 +297,8 @@ export interface StateMessage {
     frozen: string
     /** whether commands are taken: not if a teacher looks at the lab of a student. */
     own: boolean
+    /** what can be plotted of these robots. */
+    rows: RowData[]
 }
 
 /** The open step of a lesson, or its end; when another one is open, or anything is noted in it. A teacher's page has none.
@@ -311,7 +327,7 @@ export interface LessonMessage {
     /** HTML by number of the step: the open one, and the one whose prediction it shows; `end` for the end of a lesson. Both
      * come from `assets/templates/step`, as on the course site. */
     sections: Record<string, string>
-    /** what the script needs of each step; parts only of those in `sections`. */
+    /** what the script needs of each step; parts and plots only of those in `sections`. */
     steps: StepData[]
     /** the answers of the open step. */
     notes?: Notes

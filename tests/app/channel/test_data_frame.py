@@ -24,10 +24,12 @@ from onpath.app.channel.data_frame import (
 from onpath.app.channel.messages import encoded
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.plot_rows import ASKED, MOST_LINES
 from onpath.app.lab.snapshots.take_snapshot import take_motion
 from onpath.models.control.sides import LEFT, RIGHT, SIDES
+from onpath.models.layout import Layout
 from onpath.models.systems.catalogue import ROBOTS
-from tests.support.lab import FRAME, do, new_lab
+from tests.support.lab import FRAME, do, loop_cache, new_lab
 
 UNIT = 1 / LENGTH
 
@@ -35,8 +37,10 @@ UNIT = 1 / LENGTH
 class Reader:
     """A page: it keeps the samples of a lab, as `FrameMessage` says."""
 
-    def __init__(self) -> None:
+    def __init__(self, *fields: str) -> None:
         self.source = FrameSource()
+        self.source.ask(fields)
+        self.fields: list[tuple[str, int, float]] = []
         self.rows: list[list[int]] = []
         self.straight: list[list[int]] = []
         self.running, self.past, self.frames = False, None, 0
@@ -51,6 +55,7 @@ class Reader:
         assert message["is"] == "frame"
         if message.get("anew"):
             self.rows.clear()
+            self.fields = message["fields"]
         first = message["rows"][0][0]
         self.rows = [row for row in self.rows if row[0] < first] + message["rows"]
         self.running, self.past = message["running"], message["past"]
@@ -60,7 +65,8 @@ class Reader:
 
     def robots(self, row: list[int]) -> list[dict[str, Any]]:
         """What a row says of each robot, in SI units."""
-        size = (len(row) - 2) // len(SIDES)
+        more = sum(size for _, size, _ in self.fields)
+        size = (len(row) - 2) // len(SIDES) - more
         p = (size - 3) // 2
         found = list[dict[str, Any]]()
         for i in range(len(SIDES)):
@@ -72,8 +78,18 @@ class Reader:
                     "theta_ref": numbers[2] / ANGLE,
                     "y": numbers[3 : 3 + p] / LENGTH,
                     "force": numbers[3 + p :] / FORCE,
+                    **self.plotted(row[len(row) - (len(SIDES) - i) * more :]),
                 }
             )
+        return found
+
+    def plotted(self, numbers: list[int]) -> dict[str, Any]:
+        """What the first numbers say of the plotted fields, in SI units; None if unknown."""
+        found, begin = dict[str, Any](), 0
+        for name, size, unit in self.fields:
+            part = numbers[begin : begin + size]
+            found[name] = None if None in part else np.array(part) / unit
+            begin += size
         return found
 
 
@@ -93,6 +109,9 @@ def assert_knows(reader: Reader, lab: Lab) -> None:
         assert abs(known["theta_ref"] - row["theta_ref"]) <= 1 / ANGLE
         assert np.abs(known["y"] - row["y"]).max() <= UNIT
         assert np.abs(known["force"] - row["force"]).max() <= 1 / FORCE
+    now = simulation.sample()
+    for known, sample in zip(reader.robots(last), now, strict=True):
+        assert_plots(reader, known, sample, simulation.sample_layout)
     times = [row[0] for row in reader.rows]
     assert all(a < b or a == b == times[-1] for a, b in pairwise(times))
     begins, samples = simulation.history.samples(-1.0, simulation.time, 10_000)
@@ -103,6 +122,20 @@ def assert_knows(reader: Reader, lab: Lab) -> None:
         if (tick := round(TIME * float(time))) in rows and time < simulation.time:
             told = [robot["distance"] for robot in rows[tick]]
             assert np.abs(sample[:, far] - told).max() <= 1.5 * UNIT
+            for known, numbers in zip(rows[tick], sample, strict=True):
+                assert_plots(reader, known, numbers, simulation.sample_layout)
+
+
+def assert_plots(reader: Reader, known: dict[str, Any], sample: Any, layout: Layout) -> None:
+    """Assert that the plotted fields of a robot are those of a sample, rounded."""
+    assert [name for name, _, _ in reader.fields] == [
+        name for name in ASKED if name in reader.source.fields and name in layout.slices
+    ]
+    for name, size, unit in reader.fields:
+        told, true = known[name], sample[layout.slices[name]][:size]
+        assert size == min(len(sample[layout.slices[name]]), MOST_LINES)
+        if told is not None:  # ξ may have had another unit
+            assert np.abs(told - true).max() <= 1 / unit + 1e-6 * np.abs(true).max(), name
 
 
 STEPS = st.sampled_from(
@@ -125,6 +158,8 @@ STEPS = st.sampled_from(
         c.ChooseRobot("five_bar"),
         c.ChooseLaw(RIGHT, "trajectory_tracking"),
         c.SetParameter("K1", 900.0),
+        c.SetParameter("across", "level_set"),
+        c.SetParameter("across", "distance"),
     ]
 )
 
@@ -132,15 +167,18 @@ STEPS = st.sampled_from(
 @pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(
+    st.sets(st.sampled_from(ASKED)),
     st.lists(
         st.tuples(STEPS, st.integers(0, 25), st.sampled_from([1, 3, 4, MOST + 9])),
         min_size=1,
         max_size=10,
-    )
+    ),
 )
-def test_a_page_knows_what_its_lab_did(steps: list[tuple[c.Command, int, int]]) -> None:
-    """Whatever is done to the lab, and however seldom the page reads."""
-    lab, reader = new_lab(FRAME), Reader()
+def test_a_page_knows_what_its_lab_did(
+    fields: set[str], steps: list[tuple[c.Command, int, int]]
+) -> None:
+    """Whatever is plotted and done to the lab, and however seldom the page reads."""
+    lab, reader = new_lab(FRAME), Reader(*fields)
     for command, frames, seldom in steps:
         do(lab, command)
         for i in range(frames):
@@ -194,6 +232,48 @@ def test_a_page_that_comes_late_is_told_the_last_minute_with_what_acted() -> Non
     assert {flag for time, flag in flags if 1.01 < time < 1.48} == {1}
     assert {flag for time, flag in flags if 1.51 < time < 1.98} == {8}
     assert {flag for time, flag in flags if time > 2.01} == {0}
+
+
+def test_a_row_that_is_opened_later_has_its_past_in_its_present_unit() -> None:
+    """And nothing is told of a row that is closed, or that the robot cannot have."""
+    lab, reader = new_lab(1.0), Reader()
+    reader.see(lab)
+    plain = len(reader.rows[-1])
+    do(lab, c.SetParameter("across", "level_set"))
+    for _ in range(30):
+        lab.advance(FRAME)
+        reader.see(lab)
+    reader.source.ask(["xi", "deflection", "colour"])
+    reader.see(lab)
+    assert [name for name, _, _ in reader.fields] == ["xi"]
+    told = {row[0] / TIME: reader.robots(row)[0]["xi"] for row in reader.rows}
+    assert {value is None for time, value in told.items() if time < 0.99} == {True}
+    assert {value is None for time, value in told.items() if time > 1.02} == {False}
+    assert_knows(reader, lab)
+    reader.source.ask([])
+    reader.see(lab)
+    assert len(reader.rows[-1]) == plain
+
+
+def test_a_row_costs_at_most_four_kilobytes_a_second() -> None:
+    for name in ("five_bar", "flexible", "seven_axes"):
+        lab = Lab(loop_cache(), ROBOTS[name])
+        do(lab, c.Hold())
+        sizes = {field: _bytes_of_a_second(lab, field) for field in ("", *ASKED)}
+        assert {field: size for field, size in sizes.items() if size - sizes[""] > 4000} == {}
+
+
+def _bytes_of_a_second(lab: Lab, field: str) -> int:
+    source, sent = FrameSource(), 0
+    source.ask([field])
+    source.note(lab.simulation)
+    source.take(lab)
+    for i in range(60):
+        lab.advance(FRAME)
+        source.note(lab.simulation)
+        if i % 3 == 2 and (frame := source.take(lab)) is not None:
+            sent += len(frame_message(frame))
+    return sent
 
 
 def test_nothing_is_sent_while_nothing_changes() -> None:

@@ -1,0 +1,157 @@
+"""What can be plotted over time under the stage: one row for each quantity, with one time axis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+from onpath.lessons.words import Words
+
+MOST_LINES = 3  # of one robot in a row
+XI = ("xi", "xi_rate")
+"""Fields whose unit is another one with a level set."""
+ALWAYS = ("distance", "theta", "theta_ref", "y", "force")
+"""Fields that every frame of the data channel has; see snapshots/data_frame.py."""
+AREA = 100.0  # a level set is 100 mm² where the distance to a circle of 50 mm is 1 mm
+
+Fields = tuple[tuple[str, int], ...]
+"""Names of the stored fields and their sizes; see plot_samples.py."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlotRow:
+    """A quantity that can be plotted.
+
+    Attributes:
+        name: identifier in the catalogue of messages and in lessons.
+        field: of a sample.
+        scale: factor from SI to displayed units.
+        finest: what the data channel rounds to, in displayed units.
+        least: the range that the axis has at least, so that a ripple of a micrometre does not fill
+            it.
+        symbols: names of the field's components; empty: a single line is named after its robot.
+        beside: a field whose line stands beside this one, as what is wanted of it.
+    """
+
+    name: str
+    field: str
+    scale: float
+    finest: float
+    least: tuple[float, float]
+    symbols: tuple[str, ...] = ()
+    beside: str = ""
+
+
+ROWS = (
+    PlotRow(
+        name="distance",
+        field="distance",
+        scale=1e3,
+        finest=0.01,
+        least=(0.0, 5.0),
+    ),
+    PlotRow(name="speed", field="speed", scale=1e3, finest=0.1, least=(0.0, 10.0)),
+    PlotRow(
+        name="torques",
+        field="u",
+        scale=1.0,
+        finest=1e-4,
+        least=(-0.01, 0.01),
+        symbols=("u₁", "u₂", "u₃"),
+    ),
+    PlotRow(
+        name="across",
+        field="xi",
+        scale=1e3,
+        finest=0.01,
+        least=(-1.0, 1.0),
+        symbols=("ξ₁", "ξ₃"),
+    ),
+    PlotRow(
+        name="across_rate",
+        field="xi_rate",
+        scale=1e3,
+        finest=0.1,
+        least=(-10.0, 10.0),
+        symbols=("ξ₂", "ξ₄"),
+    ),
+    PlotRow(
+        name="place",
+        field="theta",
+        scale=1.0,
+        finest=1e-3,
+        least=(-0.1, 0.1),
+        beside="theta_ref",
+    ),
+    PlotRow(name="rate", field="theta_rate", scale=1.0, finest=1e-3, least=(-0.1, 0.1)),
+    PlotRow(
+        name="modes",
+        field="modes",
+        scale=1e3,
+        finest=1e-4,
+        least=(-0.01, 0.01),
+        symbols=("f₁", "f₂", "f₃"),
+    ),
+    PlotRow(name="deflection", field="deflection", scale=1e3, finest=1e-4, least=(-0.01, 0.01)),
+    PlotRow(name="energy", field="internal_energy", scale=1e3, finest=1e-4, least=(0.0, 0.005)),
+    PlotRow(
+        name="force",
+        field="force",
+        scale=1.0,
+        finest=0.01,
+        least=(-0.1, 0.1),
+        symbols=("F₁", "F₂", "F₃"),
+    ),
+)
+ASKED = tuple(row.field for row in ROWS if row.field not in ALWAYS)
+"""Fields that a page may ask for besides `ALWAYS`."""
+_OF_FIELD = {row.field: row for row in ROWS}
+
+
+def rounding(field: str, is_level_set: bool) -> float:
+    """How many units of the data channel an SI unit of a field has."""
+    row = _OF_FIELD[field]
+    return (row.scale**2 if is_level_set and field in XI else row.scale) / row.finest
+
+
+@lru_cache(maxsize=64)
+def row_data(fields: Fields, is_level_set: bool, words: Words) -> list[dict[str, Any]]:
+    """The rows that a robot can have, for a page; see `RowData` in assets/web/core/engine.ts.
+
+    Args:
+        fields: that are stored of the robot.
+        is_level_set: whether ξ₁ is an area, [m²], instead of a distance.
+    """
+    sizes = dict(fields)
+    return [
+        _data(row, min(sizes[row.field], MOST_LINES), is_level_set and row.field in XI, words)
+        for row in ROWS
+        if row.field in sizes
+    ]
+
+
+def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any]:
+    if is_area:  # only the first line: the others have another unit
+        size = 1
+    kind = "-level_set" if is_area else "-space" if row.field in XI and size > 1 else ""
+    label, unit = words(f"axis.{row.name}{kind}").removesuffix("]").rsplit(" [", 1)
+    symbols: Sequence[str] = row.symbols[:size] if size > 1 else ("",)
+    lines = [{"field": row.field, "at": i, "name": name} for i, name in enumerate(symbols)]
+    if row.beside:
+        lines.append({"field": row.beside, "at": 0, "name": words(f"plots.{row.beside}")})
+    return {
+        "name": row.name,
+        "menu": words(f"plot.{row.name}"),
+        "label": _begun(label),
+        "unit": unit,
+        "scale": row.scale**2 if is_area else row.scale,
+        "least": [AREA * limit if is_area else limit for limit in row.least],
+        "lines": lines,
+    }
+
+
+def _begun(label: str) -> str:
+    """A label that begins with a capital letter, unless it begins with a symbol."""
+    return label[0].upper() + label[1:] if label[0].isascii() else label
