@@ -73,8 +73,8 @@ class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
     the path, θ of the closest point, θ of the reference point, end-point (p), external force on it
     (p). Times are in 0.1 ms, lengths in 10 µm, angles in 0.1 mrad, forces in 10 mN. End-points are
     coordinates of the output space, `Robot.position` of which is where they are drawn. After both
-    robots come the numbers of `fields`, all of the left robot, then all of the right one; null where
-    ξ had another unit than now.
+    robots come the numbers of `fields`, all of the left robot, then all of the right one; null
+    where ξ had another unit than now.
 
     Attributes:
         rows: 60 per second, the oldest first; the last one is the present. They replace all samples
@@ -82,8 +82,8 @@ class FrameMessage(Struct, tag_field="is", tag="frame", omit_defaults=True):
         running: whether time runs.
         past: the past instant that the lab shows [s], or null.
         anew: whether the page must forget all its samples first; `rows` has the last minute.
-        fields: with `anew`: for each field that the page has asked for and the robots have, its name,
-            how many of its numbers are told, and how many units an SI unit has.
+        fields: with `anew`: for each field that the page has asked for and the robots have, its
+            name, how many of its numbers are told, and how many units an SI unit has.
         straight: only for a link that bends: for each of the last rows, where the end-points would
             be if it did not, as end-points are given in a row.
     """

@@ -31,6 +31,7 @@ class PlotRow:
         finest: what the data channel rounds to, in displayed units.
         least: the range that the axis has at least, so that a ripple of a micrometre does not fill
             it.
+        floats: whether the axis needs not contain zero; only the size of `least` counts then.
         symbols: names of the field's components; empty: a single line is named after its robot.
         beside: a field whose line stands beside this one, as what is wanted of it.
     """
@@ -41,6 +42,7 @@ class PlotRow:
     finest: float
     least: tuple[float, float]
     symbols: tuple[str, ...] = ()
+    floats: bool = False
     beside: str = ""
 
 
@@ -82,7 +84,8 @@ ROWS = (
         field="theta",
         scale=1.0,
         finest=1e-3,
-        least=(-0.1, 0.1),
+        least=(0.0, 0.2),
+        floats=True,
         beside="theta_ref",
     ),
     PlotRow(name="rate", field="theta_rate", scale=1.0, finest=1e-3, least=(-0.1, 0.1)),
@@ -148,6 +151,7 @@ def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any
         "unit": unit,
         "scale": row.scale**2 if is_area else row.scale,
         "least": [AREA * limit if is_area else limit for limit in row.least],
+        "floats": row.floats,
         "lines": lines,
     }
 

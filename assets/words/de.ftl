@@ -583,9 +583,7 @@ run-hold_both = Beide festhalten
 run-hold = Festhalten
 run-let_both_go = Beide loslassen
 run-let_go = Loslassen
-run-hold_hint = Hält die Spitzen längs der Bahn fest, bis du noch einmal drückst. Taste: H
-run-press = Solange gedrückt
-run-press_hint = Hält die Spitzen fest, solange du drückst.
+run-hold_hint = Hält die Spitzen fest, bis du noch einmal drückst. Wer länger drückt, hält nur so lange fest. Taste: H
 run-direction = Halten
 run-direction_along = längs der Bahn
 run-direction_across = quer zur Bahn
@@ -734,6 +732,8 @@ show-rank_alpha = Mit α = { $alpha } und geradem Balken.
 
 ## Bilder über der Zeit: Namen in der Liste, dann Überschriften mit Einheiten
 
+plots-menu = Verläufe
+plots-menu_hint = Welche Größen gezeigt werden
 plots-more = Weitere Verläufe
 plots-show = Zeigen
 plots-show_hint = Über die letzten 10 s

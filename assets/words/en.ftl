@@ -498,9 +498,7 @@ run-hold_both = Hold both back
 run-hold = Hold back
 run-let_both_go = Let both go
 run-let_go = Let go
-run-hold_hint = Holds the end-points back along the path until pressed again. Key: H
-run-press = Hold while pressed
-run-press_hint = Holds the end-points back for as long as you press it.
+run-hold_hint = Holds the end-points back until you press again. Keep it pressed, and it lets go when you do. Key: H
 run-direction = Hold
 run-direction_along = along the path
 run-direction_across = across the path
@@ -649,6 +647,8 @@ show-rank_alpha = With α = { $alpha } and a straight link.
 
 ## Plots: names in the list, then titles with units
 
+plots-menu = Plots
+plots-menu_hint = Which quantities are plotted
 plots-more = More plots
 plots-show = Show
 plots-show_hint = Over the last 10 s

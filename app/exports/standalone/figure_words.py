@@ -16,11 +16,12 @@ from onpath.models.paths.path_checks import TUBE
 CHART = (
     *("chart.title", "chart.held", "chart.pulled", "chart.centre", "chart.table", "chart.time"),
     *("chart.acts", "chart.look", "chart.look_hint", "chart.yours", "chart.draw"),
+    *("plots.menu", "plots.menu_hint", "plot.phase", "plot.phase_name"),
 )
-"""Messages of the chart, which figures and lessons have."""
+"""Messages of the plots, which figures and lessons have."""
 PLAIN = (
     *CHART,
-    *("lens.closest", "lens.reference", "lens.straight", "run.press", "run.press_hint"),
+    *("lens.closest", "lens.reference", "lens.straight"),
     *("run.rate", "past.go_on", "transport.go_on_hint", "transport.back", "transport.back_hint"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
     *("run.run", "run.pause", "run.run_hint", "run.step", "run.reset", "key.reset", "key.right"),

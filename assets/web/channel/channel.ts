@@ -1,6 +1,6 @@
 // The engine of a page of the lab: its server simulates, and tells it through a websocket of the page's own.
 
-import { sampleAt, type Act, type Change, type Engine, type PathShape, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { PROTOCOL, type Command, type FrameMessage, type LabMessage, type LessonMessage, type Light, type MeasuredMessage, type PageMessage, type PathMessage, type StateMessage } from "./messages"
 
@@ -12,6 +12,9 @@ const NO_TICKET = 4001 // the ticket is not valid, or not any more
 const OTHER_VERSION = 1002
 const HANDED = 60 // [ms], at least, between two looks at the past
 const SETTLES = 400 // [ms], until what the server shows counts again
+
+/** Where the numbers of a field are among those that a row has besides for each robot. */
+type Fields = Map<string, { first: number; size: number; unit: number }>
 
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
@@ -60,10 +63,12 @@ class RowSide implements SideSample {
 
     constructor(
         private readonly engine: RemoteEngine,
-        private readonly row: readonly number[],
+        private readonly row: readonly (number | null)[],
         private readonly first: number, // of its numbers
         private readonly p: number,
         private readonly side: number,
+        private readonly fields: Fields,
+        private readonly more: number, // the first of its numbers of these fields
         readonly straight: Vector | null,
     ) {
         this.held = Boolean(row[1]! & (1 << side))
@@ -78,8 +83,22 @@ class RowSide implements SideSample {
     get tip(): Vector { return this.part(3, LENGTH) }
     get force(): Vector { return this.part(3 + this.p, FORCE) }
     private part(at: number, unit: number): Vector {
-        const begin = this.first + at
-        return this.row.slice(begin, begin + this.p).map(each => each / unit)
+        return this.numbers(this.first + at, this.p, unit)!
+    }
+
+    private numbers(begin: number, size: number, unit: number): Vector | null {
+        const found = this.row.slice(begin, begin + size)
+        return found.includes(null) ? null : found.map(each => each! / unit)
+    }
+
+    /** See `Engine.field`. */
+    field(name: string): Vector | null {
+        if (name === "distance") return [this.distance]
+        if (name === "theta") return this.numbers(this.first + 1, 1, ANGLE)
+        if (name === "theta_ref") return this.engine.lab?.clocks[this.side] ? this.numbers(this.first + 2, 1, ANGLE) : null
+        if (name === "force") return this.force
+        const found = this.fields.get(name)
+        return found ? this.numbers(this.more + found.first, found.size, found.unit) : null
     }
 }
 
@@ -99,6 +118,8 @@ export class RemoteEngine implements Engine {
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
     private samples: Sample[] = [] // the last one is the present
+    private fields: Fields = new Map()
+    private plotted: readonly string[] = [] // fields that are asked for
     private running = false
     private past: number | null = null
     private looked: { at: number | null; until: number } | null = null
@@ -150,6 +171,16 @@ export class RemoteEngine implements Engine {
         const { titles, names, texts, captions } = this.lab!
         return titles.map((title, i) => ({ side: i as 0 | 1, title, name: names[i]!, text: texts[i]!, caption: captions[i]! }))
     }
+
+    get rows(): readonly RowData[] { return this.lab?.rows ?? [] }
+
+    plot(fields: readonly string[]): void {
+        if (String(fields) === String(this.plotted)) return
+        this.plotted = fields
+        this.send({ is: "plots", fields: [...fields] })
+    }
+
+    field({ sides }: Sample, side: number, name: string): Vector | null { return (sides[side] as RowSide).field(name) }
 
     get present(): Sample { return this.samples[this.samples.length - 1]! }
 
@@ -216,6 +247,7 @@ export class RemoteEngine implements Engine {
             this.connected = true
             this.tries = this.refused.times = 0
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
+            if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
             this.tell("state")
         }
         if (message.is === "frame") this.frame(message)
@@ -238,11 +270,15 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "refused") console.warn(`refused: ${message.why}`)
     }
 
-    private frame({ rows, running, past, anew, straight }: FrameMessage): void {
+    private frame({ rows, running, past, anew, fields, straight }: FrameMessage): void {
         const { samples } = this
         const { held, pulled } = this.flags
         let gone = 0
-        if (anew) samples.length = 0
+        if (anew) {
+            samples.length = 0
+            let first = 0
+            this.fields = new Map((fields ?? []).map(([name, size, unit]) => [name, { first: (first += size) - size, size, unit }]))
+        }
         while (samples.length && samples[samples.length - 1]!.time >= rows[0]![0]! / TIME) {
             samples.pop()
             gone++
@@ -260,12 +296,14 @@ export class RemoteEngine implements Engine {
         if (changed || before.running !== now.running || before.past !== now.past) this.tell("state")
     }
 
-    private sample(row: readonly number[], straight: readonly number[] | null): Sample {
-        const size = (row.length - HEAD) / 2
+    private sample(row: readonly (number | null)[], straight: readonly number[] | null): Sample {
+        const { fields } = this
+        const more = [...fields.values()].reduce((sum, { size }) => sum + size, 0)
+        const size = (row.length - HEAD) / 2 - more
         const p = (size - 3) / 2
         const sides = [0, 1].map(side => {
             const rigid = straight && straight.slice(side * p, (side + 1) * p).map(each => each / LENGTH)
-            return new RowSide(this, row, HEAD + side * size, p, side, rigid)
+            return new RowSide(this, row, HEAD + side * size, p, side, fields, HEAD + 2 * size + side * more, rigid)
         })
         return { time: row[0]! / TIME, sides }
     }

@@ -37,6 +37,23 @@ export interface SideText {
     caption: string
 }
 
+/** A quantity that can be plotted over time; see app/lab/plot_rows.py. */
+export interface RowData {
+    name: string
+    /** What it is called where one chooses it. */
+    menu: string
+    /** What it is called at its axis. */
+    label: string
+    unit: string
+    /** Factor from SI to the unit. */
+    scale: number
+    /** The range that its axis has at least; if it `floats`, the size of this range, wherever. */
+    floats: boolean
+    least: readonly [number, number]
+    /** Lines of each robot: a number of a field, and a name if that of the robot is not enough. */
+    lines: readonly { field: string; at: number; name: string }[]
+}
+
 /** The path, as lines through its points. */
 export interface PathShape {
     lines: readonly (readonly Vector[])[]
@@ -79,6 +96,12 @@ export interface Engine {
     readonly present: Sample
     /** The recorded samples after an instant, the oldest first: 60 a second, at most a minute; without the present. */
     since(time: number): readonly Sample[]
+    /** What can be plotted of these robots. */
+    readonly rows: readonly RowData[]
+    /** Be told these fields, too, also of the past. */
+    plot(fields: readonly string[]): void
+    /** The numbers of a field of a robot in one of the samples, in SI units; null if they are not known. */
+    field(sample: Sample, side: number, name: string): ArrayLike<number> | null
     act(act: Act): void
     /** What a symbol of joints means on a robot: points of a line, one for a joint, or none. */
     lit(symbol: string, side: number): readonly Vector[]

@@ -1,5 +1,7 @@
 // The data that Python puts into the page: see app/exports/standalone/figure_data.py.
 
+import type { RowData } from "./engine"
+
 /** Index of the first number in a flat vector, and how many there are. */
 export type Place = [number, number]
 
@@ -41,7 +43,10 @@ export interface FigureData extends Texts<"language" | "module"> {
     sizes: Numbers<"p" | "n" | "rigid" | "log" | "bars" | "joints">
     state: Record<"q" | "theta" | "theta_ref", Place>
     settings: Record<"hold_active" | "hold_anchor" | "hold_tangent" | "hand_active" | "hand_target", Place>
-    log: Record<"q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used", Place>
+    log: Record<
+        "q" | "v" | "y" | "theta" | "theta_ref" | "u" | "force" | "far" | "integral_used" | "theta_rate" | "speed" | "xi" | "xi_rate", Place
+    >
+    rows: RowData[]
     sides: SideData[]
     laws: LawData[]
     /** Laws from which readers may choose. */

@@ -1,6 +1,6 @@
 // The data that Python puts into the pages: see app/exports/site.
 
-import type { FigureData, Place } from "./figure_data"
+import type { FigureData } from "./figure_data"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
@@ -28,7 +28,6 @@ export interface Script {
 export interface SiteFigure extends FigureData {
     names: string[]
     quantities: string[]
-    log: FigureData["log"] & Record<"theta_rate" | "speed" | "xi" | "xi_rate" | "u", Place>
 }
 
 export interface TimeWindow {
@@ -136,6 +135,8 @@ export interface StepData {
     values: Record<string, Setting> & { lengths: number[]; paths: string[] }
     blocks: BlockData[]
     figure: number
+    /** What is plotted besides the distance. */
+    plots: string[]
 }
 
 export interface PageData {

@@ -25,7 +25,7 @@ export class Figure {
     private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))
-    private readonly strip = new Strip(this.data, this.engine, this.ended)
+    readonly strip = new Strip(this.data, this.engine, this.ended)
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
     private readonly late = made("p", "late") // which moves nothing when it comes and goes
@@ -86,13 +86,12 @@ export class Figure {
             return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
         })
         const { transport } = controls
-        const brakes = data.controls.includes("hold") ? transport.brakes : []
-        const title = made("h2", "", said(data, "chart.title"))
-        const strip = data.controls.includes("plot") ? [this.strip.chart.element] : []
+        const strip = data.controls.includes("plot") ? [this.strip.element] : []
+        if (strip.length) transport.element.append(this.strip.menu.button)
         return [
-            made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.past, ...brakes)),
+            made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.brake)),
             this.note,
-            made("div", "bar", ...(strip.length ? [title, this.late, transport.element] : [transport.element, this.late])),
+            made("div", "bar", transport.element, this.late),
             ...strip,
             controls.element,
             ...(data.controls.includes("poles") ? [this.poles] : []),

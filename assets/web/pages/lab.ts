@@ -50,7 +50,7 @@ class Face {
     constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
         const { signal } = this.ended
         const indices = engine.texts.map((_, i) => i)
-        this.strip = new Strip(texts, engine, signal)
+        this.strip = new Strip(texts, engine, signal, "onpath-rows")
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
         this.overlay = new SymbolOverlay(engine)
         this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
@@ -64,11 +64,10 @@ class Face {
         this.stage.id = "op-stage"
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
-        this.transport.element.append(this.undo)
-        const title = made("h2", "", said(texts, "chart.title"))
-        const head = made("div", "head", title, this.clock, this.transport.element)
+        this.transport.element.append(this.undo, this.strip.menu.button)
+        const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
-        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.chart.element, this.column.beneath)
+        this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
@@ -77,7 +76,7 @@ class Face {
         document.body.prepend(this.stage, this.voice.element, this.column.element, this.element)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
-            if (change === "lesson") this.column.hear(engine.lesson!)
+            if (change === "lesson") this.hear()
             else if (change === "measured") this.column.measure(engine.measured!)
             else if (change !== "samples") this.show()
         }, signal)
@@ -85,9 +84,18 @@ class Face {
         UPRIGHT.addEventListener("change", () => this.column.arrange(), { signal })
         this.arrange()
         this.show()
-        if (engine.lesson) this.column.hear(engine.lesson)
+        if (engine.lesson) this.hear()
         if (engine.measured) this.column.measure(engine.measured)
         requestAnimationFrame(now => this.frame(now))
+    }
+
+    /** Another step of a lesson is open, or none. */
+    private hear(): void {
+        const lesson = this.engine.lesson!
+        this.column.hear(lesson)
+        const step = lesson.lesson ? lesson.steps[lesson.index] : undefined
+        this.strip.follows(step?.plots ?? null)
+        this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
     }
 
     end(): void {
@@ -147,7 +155,7 @@ class Face {
             tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, name)
         })
         this.undo.hidden = !engine.lab!.undo
-        transport.element.hidden = !engine.lab!.own
+        transport.element.classList.toggle("looks", !engine.lab!.own)
         this.enlarge(engine.lab!.presenting)
         this.read = 0
     }
@@ -170,7 +178,8 @@ class Face {
     /** Draw for a projector, or for a screen. */
     private enlarge(large: boolean): void {
         document.documentElement.classList.toggle("op-large", large)
-        for (const { sheet } of [this.strip.chart, ...this.lenses]) sheet.zoom = large ? LARGER : 1
+        this.strip.zoom = large ? LARGER : 1
+        for (const { sheet } of this.lenses) sheet.zoom = large ? LARGER : 1
     }
 
     private frame(now: number): void {

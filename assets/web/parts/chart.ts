@@ -1,26 +1,25 @@
-// A chart over time. It shades when something acts on the robots, names each line beside it, and labels the peak
-// after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
+// A chart over time. It names its quantity, shades when something acts on the robots, names each line beside it, and
+// labels the peak after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
 
 import { made } from "../core/dom"
 import { covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "../core/ink"
 import { said, significant, written, type Texts } from "../core/words"
-
-export interface Curve {
-    times: readonly number[]
-    values: readonly number[]
-}
+import { firstAfter, valueAt, type Curve, type Span } from "./curves"
+import { tableOf, type Column } from "./table"
 
 export interface Line extends Curve {
     name: string
     tone: Tone
     dashed: boolean // colour is not the only sign
+    thin?: boolean // as of a robot's second quantity in the chart
 }
 
-/** When something acts on a robot. */
-export interface Span {
-    from: number
-    until: number
-    kind: "held" | "pulled"
+/** What a task wants of a line. */
+export interface Limit {
+    below: number | null
+    above: number | null
+    label: string
+    tone: Tone
 }
 
 export interface Axes {
@@ -32,7 +31,9 @@ export interface Axes {
     mark?: { value: number; label: string } | undefined
 }
 
-const MARGIN = { left: 42, right: 14, top: 22, bottom: 24 }
+const MARGIN = { left: 42, right: 14, top: 24 }
+const BOTTOM = { times: 24, none: 8 } // [px], below the plot, with the numbers of the axis of time or without
+const TITLE = 9 // [px], from the top to the middle of the title
 const FONT = "12px system-ui, sans-serif"
 const BOLD = "600 13px system-ui, sans-serif"
 const HALF = 8 // [px], of the height of a label
@@ -54,6 +55,16 @@ export class Chart {
     at: number | null = null
     /** What to do here, in the middle of an empty chart. */
     hint = ""
+    limits: readonly Limit[] = []
+    /** The present values, beside the title. */
+    readings: readonly { text: string; tone: Tone }[] = []
+    /** Whether the axis of time has its numbers here. */
+    hasTimes = true
+    /** Whether what acts is named, and the peak after it has its number. */
+    namesSpans = true
+    hasPeaks = true
+    /** Whether a line is named even where its name covers a line. */
+    namesAll = true
     private boxes: Box[] = []
     private places: (number | undefined)[] = [] // times at which lines are named
 
@@ -62,14 +73,23 @@ export class Chart {
         const { canvas } = this.sheet
         canvas.setAttribute("role", "img")
         this.plot = made("div", "plot", canvas)
-        this.element = made("div", "strip", this.plot, this.table())
+        this.element = made("div", "strip", this.plot, tableOf(texts, () => axes.label, () => this.columns, () => this.spans))
     }
+
+    /** What stands in the table. */
+    get columns(): Column[] {
+        const { lines, ghost, texts, axes: { unit } } = this
+        const found: Column[] = lines.map(line => ({ ...line, unit }))
+        return ghost ? [...found, { ...ghost, name: said(texts, "chart.yours"), unit }] : found
+    }
+
+    private get bottom(): number { return this.hasTimes ? BOTTOM.times : BOTTOM.none }
 
     readonly x = (time: number): number =>
         MARGIN.left + ((time - this.from) / (this.until - this.from)) * (this.sheet.width - MARGIN.left - MARGIN.right)
     readonly y = (value: number): number => {
         const { top, bottom } = this.axes
-        return MARGIN.top + ((top - value) / (top - bottom)) * (this.sheet.height - MARGIN.top - MARGIN.bottom)
+        return MARGIN.top + ((top - value) / (top - bottom)) * (this.sheet.height - MARGIN.top - this.bottom)
     }
 
     /** The time and the value at a place in the plot, within the axes. */
@@ -77,7 +97,7 @@ export class Chart {
         const { top, bottom } = this.axes
         const { width, height } = this.sheet
         const share = (x - MARGIN.left) / (width - MARGIN.left - MARGIN.right)
-        const down = (y - MARGIN.top) / (height - MARGIN.top - MARGIN.bottom)
+        const down = (y - MARGIN.top) / (height - MARGIN.top - this.bottom)
         const within = (each: number) => Math.min(Math.max(each, 0), 1)
         return [this.from + within(share) * (this.until - this.from), top - within(down) * (top - bottom)]
     }
@@ -86,9 +106,10 @@ export class Chart {
         const ink = this.sheet.cleared()
         if (!ink) return
         this.boxes = []
-        this.unit(ink)
+        this.title(ink)
         this.shade(ink)
         this.grid(ink)
+        for (const limit of this.limits) this.limit(ink, limit)
         ink.save()
         ink.beginPath()
         ink.rect(MARGIN.left, 0, this.sheet.width - MARGIN.left - MARGIN.right + 2, this.sheet.height)
@@ -96,14 +117,14 @@ export class Chart {
         if (this.ghost) this.shadow(ink, this.ghost)
         for (const line of this.lines) {
             ink.setLineDash(line.dashed ? [7, 4] : [])
-            stroke(ink, this.points(line), tones()[line.tone], 2.5)
+            stroke(ink, this.points(line), tones()[line.tone], line.thin ? 1.2 : 2.5)
         }
         ink.setLineDash([])
         this.instant(ink)
         ink.restore()
         ink.font = BOLD
         ink.textBaseline = "middle"
-        this.peaks(ink)
+        if (this.hasPeaks) this.peaks(ink)
         this.names(ink)
         ink.textAlign = "center"
         if (this.hint) letters(ink, this.hint, (this.x(this.from) + this.x(this.until)) / 2, this.sheet.height / 2, tones().yours, tones().paper)
@@ -115,17 +136,49 @@ export class Chart {
         return times.slice(first, last).map((time, i) => [this.x(time), this.y(values[first + i]!)])
     }
 
-    /** The unit, above the numbers of its axis. */
-    private unit(ink: CanvasRenderingContext2D): void {
-        const { unit } = this.axes
-        ink.font = FONT
+    /** The quantity and its unit, above the axis, and what it is now. */
+    private title(ink: CanvasRenderingContext2D): void {
+        const { label, unit } = this.axes
         ink.textBaseline = "middle"
+        ink.textAlign = "left"
+        let x = 4
+        const write = (text: string, tone: Tone, font: string) => {
+            ink.font = font
+            const { width } = ink.measureText(text)
+            if (x + width > this.sheet.width && tone !== "ink") return
+            ink.fillStyle = tones()[tone]
+            ink.fillText(text, x, TITLE)
+            x += width + 14
+        }
+        write(unit ? `${label} [${unit}]` : label, "ink", FONT)
+        for (const { text, tone } of this.readings) write(text, tone, BOLD)
+        this.boxes.push({ left: 0, right: x - 8, top: TITLE - HALF, bottom: TITLE + HALF })
+        ink.font = FONT
+    }
+
+    /** A band in which a line is wanted, with its words at its border. */
+    private limit(ink: CanvasRenderingContext2D, { below, above, label, tone }: Limit): void {
+        const { axes, from, until } = this
+        const [left, right] = [this.x(from), this.x(until)]
+        const [top, bottom] = [Math.min(below ?? axes.top, axes.top), Math.max(above ?? axes.bottom, axes.bottom)]
+        if (top <= bottom) return
+        ink.fillStyle = tones()[tone]
+        ink.globalAlpha = 0.1
+        ink.fillRect(left, this.y(top), right - left, this.y(bottom) - this.y(top))
+        ink.globalAlpha = 1
+        ink.setLineDash([8, 3])
+        for (const value of [below, above]) {
+            if (value === null || value > axes.top || value < axes.bottom) continue
+            const y = Math.round(this.y(value)) + 0.5
+            stroke(ink, [[left, y], [right, y]], tones()[tone], 1.2)
+        }
+        ink.setLineDash([])
         ink.textAlign = "right"
-        const { width } = ink.measureText(unit)
-        const right = Math.max(MARGIN.left - 6, width + 2)
-        this.boxes.push({ left: right - width, right: right + 4, top: 9 - HALF, bottom: 9 + HALF })
-        ink.fillStyle = tones().soft
-        ink.fillText(unit, right, 9)
+        ink.font = FONT
+        const { width } = ink.measureText(label), edge = this.y(below === null ? bottom : top)
+        const row = [edge - HALF - 1, edge + HALF + 1].find(y =>
+            y > MARGIN.top && y < this.y(axes.bottom) && !this.taken({ left: right - width - 6, right, top: y - HALF, bottom: y + HALF }))
+        if (row !== undefined) letters(ink, label, right - 4, row, tones()[tone], tones().paper)
     }
 
     private shade(ink: CanvasRenderingContext2D): void {
@@ -136,21 +189,23 @@ export class Chart {
             if (right <= left) continue
             ink.fillStyle = tones()[span.kind]
             ink.fillRect(left, MARGIN.top, right - left, this.y(axes.bottom) - MARGIN.top)
+            if (!this.namesSpans) continue
             const text = said(this.texts, `chart.${span.kind}`)
             const half = ink.measureText(text).width / 2
             const x = Math.min(Math.max((left + right) / 2, this.x(from) + half), this.x(until) - half)
-            if (this.taken({ left: x - half, right: x + half, top: 4, bottom: 18 })) continue
+            const row = [TITLE + 3, MARGIN.top + TITLE].find(y => !this.taken({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }))
+            if (row === undefined) continue
             ink.fillStyle = tones().ink
-            ink.fillText(text, x, 12)
+            ink.fillText(text, x, row)
         }
     }
 
     private grid(ink: CanvasRenderingContext2D): void {
         const { axes, from, until, texts, sheet } = this
-        const { top, bottom, mark } = axes
-        const { ink: dark, soft, grid, paper } = tones()
+        const { top, bottom } = axes
+        const { ink: dark, grid } = tones()
         const [left, right] = [this.x(from), this.x(until)]
-        const rows = Math.max(2, Math.floor((sheet.height - MARGIN.top - MARGIN.bottom) / 34))
+        const rows = Math.max(2, Math.floor((sheet.height - MARGIN.top - this.bottom) / 34))
         const step = niceStep((top - bottom) / rows)
         ink.textAlign = "right"
         ink.fillStyle = dark
@@ -159,6 +214,7 @@ export class Chart {
             stroke(ink, [[left, y], [right, y]], grid, 1)
             ink.fillText(significant(texts, value, 4), left - 6, y)
         }
+        if (!this.hasTimes) return this.mark(ink)
         const apart = niceStep((64 * (until - from)) / (right - left))
         ink.textAlign = "center"
         ink.fillStyle = dark
@@ -166,7 +222,14 @@ export class Chart {
             const text = significant(texts, time, 4)
             ink.fillText(time < from + apart ? `${text} s` : text, this.x(time), sheet.height - 7)
         }
+        this.mark(ink)
+    }
+
+    private mark(ink: CanvasRenderingContext2D): void {
+        const { top, bottom, mark } = this.axes
         if (!mark || mark.value > top || mark.value < bottom) return
+        const { soft, paper } = tones()
+        const [left, right] = [this.x(this.from), this.x(this.until)]
         const y = Math.round(this.y(mark.value)) + 0.5
         ink.setLineDash([2, 4])
         stroke(ink, [[left, y], [right, y]], soft, 1)
@@ -222,7 +285,7 @@ export class Chart {
                 if (value === undefined || line.times[peak]! < from || line.times[peak]! > until || Math.abs(value) < LEAST_PEAK * (axes.top - axes.bottom)) continue
                 const text = written(texts, value, Math.abs(value) < 100 ? 1 : 0)
                 const half = ink.measureText(text).width / 2 + 2
-                const x = this.x(line.times[peak]!), y = Math.max(this.y(value) - 12, MARGIN.top - 6)
+                const x = this.x(line.times[peak]!), y = Math.max(this.y(value) - 12, MARGIN.top + 2)
                 const found = [0, 14, -14, 30, -30].find(aside => this.room(x + aside, y, half))
                 if (found !== undefined) letters(ink, text, x + found, y, tones()[line.tone], tones().paper)
             }
@@ -256,7 +319,7 @@ export class Chart {
                 return true
             }
             const height = (time: number, aside: number) => this.y(valueAt(line, time) ?? 0) + aside
-            for (const clear of [true, false]) {
+            for (const clear of this.namesAll ? [true, false] : [true]) {
                 for (const asides of clear ? ASIDES : ASIDES.slice(0, 1))
                     for (const [, time] of scored) {
                         const x = Math.min(Math.max(this.x(time), this.x(from) + half), this.x(until) - half)
@@ -293,56 +356,4 @@ export class Chart {
             return false
         })
     }
-
-    /** The same as a table, made when it is opened. */
-    private table(): HTMLElement {
-        const { texts } = this
-        const body = made("div", "wide")
-        body.tabIndex = 0 // so that keys scroll it
-        const details = made("details", "table", made("summary", "", said(texts, "chart.table")), body)
-        details.addEventListener("toggle", () => body.replaceChildren(...(details.open ? [this.rows()] : [])))
-        return details
-    }
-
-    private rows(): HTMLElement {
-        const { texts, axes, spans, lines, ghost } = this
-        const curves: (Curve & { name: string })[] = [...lines]
-        if (ghost) curves.push({ ...ghost, name: said(texts, "chart.yours") })
-        const heads = [said(texts, "chart.time"), ...curves.map(({ name }) => `${name} [${axes.unit}]`), said(texts, "chart.acts")]
-        const row = (tag: "th" | "td", cells: string[]) => made("tr", "", ...cells.map(cell => made(tag, "", cell)))
-        const all = curves.flatMap(({ times }) => [times[0] ?? Infinity, times[times.length - 1] ?? -Infinity])
-        const [first, last] = [Math.min(...all), Math.max(...all)]
-        const step = niceStep(Math.max((last - first) / 60, 0.5))
-        const seconds = Array.from({ length: Math.max(0, Math.floor((last - first) / step + 1e-9)) + 1 }, (_, i) => first + i * step)
-        const body = seconds.filter(Number.isFinite).map(time => {
-            const values = curves.map(curve => valueAt(curve, time)).map(value => (value === null ? "" : written(texts, value, 1)))
-            const acts = spans.filter(span => span.from <= time && time < span.until).map(span => said(texts, `chart.${span.kind}`))
-            return row("td", [written(texts, time, 1), ...values, acts.join(", ")])
-        })
-        const table = made("table", "", made("thead", "", row("th", heads)), made("tbody", "", ...body))
-        table.setAttribute("aria-label", axes.label)
-        return table
-    }
-}
-
-/** The number of the first time that is not before another. */
-export function firstAfter(times: readonly number[], time: number): number {
-    let [low, high] = [0, times.length]
-    while (low < high) {
-        const middle = (low + high) >> 1
-        if (times[middle]! < time - 1e-9) low = middle + 1
-        else high = middle
-    }
-    return low
-}
-
-/** The value of a curve at a time, between its points; null outside. */
-export function valueAt({ times, values }: Curve, time: number): number | null {
-    const next = firstAfter(times, time)
-    if (next === times.length) return null
-    const gap = times[next]! - time
-    if (gap < 1e-6) return values[next]!
-    if (next === 0) return null
-    const share = gap / (times[next]! - times[next - 1]!)
-    return share * values[next - 1]! + (1 - share) * values[next]!
 }

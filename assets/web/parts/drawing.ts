@@ -3,7 +3,8 @@
 import { made } from "../core/dom"
 import { niceStep } from "../core/ink"
 import { said, significant } from "../core/words"
-import { firstAfter, valueAt, type Chart, type Curve } from "./chart"
+import type { Chart } from "./chart"
+import { firstAfter, valueAt, type Curve } from "./curves"
 
 const POINTS = 33 // that keys move; in eight seconds, four a second
 const MOST = 160 // points that are kept

@@ -1,84 +1,155 @@
-// The chart of both distances: it follows an engine, and looks back.
+// The plots under the stage: rows with one axis of time, which follow an engine and look back together.
 
 import { made } from "../core/dom"
 import { shown, type Engine, type Vector } from "../core/engine"
-import { niceStep } from "../core/ink"
 import { said, written, type Texts } from "../core/words"
-import { Chart, firstAfter, type Line, type Span } from "./chart"
+import type { Chart, Limit } from "./chart"
+import { firstAfter, type Span } from "./curves"
+import { PhasePlane } from "./phase"
+import { PlotMenu } from "./plot_menu"
+import { Row } from "./row"
+import { tableOf } from "./table"
 
 const SECONDS = 10 // on the axis
-const TOPS = [10, 20, 30, 40, 60, 80, 100, 150, 200, 300, 400, 600, 800, 1000] // [mm]
-const FILLED = 0.94 // of the height, from which the scale grows
 const [MINUTE, SPARE] = [60, 5] // [s], that are kept, and what is dropped at once
 const ROUND = 5e-4 // by how much the radius of a circle may vary
 const SPOKEN = 500 // [ms] between two values for a screen reader
 const STEPS: Record<string, number> = { ArrowLeft: -0.1, ArrowDown: -0.1, ArrowRight: 0.1, ArrowUp: 0.1, PageDown: -1, PageUp: 1 }
+export const DISTANCE = "distance" // the first row, which is always there
+const PHASE = "phase" // the plane, which stands beside the rows
+const PLANE = ["across", "across_rate"] // rows that are its axes
 
 export class Strip {
-    readonly chart: Chart
+    readonly element: HTMLElement
+    readonly menu: PlotMenu
     readonly handle = made("div", "handle", made("span", ""))
+    rows: Row[] = []
+    /** What a task wants, by the name of a row. */
+    limits: Record<string, Limit[]> = {}
+    private readonly stack = made("div", "stack", this.handle)
+    private phase: PhasePlane | null = null
+    private chosen: readonly string[]
+    private inStep: readonly string[] | null = null // rows of a lesson's step
+    private offered = "" // of the rows that there can be
+    private large = 1
     private stale = true
     private spoken = -Infinity
     private first = 0 // of the axis, while one looks back
     private readonly times: number[] = []
-    private readonly values: number[][] = [] // [mm], of each robot
     private readonly kinds: (Span["kind"] | null)[] = []
-    private most = 0 // [mm]
     private forgets = false // whether the curves begin anew
     private dragged: { pointer: number; x: number } | null = null
 
-    constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal) {
-        const axes = { label: said(texts, "chart.title"), unit: "mm", bottom: 0, top: TOPS[0]! }
-        this.chart = new Chart(texts, axes, () => (this.stale = true))
-        this.chart.sheet.canvas.setAttribute("aria-label", said(texts, "chart.title"))
-        this.chart.plot.append(this.handle)
-        this.scale()
+    /** `kept`: the name under which the browser keeps the rows that a user has chosen. */
+    constructor(private readonly texts: Texts, private readonly engine: Engine, ended?: AbortSignal, private readonly kept = "") {
+        this.chosen = recalled(kept)
+        this.menu = new PlotMenu(texts, (name, on) => this.choose(name, on))
+        const columns = () => this.rows.flatMap(({ chart, data }) => chart.lines.map(line => ({ ...line, name: this.heading(line.name, data.label), unit: data.unit })))
+        const table = tableOf(texts, () => said(texts, "chart.title"), columns, () => spansOf(this.times, this.kinds))
+        this.element = made("div", "strip", this.stack, table)
         engine.on(change => {
             this.stale = true
-            if (change === "history") [this.forgets, this.most] = [true, 0]
-            if (change === "history" || change === "path") this.scale(change === "history" ? 0 : this.chart.axes.top)
+            if (change === "history") this.forgets = true
+            if (change === "path" || change === "history") this.mark()
+            if (change === "state" || change === "history") this.build()
         }, ended)
+        this.build()
         this.hand()
         this.grip(-Infinity)
+    }
+
+    /** The chart of the distance. */
+    get chart(): Chart { return this.rows[0]!.chart }
+
+    set zoom(zoom: number) {
+        this.large = zoom
+        for (const { chart } of this.rows) chart.sheet.zoom = zoom
+        if (this.phase) this.phase.sheet.zoom = zoom
+    }
+
+    /** Show the rows that a lesson's step names besides the distance, or the user's own. */
+    follows(step: readonly string[] | null): void {
+        this.inStep = step && [...step]
+        this.build()
     }
 
     /** Draw what has changed. */
     draw(now = performance.now()): void {
         const { dragged, chart } = this
-        if (dragged && this.chart.from > 0 && dragged.x < chart.x(chart.from)) this.drag(dragged.x) // goes further back
+        if (dragged && chart.from > 0 && dragged.x < chart.x(chart.from)) this.drag(dragged.x) // goes further back
         if (!this.stale) return
         this.stale = false
-        this.follow()
-        chart.draw()
+        this.follow(now)
+        for (const row of this.rows) row.chart.draw()
+        this.phase?.draw()
         this.grip(now)
     }
 
-    /** The radius of a circle and a little more, but not less than before in a run. */
-    private scale(least = 0): void {
-        const { chart, engine, texts } = this
-        const radius = radiusOf(engine.path.lines[0] ?? [])
-        const wanted = Math.max(radius ? 1.15e3 * radius : 0, least)
-        const top = TOPS.find(each => each >= wanted) ?? wanted
-        const mark = radius ? { value: 1e3 * radius, label: said(texts, "chart.centre") } : undefined
-        chart.axes = { ...chart.axes, top, mark }
+    private get wanted(): readonly string[] { return this.inStep ?? this.chosen }
+    private heading(line: string, label: string): string { return this.rows.length > 1 ? `${label}: ${line}` : line }
+
+    private choose(name: string, on: boolean): void {
+        const names = this.wanted.filter(each => each !== name)
+        if (on) names.push(name)
+        if (this.inStep) this.inStep = names
+        else remember(this.kept, (this.chosen = names))
+        this.build()
     }
 
-    private follow(): void {
-        const { chart, engine, times, kinds } = this
+    /** Make the rows that are wanted, of those that these robots can have. */
+    private build(): void {
+        const { engine, texts, stack, handle, wanted } = this
+        const { rows } = engine
+        const possible = rows.some(row => row.name === PLANE[0]) ? [...rows.map(row => row.name), PHASE] : rows.map(row => row.name)
+        const shown = [DISTANCE, ...wanted.filter(name => name !== DISTANCE && possible.includes(name))]
+        const offered = JSON.stringify([rows, engine.texts.length, shown])
+        if (offered === this.offered) return
+        this.offered = offered
+        const changed = () => void (this.stale = true)
+        this.rows = shown.flatMap(name => rows.filter(row => row.name === name)).map(data => {
+            const kept = this.rows.find(row => row.data === data || JSON.stringify(row.data) === JSON.stringify(data))
+            return kept ?? new Row(texts, engine, data, changed)
+        })
+        const plane = PLANE.map(name => rows.find(row => row.name === name)!) as [Row["data"], Row["data"]]
+        this.phase?.element.remove()
+        this.phase = shown.includes(PHASE) ? new PhasePlane(texts, engine, plane, changed) : null
+        this.rows.forEach(({ chart, data }, i) => {
+            const isLast = i === this.rows.length - 1
+            Object.assign(chart, { hasTimes: isLast, namesSpans: i === 0, hasPeaks: !data.floats, namesAll: false })
+        })
+        stack.replaceChildren(...this.rows.map(({ chart }) => chart.plot), handle)
+        if (this.phase) stack.after(this.phase.element)
+        this.element.style.setProperty("--rows", String(this.rows.length))
+        document.documentElement.style.setProperty("--op-rows", String(this.rows.length))
+        const name = (name: string) => rows.find(row => row.name === name)?.menu ?? said(texts, "plot.phase")
+        this.menu.show(possible.filter(each => each !== DISTANCE).map(each => ({ name: each, menu: name(each), on: shown.includes(each) })))
+        this.zoom = this.large
+        engine.plot([...new Set([...this.rows.flatMap(row => row.fields), ...(this.phase ? plane.flatMap(row => row.lines[0]!.field) : [])])])
+        this.mark()
+        this.forgets = this.stale = true
+    }
+
+    /** Mark the centre of a circle in the chart of the distance. */
+    private mark(): void {
+        const { chart, engine, texts } = this
+        const radius = radiusOf(engine.path.lines[0] ?? [])
+        chart.axes = { ...chart.axes, mark: radius ? { value: 1e3 * radius, label: said(texts, "chart.centre") } : undefined }
+    }
+
+    private follow(now: number): void {
+        const { engine, times, kinds, limits } = this
         const { past } = engine.state
         const end = engine.present.time
         if (past === null) this.first = Math.max(0, end - SECONDS)
         else if (past < this.first || past > this.first + SECONDS) this.first = Math.max(0, past - SECONDS / 2)
         this.record()
-        chart.from = this.first
-        chart.until = this.first + SECONDS
-        chart.at = shown(engine).time
-        chart.spans = spansOf(times, kinds)
-        chart.lines = engine.texts.map(({ name, side }, i): Line => {
-            return { name, tone: `side${side}`, dashed: side === 1, times, values: this.values[i]! }
-        })
-        const { axes } = chart
-        if (this.most > FILLED * axes.top) axes.top = TOPS.find(each => FILLED * each >= this.most) ?? niceStep(this.most / FILLED)
+        const spans = spansOf(times, kinds), sample = shown(engine)
+        for (const row of this.rows) {
+            const { chart, data } = row
+            Object.assign(chart, { from: this.first, until: this.first + SECONDS, at: sample.time, spans, limits: limits[data.name] ?? [] })
+            row.follow(times)
+            if (data.name !== DISTANCE) row.tell(sample, now)
+        }
     }
 
     /** Add what is new to the curves, and the present at their ends. */
@@ -87,28 +158,29 @@ export class Strip {
         if (this.forgets) this.shorten(times.length)
         else if (times.length) this.shorten(1, true)
         this.forgets = false
-        for (const { time, sides } of [...engine.since(times[times.length - 1] ?? -Infinity), engine.present]) {
+        for (const sample of [...engine.since(times[times.length - 1] ?? -Infinity), engine.present]) {
+            const { time, sides } = sample
             times.push(time)
             kinds.push(sides.some(side => side.held) ? "held" : sides.some(side => side.pulled) ? "pulled" : null)
-            sides.forEach(({ distance }, i) => (this.values[i] ??= []).push(1e3 * distance))
-            this.most = Math.max(this.most, ...sides.map(({ distance }) => 1e3 * distance))
+            for (const row of this.rows) row.add(sample)
         }
         const oldest = times[times.length - 1]! - MINUTE
         if (times[0]! < oldest - SPARE) this.shorten(firstAfter(times, oldest))
     }
 
     private shorten(by: number, last = false): void {
-        for (const each of [this.times, this.kinds, ...this.values]) each.splice(last ? each.length - by : 0, by)
+        for (const each of [this.times, this.kinds]) each.splice(last ? each.length - by : 0, by)
+        for (const row of this.rows) row.shorten(by, last)
     }
 
     /** Put the handle where it belongs, and say what is there. */
     private grip(now: number): void {
-        const { handle, chart, engine, texts } = this
+        const { handle, chart, engine, texts, rows } = this
         const sample = shown(engine)
         handle.style.transform = `translateX(${(chart.sheet.zoom * chart.x(sample.time)).toFixed(1)}px)`
         if (now && now < this.spoken + SPOKEN && engine.state.past === null) return
         this.spoken = now
-        const values = engine.texts.map(({ name }, i) => `${name} ${written(texts, 1e3 * sample.sides[i]!.distance, 1)} mm`).join(", ")
+        const values = rows.map(row => (row.data.name === DISTANCE ? "" : `${row.data.label}: `) + row.spoken(sample)).join("; ")
         const told = {
             "aria-valuemin": (engine.since(-Infinity)[0]?.time ?? 0).toFixed(1),
             "aria-valuemax": engine.present.time.toFixed(1),
@@ -119,7 +191,7 @@ export class Strip {
     }
 
     private hand(): void {
-        const { handle, chart, engine, texts } = this
+        const { handle, stack, engine, texts } = this
         Object.assign(handle, { tabIndex: 0, role: "slider", ariaLabel: said(texts, "chart.look"), title: said(texts, "chart.look_hint") })
         handle.addEventListener("keydown", event => {
             const { time } = shown(engine)
@@ -129,19 +201,18 @@ export class Strip {
             event.stopPropagation()
             this.look(to)
         })
-        const { plot, sheet } = chart
-        const place = (event: PointerEvent): number => (event.clientX - plot.getBoundingClientRect().left) / sheet.zoom
-        plot.addEventListener("pointerdown", event => {
+        const place = (event: PointerEvent): number => (event.clientX - stack.getBoundingClientRect().left) / this.chart.sheet.zoom
+        stack.addEventListener("pointerdown", event => {
             if (this.dragged || event.button !== 0) return
             this.dragged = { pointer: event.pointerId, x: 0 }
-            plot.setPointerCapture(event.pointerId)
+            stack.setPointerCapture(event.pointerId)
             this.drag(place(event))
         })
-        plot.addEventListener("pointermove", event => {
+        stack.addEventListener("pointermove", event => {
             if (event.pointerId === this.dragged?.pointer) this.drag(place(event))
         })
         for (const end of ["pointerup", "pointercancel"] as const)
-            plot.addEventListener(end, event => event.pointerId === this.dragged?.pointer && (this.dragged = null))
+            stack.addEventListener(end, event => event.pointerId === this.dragged?.pointer && (this.dragged = null))
     }
 
     private drag(x: number): void {
@@ -178,4 +249,22 @@ export function radiusOf(points: readonly Vector[]): number | null {
     const radii = points.map(point => Math.hypot(...point.map((each, k) => each - middle[k]!)))
     const [least, most] = [Math.min(...radii), Math.max(...radii)]
     return most - least < ROUND * most && most > 0 ? (least + most) / 2 : null
+}
+
+/** Names that the browser keeps; without storage, as in a sandboxed frame, there are none. */
+function recalled(kept: string): string[] {
+    try {
+        const found: unknown = JSON.parse((kept && localStorage.getItem(kept)) || "[]")
+        return Array.isArray(found) ? found.filter(each => typeof each === "string") : []
+    } catch {
+        return []
+    }
+}
+
+function remember(kept: string, names: readonly string[]): void {
+    try {
+        if (kept) localStorage.setItem(kept, JSON.stringify(names))
+    } catch {
+        // they last as long as the page
+    }
 }

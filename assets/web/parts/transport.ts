@@ -1,20 +1,21 @@
-// Buttons for time and for the brake: hold, hold while pressed, pause, step, reset, rate; and back from the past.
+// Buttons for time and for the brake: hold, pause, step, reset, rate; and back from the past.
 
-import { made, tell } from "../core/dom"
+import { made } from "../core/dom"
 import type { Engine } from "../core/engine"
 import { said, written, type Texts } from "../core/words"
 
 const RATES = [1, 0.5, 0.25, 0.1]
+const KEPT = 600 // [ms]: who presses Hold for longer lets go with it
 
 export class Transport {
     readonly element: HTMLElement
+    /** The brake; while one looks at the past, the buttons of the past stand in its place. */
+    readonly brake: HTMLElement
     private readonly held: HTMLButtonElement
     private readonly run: HTMLButtonElement
     private readonly rate: HTMLSelectElement
-    /** Shown in place of the brakes while one looks at the past. */
-    readonly past: HTMLElement
+    private readonly past: HTMLElement
     private readonly goes: HTMLButtonElement
-    readonly brakes: HTMLButtonElement[]
     private readonly hints = new Map<HTMLElement, string>()
 
     /** `offered`: names of the controls, "hold", "run", "step", and "reset". */
@@ -25,24 +26,30 @@ export class Transport {
         ended?: AbortSignal,
         private readonly offers: readonly number[] = RATES,
     ) {
-        this.held = this.button("main", "", "run.hold_hint", () => this.toggleHold())
-        this.brakes = [this.held, this.press()]
-        this.run = this.button("", "run.run", "run.run_hint", () => this.toggleRun())
+        const both = engine.texts.length > 1 ? "_both" : ""
+        this.held = this.button("main", [`run.hold${both}`, `run.let${both}_go`], "run.hold_hint", () => {})
+        this.brakes(this.held)
+        this.run = this.button("", ["run.run", "run.pause"], "run.run_hint", () => this.toggleRun())
         this.rate = this.rates()
         const every: Record<string, HTMLElement[]> = {
-            hold: this.brakes,
             run: [this.run],
-            step: [this.button("", "run.step", "key.right", () => this.engine.act({ do: "step" }))],
-            reset: [this.button("", "run.reset", "key.reset", () => this.engine.act({ do: "reset" }))],
+            step: [this.button("", ["run.step"], "key.right", () => this.engine.act({ do: "step" }))],
+            reset: [this.button("", ["run.reset"], "key.reset", () => this.engine.act({ do: "reset" }))],
         }
         const buttons = Object.keys(every).filter(name => offered.includes(name)).flatMap(name => every[name]!)
         if (offered.includes("run")) buttons.push(this.rate)
-        this.goes = this.button("", "past.go_on", "transport.go_on_hint", () => this.engine.act({ do: "goOn" }))
-        const back = this.button("", "transport.back", "transport.back_hint", () => this.engine.act({ do: "look", at: null }))
+        this.goes = this.button("", ["past.go_on"], "transport.go_on_hint", () => this.engine.act({ do: "goOn" }))
+        const back = this.button("", ["transport.back"], "transport.back_hint", () => this.engine.act({ do: "look", at: null }))
         this.past = made("div", "past", back, this.goes)
-        this.element = made("div", "transport", this.past, ...buttons)
+        this.brake = made("div", "brake", this.past, ...(offered.includes("hold") ? [this.held] : []))
+        this.element = made("div", "transport", this.brake, ...buttons)
         engine.on(change => change !== "samples" && this.show(), ended)
         this.show()
+    }
+
+    /** Whether something else is the main thing to press now. */
+    set subdued(subdued: boolean) {
+        this.held.classList.toggle("main", !subdued)
     }
 
     toggleHold(): void {
@@ -58,16 +65,14 @@ export class Transport {
     }
 
     private show(): void {
-        const { texts, engine, held, run, rate, past, goes } = this
+        const { engine, held, run, rate, past, goes } = this
         const { state } = engine
-        const both = engine.texts.length > 1 ? "_both" : ""
-        tell(held, said(texts, state.held ? `run.let${both}_go` : `run.hold${both}`))
+        label(held, Number(state.held))
         held.ariaPressed = String(state.held)
-        tell(run, said(texts, state.running ? "run.pause" : "run.run"))
+        label(run, Number(state.running))
         const chosen = this.offers.indexOf(state.rate)
         if (rate.selectedIndex !== chosen) rate.selectedIndex = chosen
         past.hidden = state.past === null
-        for (const brake of this.brakes) brake.hidden = !past.hidden // the buttons of the past take their place
         goes.hidden = !state.branches
         this.freeze(state.frozen)
     }
@@ -84,36 +89,50 @@ export class Transport {
         this.rate.title = why || this.rate.ariaLabel!
     }
 
-    private button(name: string, text: string, hint: string, act: () => void): HTMLButtonElement {
-        const button = made("button", name, text && said(this.texts, text))
+    /** A button with the width of the longest of its labels, so that nothing beside it moves. */
+    private button(name: string, labels: string[], hint: string, act: () => void): HTMLButtonElement {
+        const button = made("button", name, ...labels.map(each => made("span", "", said(this.texts, each))))
         button.type = "button"
         button.title = said(this.texts, hint)
         button.addEventListener("click", act)
+        label(button, 0)
         return button
     }
 
-    /** A button that holds as long as it is pressed, with the mouse, a finger or a key. */
-    private press(): HTMLButtonElement {
-        const button = this.button("", "run.press", "run.press_hint", () => {})
+    /** Pressed, it holds; pressed again, it lets go. It also lets go at the end of a long press, with the mouse, a finger or a
+     * key. */
+    private brakes(button: HTMLButtonElement): void {
+        let began: number | null = null // [ms], when a press that holds began
         let pressed = false
-        const press = (on: boolean) => {
-            if (pressed !== on) this.hold((pressed = on))
+        const press = (at: number) => {
+            pressed = true
+            began = this.engine.state.held ? null : at
+            if (began !== null) this.hold(true)
+        }
+        const release = (at: number) => {
+            if (!pressed) return
+            pressed = false
+            if (began === null || at > began + KEPT) this.hold(false)
         }
         button.addEventListener("pointerdown", event => {
             if (event.button !== 0) return
             button.setPointerCapture(event.pointerId)
-            press(true)
+            press(event.timeStamp)
         })
-        for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) button.addEventListener(end, () => press(false))
+        for (const end of ["pointerup", "pointercancel", "lostpointercapture", "blur"]) button.addEventListener(end, event => release(event.timeStamp))
         button.addEventListener("contextmenu", event => event.preventDefault()) // of a long touch
+        button.addEventListener("click", event => event.detail === 0 && !event.pointerType && this.toggleHold()) // by a screen reader
         button.addEventListener("keydown", event => {
             if (event.key !== " " && event.key !== "Enter") return
             event.preventDefault()
             event.stopPropagation()
-            press(true)
+            if (!event.repeat) press(event.timeStamp)
         })
-        button.addEventListener("keyup", event => [" ", "Enter"].includes(event.key) && press(false))
-        return button
+        button.addEventListener("keyup", event => {
+            if (event.key !== " " && event.key !== "Enter") return
+            event.preventDefault() // else a click follows
+            release(event.timeStamp)
+        })
     }
 
     private rates(): HTMLSelectElement {
@@ -122,4 +141,9 @@ export class Transport {
         select.addEventListener("change", () => this.engine.act({ do: "rate", rate: this.offers[select.selectedIndex]! }))
         return select
     }
+}
+
+/** Show one of a button's labels; the others keep their room. */
+function label(button: HTMLButtonElement, shown: number): void {
+    for (const [i, each] of [...button.children].entries()) each.classList.toggle("off", i !== shown)
 }

@@ -1,6 +1,6 @@
 // The engine of a page without a server: a simulation in WebAssembly, and its clock.
 
-import { sampleAt, type Act, type Change, type Engine, type PathShape, type SideText, type State, type Vector } from "../core/engine"
+import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type SideText, type State, type Vector } from "../core/engine"
 import { caption } from "./captions"
 import type { Moment, Simulation } from "./simulation"
 
@@ -54,6 +54,14 @@ export class LocalEngine implements Engine {
     since(time: number): Moment[] {
         const { recent } = this.simulation
         return recent.slice(recent.findLastIndex(moment => moment.time <= time) + 1)
+    }
+
+    get rows(): readonly RowData[] { return this.simulation.data.rows }
+
+    plot(): void {} // all fields are known
+
+    field({ robots, sides }: Moment, side: number, name: string): ArrayLike<number> | null {
+        return name === "distance" ? [sides[side]!.distance] : this.simulation.sides[side]!.kept(robots[side]!, name)
     }
 
     on(listener: (change: Change) => void, ended?: AbortSignal): void {

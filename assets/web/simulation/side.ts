@@ -1,7 +1,7 @@
 // One robot under a law: its state, the forces on it, and its drawing.
 
 import type { SideSample, Vector } from "../core/engine"
-import type { EffortData, SideData, FigureData, LawData, Point } from "../core/figure_data"
+import type { EffortData, SideData, FigureData, LawData, Place, Point } from "../core/figure_data"
 import type { Kernels } from "./kernels"
 import type { Path } from "./path"
 
@@ -33,10 +33,11 @@ export class Side {
     private readonly begun = this.kernels.room(this.longest) // the state at the start
     readonly settings = this.kernels.room(this.path.data.settings.length)
     private readonly log = this.kernels.room((1 + MOST_TICKS) * this.sizes.log) // the last row, then new ones
-    private readonly result = this.kernels.room(2 * this.sizes.p + 4)
+    private readonly result = this.kernels.room(2 * this.sizes.p + 4 + this.sizes.n)
     private readonly points = this.kernels.room(4 * this.sizes.bars + 2 * this.sizes.joints)
     private readonly nearest = this.kernels.room(1 + this.sizes.p) // the distance, and the closest point
     private readonly straight = this.kernels.room(this.sizes.n + this.sizes.p) // a configuration, and its tip
+    private readonly moved = this.kernels.room(2 * this.sizes.n) // a configuration, and its velocity
     private readonly y = this.kernels.room(this.sizes.p)
     private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
     private row = this.log // the last one
@@ -93,6 +94,22 @@ export class Side {
     readonly keep = (): Kept => {
         const { law, ticks, kernels, state, longest } = this
         return { row: this.logged(), state: kernels.numbers.slice(state, state + longest), law, ticks }
+    }
+
+    /** The numbers of a field at an instant, in SI units; null if this robot has none. */
+    kept({ row, law }: Kept, name: string): ArrayLike<number> | null {
+        const { figure, sizes, kernels, moved, result } = this
+        if (name === "theta_ref" && !figure.laws[law]!.byClock) return null
+        const numbers = (place: Place) => row.subarray(place[0], place[0] + place[1])
+        if (name in figure.log) return numbers(figure.log[name as keyof FigureData["log"]])
+        const modes = sizes.n - sizes.rigid
+        if (!modes) return null
+        kernels.numbers.set(numbers(figure.log.q), moved)
+        kernels.numbers.set(numbers(figure.log.v), moved + sizes.n)
+        this.call("measured", moved, moved + sizes.n, result)
+        const bent: Record<string, Place> = { deflection: [0, 1], internal_energy: [1, 1], modes: [2, modes] }
+        const found = bent[name]
+        return found ? kernels.numbers.slice(result + found[0], result + found[0] + found[1]) : null
     }
 
     /** Draw a past instant, or the present one. */

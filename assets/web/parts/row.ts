@@ -1,0 +1,102 @@
+// One row of the plots under the stage: a chart of one quantity of all robots.
+
+import type { Engine, RowData, Sample } from "../core/engine"
+import { written, type Texts } from "../core/words"
+import { axisFor } from "./axis"
+import { Chart, type Line } from "./chart"
+import { firstAfter } from "./curves"
+
+const READ = 150 // [ms] between changes of the numbers
+
+export class Row {
+    readonly chart: Chart
+    readonly fields: string[]
+    private readonly values: number[][] // of each line of each robot, in the row's unit
+    private read = -Infinity // when the numbers were last changed
+
+    constructor(private readonly texts: Texts, private readonly engine: Engine, readonly data: RowData, changed: () => void) {
+        const { label, unit, least, lines } = data
+        this.chart = new Chart(texts, { label, unit, bottom: least[0], top: least[1] }, changed)
+        this.chart.sheet.canvas.setAttribute("aria-label", `${label} [${unit}]`)
+        this.fields = lines.map(line => line.field)
+        this.values = engine.texts.flatMap(() => lines.map(() => []))
+    }
+
+    /** Add a sample to the curves; what is not known of it is NaN. */
+    add(sample: Sample): void {
+        const { engine, values, data: { lines, scale } } = this
+        values.forEach((line, i) => {
+            const { field, at } = lines[i % lines.length]!
+            line.push((engine.field(sample, Math.floor(i / lines.length), field)?.[at] ?? NaN) * scale)
+        })
+    }
+
+    /** Forget some of the first samples, or of the last ones. */
+    shorten(by: number, last: boolean): void {
+        for (const each of this.values) each.splice(last ? each.length - by : 0, by)
+    }
+
+    /** Show the curves at these times. */
+    follow(times: readonly number[]): void {
+        const { chart, engine, data } = this
+        const { lines } = data
+        const robots = engine.texts
+        chart.lines = this.values.map((values, i): Line => {
+            const { name, side } = robots[Math.floor(i / lines.length)]!, own = lines[i % lines.length]!
+            const both = own.name ? `${name} ${own.name}` : name
+            return { name: both, tone: `side${side}`, dashed: side === 1, thin: i % lines.length > 0, times, values }
+        }).filter(line => !Number.isNaN(line.values[line.values.length - 1]))
+        const [low, high] = this.extent(times)
+        const range = axisFor(chart.axes, low, high, this.least(low, high))
+        chart.axes = { ...chart.axes, ...range }
+    }
+
+    /** The values now, beside the title. */
+    tell(sample: Sample, now: number): void {
+        if (now < this.read + READ) return
+        this.read = now
+        const { engine, texts, data: { lines, scale }, chart } = this
+        chart.readings = engine.texts.map(({ name, side }, i) => {
+            const values = lines.map(({ field, at }) => engine.field(sample, i, field)?.[at])
+            const known = values.filter(value => value !== undefined).map(value => significantly(texts, value * scale, chart.axes))
+            return { text: `${name} ${known.join(" · ")}`, tone: `side${side}` }
+        })
+    }
+
+    /** What a screen reader is told of it. */
+    spoken(sample: Sample): string {
+        const { engine, texts, data: { lines, scale, unit } } = this
+        return engine.texts.map(({ name }, i) => {
+            const values = lines.map(({ field, at }) => engine.field(sample, i, field)?.[at])
+            const known = values.filter(value => value !== undefined).map(value => written(texts, value * scale, 1))
+            return `${name} ${known.join(" · ")} ${unit}`
+        }).join(", ")
+    }
+
+    private extent(times: readonly number[]): [number, number] {
+        const { chart: { from, until }, values } = this
+        const [first, last] = [firstAfter(times, from), firstAfter(times, until)]
+        let [low, high] = [Infinity, -Infinity]
+        for (const line of values)
+            for (let i = first; i <= last && i < line.length; i++) {
+                if (line[i]! < low) low = line[i]!
+                if (line[i]! > high) high = line[i]!
+            }
+        return low <= high ? [low, high] : [0, 0]
+    }
+
+    /** The least range of the axis, with what a task wants. */
+    private least(low: number, high: number): [number, number] {
+        const { chart, data } = this
+        const wanted = chart.limits.flatMap(({ below, above }) => [below, above]).filter(each => each !== null)
+        const [least, most] = data.floats ? [(low + high - data.least[1]) / 2, (low + high + data.least[1]) / 2] : data.least
+        return [Math.min(least, ...wanted), Math.max(most, ...wanted.map(each => 1.25 * each))]
+    }
+}
+
+/** A number with as many decimals as its axis can tell apart. */
+function significantly(texts: Texts, value: number, { bottom, top }: { bottom: number; top: number }): string {
+    const decimals = Math.min(4, Math.max(0, 2 - Math.floor(Math.log10(top - bottom))))
+    return written(texts, value, decimals)
+}
+
