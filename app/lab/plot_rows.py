@@ -33,7 +33,7 @@ class PlotRow:
             it.
         floats: whether the axis needs not contain zero; only the size of `least` counts then.
         symbols: names of the field's components; empty: a single line is named after its robot.
-        beside: a field whose line stands beside this one, as what is wanted of it.
+        beside: a field whose line stands beside this one, and the key of its name.
     """
 
     name: str
@@ -43,7 +43,7 @@ class PlotRow:
     least: tuple[float, float]
     symbols: tuple[str, ...] = ()
     floats: bool = False
-    beside: str = ""
+    beside: tuple[str, str] | None = None
 
 
 ROWS = (
@@ -86,7 +86,7 @@ ROWS = (
         finest=1e-3,
         least=(0.0, 0.2),
         floats=True,
-        beside="theta_ref",
+        beside=("theta_ref", "plots.theta_ref"),
     ),
     PlotRow(name="rate", field="theta_rate", scale=1.0, finest=1e-3, least=(-0.1, 0.1)),
     PlotRow(
@@ -142,8 +142,9 @@ def _data(row: PlotRow, size: int, is_area: bool, words: Words) -> dict[str, Any
     label, unit = words(f"axis.{row.name}{kind}").removesuffix("]").rsplit(" [", 1)
     symbols: Sequence[str] = row.symbols[:size] if size > 1 else ("",)
     lines = [{"field": row.field, "at": i, "name": name} for i, name in enumerate(symbols)]
-    if row.beside:
-        lines.append({"field": row.beside, "at": 0, "name": words(f"plots.{row.beside}")})
+    if row.beside is not None:
+        field, key = row.beside
+        lines.append({"field": field, "at": 0, "name": words(key)})
     return {
         "name": row.name,
         "menu": words(f"plot.{row.name}"),

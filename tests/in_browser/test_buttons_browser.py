@@ -41,7 +41,7 @@ def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
 
 def test_holding_as_long_as_the_button_is_down(tab: Tab) -> None:
     held = tab.simulation.forces.held
-    box = tab.button("Hold while pressed").bounding_box()
+    box = tab.button("Hold both back").bounding_box()
     assert box is not None
     middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     with tab.dragging(middle, in_scene=False):

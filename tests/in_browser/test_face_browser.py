@@ -158,7 +158,7 @@ def test_sliders_their_boxes_and_the_scene_have_names(tab: Tab) -> None:
     expect(page.get_by_role("slider", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("textbox", name="K1 across")).to_have_count(1)
     expect(page.get_by_role("img", name="Two robots")).to_have_count(1)
-    expect(page.get_by_role("img", name="Distance from the path")).to_have_count(1)
+    expect(page.get_by_role("img", name="Distance from the path [mm]")).to_have_count(1)
     expect(page.get_by_role("img", name="Path following")).to_have_count(1)
     assert page.evaluate("[document.title, document.documentElement.lang]") == ["OnPath", "en"]
 

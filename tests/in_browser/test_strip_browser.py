@@ -134,26 +134,58 @@ def test_a_peak_keeps_its_number_until_it_leaves_the_chart(page: Page) -> None:
     assert first == pytest.approx(times[-1] - 60, abs=0.1) and shown["spans"] == []
 
 
-def test_the_scale_shows_the_radius_and_never_shrinks_during_a_run(page: Page) -> None:
-    tops = list[float]()
-    page.evaluate("onpath.simulation.set(0, 3)")
-    for _ in range(8):
-        page.evaluate("onpath.advance(500)")
-        tops.append(parts(page)["axes"]["top"])
-    assert page.evaluate("onpath.strip.chart.axes.mark.value") == pytest.approx(50)
-    assert set(tops) == {60}
+def test_the_scale_follows_the_last_ten_seconds(page: Page) -> None:
+    """All that is shown is within the axis, and takes up a good part of it."""
+
+    def scale() -> tuple[float, float]:
+        shown = parts(page)
+        seen = [
+            value
+            for line in shown["lines"]
+            for time, value in zip(line["times"], line["values"], strict=True)
+            if shown["from"] <= time <= shown["until"]
+        ]
+        return shown["axes"]["top"], max(seen)
+
+    page.evaluate("onpath.advance(2000)")
+    assert scale()[0] == 5  # at least
     page.evaluate("onpath.simulation.pull([0.2, -0.1])")
     page.evaluate("onpath.advance(1500)")
-    most = max(max(line["values"]) for line in parts(page)["lines"])
-    grown = parts(page)["axes"]["top"]
-    assert most > 60 and grown > most
+    grown, most = scale()
+    assert 60 < most < grown < 2 * most
+    assert parts(page)["axes"]["mark"]["value"] == pytest.approx(50)
     page.evaluate("onpath.simulation.pull(null)")
-    page.evaluate("onpath.advance(15000)")
-    shown = parts(page)
-    assert max(line["values"][-1] for line in shown["lines"]) < 5
-    assert shown["axes"]["top"] == grown and shown["until"] - shown["from"] == pytest.approx(10)
-    page.get_by_role("button", name="Reset").click()
-    assert parts(page)["axes"]["top"] == 60
+    page.evaluate("onpath.advance(5000)")
+    assert scale()[0] == grown  # the pull is still seen
+    page.evaluate("onpath.advance(10000)")
+    top, most = scale()
+    assert most <= top < 0.5 * grown
+
+
+def test_rows_are_added_and_removed_and_look_back_together(page: Page) -> None:
+    page.evaluate(HELD_AND_PULLED)
+    page.get_by_role("button", name=ENGLISH("plots.menu")).click()
+    for name in ("across", "place"):
+        page.get_by_role("checkbox", name=ENGLISH(f"plot.{name}"), exact=True).click()
+    page.keyboard.press("Escape")
+    page.evaluate(THREE_FRAMES)
+    assert page.get_by_role("img", name="ξ₁ [mm]").count() == 1
+    rows = page.evaluate("""onpath.strip.rows.map(({chart}) => [chart.from, chart.until, chart.at,
+        chart.lines.map(({times, values}) => [times, values])])""")
+    assert len(rows) == 3 and rows[0][:3] == rows[1][:3] == rows[2][:3]
+    for (times, far), (same, across) in zip(rows[0][3], rows[1][3], strict=True):
+        assert times == same  # ξ₁ is the distance from a circle, with a sign
+        np.testing.assert_allclose(np.abs(across), far, atol=0.02)
+    handle(page).press("PageDown")
+    page.evaluate(THREE_FRAMES)
+    at = page.evaluate("onpath.strip.rows.map(({chart}) => chart.at)")
+    assert at[0] < rows[0][2] - 0.9 and at == [at[0]] * 3
+    assert "ξ₁" in (handle(page).get_attribute("aria-valuetext") or "")
+    page.get_by_role("button", name=ENGLISH("plots.menu")).click()
+    for name in ("across", "place"):
+        page.get_by_role("checkbox", name=ENGLISH(f"plot.{name}"), exact=True).click()
+    page.keyboard.press("Escape")
+    assert page.get_by_role("img", name="ξ₁ [mm]").count() == 0
 
 
 def test_keys_on_the_handle_look_back_and_everything_goes_along(page: Page) -> None:
@@ -235,22 +267,44 @@ def test_back_to_now_goes_on_as_before(page: Page) -> None:
     wait_for(lambda: page.evaluate("onpath.simulation.time") > before, WAIT)
 
 
-def test_hold_while_pressed(page: Page) -> None:
-    button = page.get_by_role("button", name=ENGLISH("run.press"))
+def test_hold_is_one_button_for_short_and_long_presses(page: Page) -> None:
+    """Pressed it holds, and pressed again it lets go; kept pressed, it lets go in the end."""
+    button = page.get_by_role("button", name=ENGLISH("run.hold_both"))
+    button.click()
+    assert page.evaluate("onpath.simulation.held")
+    page.get_by_role("button", name=ENGLISH("run.let_both_go")).click()
+    assert not page.evaluate("onpath.simulation.held")
     box = button.bounding_box()
     assert box
     page.mouse.move(box["x"] + 9, box["y"] + 9)
     page.mouse.down()
+    page.wait_for_timeout(1000)  # a long press is one by the clock
     assert page.evaluate("onpath.simulation.held")
     page.mouse.move(5, 5)
-    assert page.evaluate("onpath.simulation.held")
     page.mouse.up()
     assert not page.evaluate("onpath.simulation.held")
     button.focus()
+    page.keyboard.press("Enter")
+    assert page.evaluate("onpath.simulation.held")
+    page.keyboard.press(" ")
+    assert not page.evaluate("onpath.simulation.held")
     page.keyboard.down(" ")
+    page.wait_for_timeout(1000)
     assert page.evaluate("onpath.simulation.held")
     page.keyboard.up(" ")
     assert not page.evaluate("onpath.simulation.held")
+
+
+def test_buttons_keep_their_places_whatever_they_say(page: Page) -> None:
+    places = """() => [...document.querySelectorAll(".transport :is(button, select)")]
+        .map(each => each.getBoundingClientRect().toJSON()).filter(each => each.width)"""
+    before = page.evaluate(places)
+    page.evaluate("onpath.advance(2000)")
+    for act in ("{do: 'run', on: true}", "{do: 'hold', on: true}", "{do: 'look', at: 1}"):
+        page.evaluate(f"onpath.engine.act({act})")
+        page.evaluate(THREE_FRAMES)
+        assert page.evaluate(places) == before
+    page.evaluate("onpath.engine.act({do: 'hold', on: false})")
 
 
 def test_time_runs_more_slowly(page: Page) -> None:

@@ -87,7 +87,7 @@ export class Figure {
         })
         const { transport } = controls
         const strip = data.controls.includes("plot") ? [this.strip.element] : []
-        if (strip.length) transport.element.append(this.strip.menu.button)
+        if (strip.length) transport.element.append(this.strip.menu.element)
         return [
             made("div", "scene", made("div", "robots", ...robots), made("div", "transport brakes", transport.brake)),
             this.note,

@@ -64,7 +64,7 @@ class Face {
         this.stage.id = "op-stage"
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
-        this.transport.element.append(this.undo, this.strip.menu.button)
+        this.transport.element.append(this.undo, this.strip.menu.element)
         const head = made("div", "head", this.transport.element, this.clock)
         this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)

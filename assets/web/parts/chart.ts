@@ -125,6 +125,8 @@ export class Chart {
         ink.font = BOLD
         ink.textBaseline = "middle"
         if (this.hasPeaks) this.peaks(ink)
+        if (this.namesSpans) this.spanNames(ink)
+        ink.font = BOLD
         this.names(ink)
         ink.textAlign = "center"
         if (this.hint) letters(ink, this.hint, (this.x(this.from) + this.x(this.until)) / 2, this.sheet.height / 2, tones().yours, tones().paper)
@@ -182,17 +184,29 @@ export class Chart {
     }
 
     private shade(ink: CanvasRenderingContext2D): void {
-        const { from, until, axes } = this
-        ink.textAlign = "center"
         for (const span of this.spans) {
-            const [left, right] = [Math.max(span.from, from), Math.min(span.until, until)].map(this.x) as [number, number]
+            const [left, right] = this.ends(span)
             if (right <= left) continue
             ink.fillStyle = tones()[span.kind]
-            ink.fillRect(left, MARGIN.top, right - left, this.y(axes.bottom) - MARGIN.top)
-            if (!this.namesSpans) continue
+            ink.fillRect(left, MARGIN.top, right - left, this.y(this.axes.bottom) - MARGIN.top)
+        }
+    }
+
+    /** The visible part of a span [px]. */
+    private ends(span: Span): [number, number] {
+        return [this.x(Math.max(span.from, this.from)), this.x(Math.min(span.until, this.until))]
+    }
+
+    /** Name what acts, above it or, beneath the title, at its top. */
+    private spanNames(ink: CanvasRenderingContext2D): void {
+        ink.font = FONT
+        ink.textAlign = "center"
+        for (const span of this.spans) {
+            const [left, right] = this.ends(span)
+            if (right <= left) continue
             const text = said(this.texts, `chart.${span.kind}`)
             const half = ink.measureText(text).width / 2
-            const x = Math.min(Math.max((left + right) / 2, this.x(from) + half), this.x(until) - half)
+            const x = Math.min(Math.max((left + right) / 2, this.x(this.from) + half), this.x(this.until) - half)
             const row = [TITLE + 3, MARGIN.top + TITLE].find(y => !this.taken({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }))
             if (row === undefined) continue
             ink.fillStyle = tones().ink

@@ -4,9 +4,10 @@ import { made } from "../core/dom"
 import { said, type Texts } from "../core/words"
 
 export class PlotMenu {
-    /** The button that opens it. */
-    readonly button = made("button", "plots")
+    private readonly button = made("button", "")
     private readonly list = made("div", "op-menu")
+    /** The button that opens it, and its list. */
+    readonly element = made("div", "plots", this.button, this.list)
 
     /** `choose` is called with the name of a row, and whether it is wanted. */
     constructor(texts: Texts, private readonly choose: (name: string, on: boolean) => void) {
@@ -37,7 +38,6 @@ export class PlotMenu {
         const { button, list } = this
         button.ariaExpanded = String(open)
         if (!open) return
-        button.after(list)
         const { left, top, bottom } = button.getBoundingClientRect()
         const above = top > innerHeight / 2
         Object.assign(list.style, {

@@ -5,7 +5,7 @@ import type { Engine } from "../core/engine"
 import { said, written, type Texts } from "../core/words"
 
 const RATES = [1, 0.5, 0.25, 0.1]
-const KEPT = 600 // [ms]: who presses Hold for longer lets go with it
+const KEPT = 800 // [ms]: who presses Hold for longer lets go with it
 
 export class Transport {
     readonly element: HTMLElement

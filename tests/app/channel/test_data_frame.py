@@ -272,7 +272,7 @@ def _bytes_of_a_second(lab: Lab, field: str) -> int:
         lab.advance(FRAME)
         source.note(lab.simulation)
         if i % 3 == 2 and (frame := source.take(lab)) is not None:
-            sent += len(frame_message(frame))
+            sent += len(encoded(frame_message(frame)))
     return sent
 
 

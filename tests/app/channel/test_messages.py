@@ -133,6 +133,7 @@ VALUES |= {name: st.lists(st.booleans()) for name in ("clocks", "stopped")}
 VALUES |= {
     "said": st.builds(messages.Said, voice=st.text(max_size=1)),
     "cameras": st.lists(st.lists(st.lists(st.floats(0, 1)))),
+    "rows": st.lists(st.fixed_dictionaries({"name": st.text(max_size=1)}), max_size=2),
 }
 
 
