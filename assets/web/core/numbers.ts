@@ -60,3 +60,9 @@ export function fixed(value: number, digits: number): string {
     const shown = `${text.slice(0, -digits)}.${text.slice(-digits)}`
     return value < 0 && /[1-9]/.test(shown) ? `-${shown}` : shown
 }
+
+/** The step of a scale, 1, 2 or 5 times a power of ten, that is at least as large as asked. */
+export function niceStep(least: number): number {
+    const ten = 10 ** Math.floor(Math.log10(least))
+    return [1, 2, 5, 10].map(each => each * ten).find(each => each >= least * (1 - 1e-9)) ?? 10 * ten
+}

@@ -1,6 +1,6 @@
 // The range of an axis that follows what it shows.
 
-import { niceStep } from "../core/ink"
+import { niceStep } from "../core/numbers"
 
 export interface Range {
     bottom: number

@@ -2,7 +2,8 @@
 // labels the peak after each event. strip.ts feeds it from an engine, drawing.ts lets a student draw on it.
 
 import { made } from "../core/dom"
-import { covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "../core/ink"
+import { covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel, type Tone } from "../core/ink"
+import { niceStep } from "../core/numbers"
 import { said, significant, written, type Texts } from "../core/words"
 import { firstAfter, valueAt, type Curve, type Span } from "./curves"
 import { tableOf, type Column } from "./table"
@@ -79,7 +80,7 @@ export class Chart {
     /** What stands in the table. */
     get columns(): Column[] {
         const { lines, ghost, texts, axes: { unit } } = this
-        const found: Column[] = lines.map(line => ({ ...line, unit }))
+        const found: Column[] = lines.map(({ name, times, values }) => ({ name, times, values, unit }))
         return ghost ? [...found, { ...ghost, name: said(texts, "chart.yours"), unit }] : found
     }
 

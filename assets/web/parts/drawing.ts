@@ -1,7 +1,7 @@
 // Draws a prediction on a chart: with the mouse, a finger, or a row of sliders for keys.
 
 import { made } from "../core/dom"
-import { niceStep } from "../core/ink"
+import { niceStep } from "../core/numbers"
 import { said, significant } from "../core/words"
 import type { Chart } from "./chart"
 import { firstAfter, valueAt, type Curve } from "./curves"

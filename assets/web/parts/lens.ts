@@ -3,7 +3,8 @@
 import { made, tell } from "../core/dom"
 import { shown, type Engine, type PathShape, type SideSample, type Vector } from "../core/engine"
 import type { Point } from "../core/figure_data"
-import { arrow, covers, disc, letters, niceStep, Sheet, stroke, tones, type Box, type Pixel } from "../core/ink"
+import { arrow, covers, disc, letters, Sheet, stroke, tones, type Box, type Pixel } from "../core/ink"
+import { niceStep } from "../core/numbers"
 import { drawShapes, shapesOf } from "../core/symbols"
 import { said, significant, written, type Texts } from "../core/words"
 

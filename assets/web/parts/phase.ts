@@ -55,15 +55,15 @@ export class PhasePlane {
         })
         ink.font = FONT
         ink.textBaseline = "middle"
-        const name = (k: 0 | 1) => `${rows[k].lines[0]!.name || rows[k].label} [${rows[k].unit}]`
+        const named = (k: 0 | 1) => `${rows[k].lines[0]!.name || rows[k].label} [${rows[k].unit}]`
         const number = (value: number) => significant(texts, value, 3)
         const write = (text: string, x: number, y: number, align: CanvasTextAlign) => {
             ink.textAlign = align
             letters(ink, text, x, y, dark, paper)
         }
-        write(`${name(0)} ${number(right)}`, sheet.width - 4, middle[1] - 9, "right")
+        write(`${named(0)} ${number(right)}`, sheet.width - 4, middle[1] - 9, "right")
         write(number(-right), 4, middle[1] - 9, "left")
-        write(`${name(1)} ${number(up)}`, middle[0] + 6, 8, "left")
+        write(`${named(1)} ${number(up)}`, middle[0] + 6, 8, "left")
         write(number(-up), middle[0] + 6, sheet.height - 8, "left")
         ink.font = BOLD
         engine.texts.forEach(({ name, side }, i) => {

@@ -17,7 +17,7 @@ export class PlotMenu {
         button.ariaHasPopup = "true"
         button.ariaExpanded = "false"
         button.popoverTargetElement = list
-        list.addEventListener("beforetoggle", event => this.place((event as ToggleEvent).newState === "open"))
+        list.addEventListener("beforetoggle", event => this.place(event.newState === "open"))
     }
 
     /** Show the rows that there can be. */

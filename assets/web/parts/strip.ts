@@ -101,18 +101,18 @@ export class Strip {
         const { engine, texts, stack, handle, wanted } = this
         const { rows } = engine
         const possible = rows.some(row => row.name === PLANE[0]) ? [...rows.map(row => row.name), PHASE] : rows.map(row => row.name)
-        const shown = [DISTANCE, ...wanted.filter(name => name !== DISTANCE && possible.includes(name))]
-        const offered = JSON.stringify([rows, engine.texts.length, shown])
+        const names = [DISTANCE, ...wanted.filter(name => name !== DISTANCE && possible.includes(name))]
+        const offered = JSON.stringify([rows, engine.texts.length, names])
         if (offered === this.offered) return
         this.offered = offered
         const changed = () => void (this.stale = true)
-        this.rows = shown.flatMap(name => rows.filter(row => row.name === name)).map(data => {
+        this.rows = names.flatMap(name => rows.filter(row => row.name === name)).map(data => {
             const kept = this.rows.find(row => row.data === data || JSON.stringify(row.data) === JSON.stringify(data))
             return kept ?? new Row(texts, engine, data, changed)
         })
         const plane = PLANE.map(name => rows.find(row => row.name === name)!) as [Row["data"], Row["data"]]
         this.phase?.element.remove()
-        this.phase = shown.includes(PHASE) ? new PhasePlane(texts, engine, plane, changed) : null
+        this.phase = names.includes(PHASE) ? new PhasePlane(texts, engine, plane, changed) : null
         this.rows.forEach(({ chart, data }, i) => {
             const isLast = i === this.rows.length - 1
             Object.assign(chart, { hasTimes: isLast, namesSpans: i === 0, hasPeaks: !data.floats, namesAll: false })
@@ -121,8 +121,8 @@ export class Strip {
         if (this.phase) stack.after(this.phase.element)
         this.element.style.setProperty("--rows", String(this.rows.length))
         document.documentElement.style.setProperty("--op-rows", String(this.rows.length))
-        const name = (name: string) => rows.find(row => row.name === name)?.menu ?? said(texts, "plot.phase")
-        this.menu.show(possible.filter(each => each !== DISTANCE).map(each => ({ name: each, menu: name(each), on: shown.includes(each) })))
+        const menu = (name: string) => rows.find(row => row.name === name)?.menu ?? said(texts, "plot.phase")
+        this.menu.show(possible.filter(name => name !== DISTANCE).map(name => ({ name, menu: menu(name), on: names.includes(name) })))
         this.zoom = this.large
         engine.plot([...new Set([...this.rows.flatMap(row => row.fields), ...(this.phase ? plane.flatMap(row => row.lines[0]!.field) : [])])])
         this.mark()

@@ -1,7 +1,7 @@
 // Curves as a table, for those who do not see the chart.
 
 import { made } from "../core/dom"
-import { niceStep } from "../core/ink"
+import { niceStep } from "../core/numbers"
 import { said, written, type Texts } from "../core/words"
 import { valueAt, type Curve, type Span } from "./curves"
 
