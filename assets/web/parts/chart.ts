@@ -198,7 +198,7 @@ export class Chart {
         return [this.x(Math.max(span.from, this.from)), this.x(Math.min(span.until, this.until))]
     }
 
-    /** Name what acts, above it or, beneath the title, at its top. */
+    /** Name what acts: above it or, where there is no room, within. */
     private spanNames(ink: CanvasRenderingContext2D): void {
         ink.font = FONT
         ink.textAlign = "center"
@@ -208,10 +208,9 @@ export class Chart {
             const text = said(this.texts, `chart.${span.kind}`)
             const half = ink.measureText(text).width / 2
             const x = Math.min(Math.max((left + right) / 2, this.x(this.from) + half), this.x(this.until) - half)
-            const row = [TITLE + 3, MARGIN.top + TITLE].find(y => !this.taken({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }))
-            if (row === undefined) continue
-            ink.fillStyle = tones().ink
-            ink.fillText(text, x, row)
+            const within = MARGIN.top + TITLE
+            const row = [TITLE + 3, within, within + 2 * HALF, this.y(this.axes.bottom) - HALF - 2].find(y => !this.taken({ left: x - half, right: x + half, top: y - HALF, bottom: y + HALF }))
+            if (row !== undefined) letters(ink, text, x, row, tones().ink, tones()[span.kind])
         }
     }
 
