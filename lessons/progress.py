@@ -98,14 +98,12 @@ class Progress(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         lesson: name of the open lesson; empty for none.
         route: name of the route that is followed; empty for none.
         language: of texts and interface.
-        presenting: whether large type is used, for a projector.
         notes: by lesson.
         ended: whether the end of the open lesson is shown in place of its open step.
     """
 
     lesson: Key = ""
     language: Annotated[str, msgspec.Meta(max_length=8)] = "en"
-    presenting: bool = False
     notes: dict[Key, Notes] = {}
     route: Key = ""
     ended: bool = False
@@ -117,6 +115,8 @@ def read_progress(data: object) -> Progress:
     Raises:
         ValueError: it is not valid; the message names the place.
     """
+    if isinstance(data, dict):  # "presenting" is one of the lab's own settings now
+        data = {name: value for name, value in data.items() if name != "presenting"}
     progress = msgspec.convert(data, Progress)
     for notes in progress.notes.values():
         numbers = [*notes.tasks.values(), *notes.numbers.values()]

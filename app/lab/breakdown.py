@@ -29,13 +29,13 @@ class _Replay:
     """A replay from `begin` to `end`, [s].
 
     Attributes:
-        exaggeration: the magnification to restore afterwards.
+        larger: the magnification of the drawn bending to restore afterwards.
         elapsed: how long the replay has been shown, [s].
     """
 
     begin: float
     end: float
-    exaggeration: float
+    larger: float
     elapsed: float = 0.0
 
     @property
@@ -103,10 +103,10 @@ class Breakdown:
         self.interrupt(simulation)
         end = max(stopped)
         begin = max(end - SPAN, simulation.time - simulation.history.span())
-        self._replay = _Replay(begin, end, simulation.exaggeration)
+        self._replay = _Replay(begin, end, simulation.settings.larger)
         simulation.look_at(begin)
         if simulation.entry.flexible_link is not None:
-            simulation.exaggeration = max(simulation.exaggeration, LARGER)
+            simulation.set(larger=max(simulation.settings.larger, LARGER))
         return True
 
     def interrupt(self, simulation: Simulation) -> bool:
@@ -130,7 +130,8 @@ class Breakdown:
         return self._replay is None
 
     def _end(self, simulation: Simulation, replay: _Replay) -> None:
-        self._replay, simulation.exaggeration = None, replay.exaggeration
+        self._replay = None
+        simulation.set(larger=replay.larger)
 
     def instant(self, simulation: Simulation) -> tuple[Instant, Curve] | None:
         """The instant shown in a replay, exact to the tick, and its path; None without a replay."""

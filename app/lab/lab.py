@@ -83,13 +83,13 @@ class Lab:
         messages: number of messages shown so far; one may be shown again with the same words.
         message_level: "info", "warning", "error", "replay" while it is shown why a robot has
             stopped, or "stop" while the teacher has stopped the lab.
-        law_refusals: why the law that was last typed for a side was refused, by side.
+        refused: why a setting, or the law that was typed for a side, was refused last, by name
+            of the setting or side.
         shared: the last share code made.
         frozen: whether the teacher has stopped this lab.
         asked: number of commands given by the user.
         unsaved: why the latest changes are not saved, a key of the catalogues; empty if they are.
         breakdown: what can be done when a robot has stopped.
-        phase_asked: whether the page draws a phase plane of its own accord.
         identification: of the controllers' model.
         watch: called in every frame, or None.
     """
@@ -107,12 +107,11 @@ class Lab:
         self.message, self.message_level, self.messages = "", "info", 0
         self._caution: Message | None = None
         self._forecast: tuple[tuple[object, ...], Message | None] | None = None
-        self.law_refusals: dict[str, str] = {}
+        self.refused: dict[str, str] = {}
         self.shared = ""
         self.frozen, self.asked = False, 0
         self.unsaved = ""
         self.breakdown = Breakdown()
-        self.phase_asked = False
         self.identification = Identification(loop_cache.at_once)
         self.watch: Callable[[Lab], None] | None = None
 
@@ -124,7 +123,7 @@ class Lab:
     @property
     def draws_phase(self) -> bool:
         """Whether a phase plane is drawn, because of the open step or of a user's choice."""
-        return self.phase_asked or "phase" in self.lessons.plots
+        return self.simulation.settings.phase or "phase" in self.lessons.plots
 
     @property
     def locked(self) -> Message | None:
@@ -247,7 +246,7 @@ class Lab:
         if not self.frozen and self._part is None:
             yield from self.simulation.frame(seconds)
             self.show_faults()
-            if self.breakdown.follow(self.simulation, seconds / self.simulation.rate):
+            if self.breakdown.follow(self.simulation, seconds / self.simulation.settings.rate):
                 self.clear_message()
 
     def advance(self, seconds: float) -> None:
@@ -261,6 +260,7 @@ class Lab:
             ValueError: the set-up is impossible; the lab is unchanged.
         """
         restore(self.simulation, setup)
+        self.refused.clear()
         self.show_message("")
 
     def return_to_present(self) -> None:

@@ -225,9 +225,9 @@ class LessonRun(LessonState):
         if lesson is None:
             return
         self.check_unlocked()
-        rate = simulation.rate if self._rate is None else self._rate
+        rate = simulation.settings.rate if self._rate is None else self._rate
         _set_up(lab, lesson, self.index)
-        simulation.rate = rate  # may be slow motion; the result is the same
+        simulation.set(rate=rate)  # may be slow motion; the result is the same
         self._judge.begin = Beginning.now(simulation)
         self._trace = Trace(quantity_of(found[1]), self._judge.begin) if found else None
         self._player = lab.script = player
@@ -244,7 +244,8 @@ class LessonRun(LessonState):
         simulation = lab.simulation
         if self._player is not None and lab.script is not self._player:
             ended, self._player = self._player, None
-            simulation.rate = simulation.rate if self._rate is None else self._rate
+            if self._rate is not None:
+                simulation.set(rate=self._rate)
             self._rate = None
             if ended.finished:
                 self._note_truth(simulation)

@@ -293,11 +293,6 @@ class LessonState:
         self.progress = replace(self.progress, language=self.words.language)
         self.version += 1
 
-    def set_presenting(self, on: bool) -> None:
-        """Turn large type on or off."""
-        self.progress = replace(self.progress, presenting=on)
-        self.version += 1
-
     def note_answer(self, answer: Answer) -> None:
         """Store the answer to the open step's prediction, the second one if it is asked again."""
         found, lesson = self.prediction(), self.lesson

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from onpath.app.lab.path_editor import PathEditor
-from onpath.models.closed_loop.obstacles import Wall
-from onpath.models.closed_loop.start import ON_PATH, Start
+from onpath.models.closed_loop.lab_settings import LabSettings
 from onpath.models.systems.parameters import Parameters
 
 
 class RobotSettings(NamedTuple):
-    """The settings that a robot keeps while another one is used; see `app.lab.simulation`."""
+    """The settings that a robot keeps while another one is used; see `app.lab.simulation`.
+
+    Attributes:
+        own: the lab's own settings, of which those count that each robot has for itself.
+    """
 
     parameters: Parameters
     editor: PathEditor | None = None
-    start: Start = ON_PATH
-    wall: Wall | None = None
+    own: LabSettings = LabSettings()

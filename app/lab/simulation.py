@@ -6,6 +6,8 @@ It does not know its user: commands, lessons, class and messages belong to `app.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +25,7 @@ from onpath.app.lab.robot_settings import RobotSettings
 from onpath.app.lab.segments import Instant
 from onpath.app.lab.timeline import Timeline
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.obstacles import ALONG, Wall
+from onpath.models.closed_loop.lab_settings import SETTINGS, LabSettings, settings_of_start
 from onpath.models.closed_loop.profile_shapes import profile_of
 from onpath.models.closed_loop.start import ON_PATH, Start, check_start
 from onpath.models.control.laws.own import short_name
@@ -50,18 +52,15 @@ class Simulation:
         runs: the two closed loops, by side.
         editor: the path.
         law_changes: pending changes of law.
-        start: where and how the next run starts.
-        wall: in the way of both end-points, or None; it stays from run to run.
-        hold_direction: in which the next brake acts, one of `DIRECTIONS`.
+        settings: the lab's own settings; change them by `set`.
+        start: where and how the next run starts, from `settings`.
+        wall: in the way of both end-points, or None, from `settings`; it stays from run to run.
         forces: external forces on the robots.
         history: the last minute.
         time: simulated, [s].
         running: whether simulated time advances.
         lacks_loops: whether time stands still because loops are being made.
         has_to_step: whether a step has to be made as soon as they are.
-        rate: simulated seconds per second.
-        copy: whether pulling and holding act on both robots.
-        exaggeration: magnification of the drawn deflection.
         viewing: the past instant being viewed, [s], or None.
         resumes: whether time runs again in the present, while the past is being viewed.
         undo_timeline: the timeline replaced by continuing from the past, or None.
@@ -84,10 +83,7 @@ class Simulation:
         self.lacks_loops = self.has_to_step = False
         self._is_bent = False  # whether the path has already been bent for the next ticks
         self.viewing: float | None = None
-        self.rate = 1.0
-        self.copy = True
-        self.hold_direction = ALONG
-        self.exaggeration = 1.0
+        self.settings = LabSettings()
         self.events = EventLog()
         self.faults: list[str] = []
         self.run_number = 0
@@ -129,19 +125,20 @@ class Simulation:
 
     def robot_settings(self) -> RobotSettings:
         """What the present robot keeps while another one is used."""
-        start = self._beginning()
-        return RobotSettings(self.parameters, self.editor, start, self.wall)
+        own = replace(self.settings, **settings_of_start(self._beginning()))
+        return RobotSettings(self.parameters, self.editor, own)
 
     def _set_up(self, entry: RobotEntry) -> None:
         self.history.settle()  # a page that is being built in another thread reads it, too
         new = RobotSettings(entry.parameters())
-        parameters, editor, start, wall = self.earlier.get(entry.name, new)
+        parameters, editor, own = self.earlier.get(entry.name, new)
         robot, rise = entry.make(parameters), rise_of(parameters)
         editor = editor or PathEditor(robot, self.presets["circle"], rise)
         self.entry, self.editor = entry, editor
         self.parameters: Parameters = parameters
         self.robot: Robot = robot
-        self.start, self.wall = start, wall
+        of_robot = [name for name, setting in SETTINGS.items() if setting.of_robot]
+        self._take(replace(self.settings, **{name: getattr(own, name) for name in of_robot}))
         self._restart()
 
     # The control laws
@@ -346,7 +343,26 @@ class Simulation:
         }
         self.forces = ExternalForces(self.robot, self.runs, self.note, self.wall)
 
-    # Start and wall
+    # The lab's own settings
+
+    def set(self, **changes: Any) -> None:
+        """Change some of the lab's own settings; the values are not checked again."""
+        self.change_settings(replace(self.settings, **changes))
+
+    def change_settings(self, wanted: LabSettings) -> None:
+        """Change the lab's own settings; a brake that acts is applied again where it is."""
+        before, wall = self.settings, self.wall
+        self._take(wanted)
+        if self.wall != wall:
+            self.forces.set_wall(self.wall)
+        if wanted.hold_direction != before.hold_direction:
+            held = sorted(self.forces.held)
+            self.forces.hold(held, False, self.editor.curve)
+            self.forces.hold(held, True, self.editor.curve, wanted.hold_direction)
+
+    def _take(self, settings: LabSettings) -> None:
+        self.settings = settings
+        self.start, self.wall = settings.start, settings.obstacle
 
     def check_start(self, start: Start) -> None:
         """Refuse a start that is not possible on the present path; see `check_start`."""
@@ -361,15 +377,9 @@ class Simulation:
             return ON_PATH
         return self.start
 
-    def set_wall(self, wall: Wall | None) -> None:
-        """Place, move or remove the wall."""
-        if wall != self.wall:
-            self.wall = wall
-            self.forces.set_wall(wall)
-
     def targets(self, side: str) -> list[str]:
         """The sides that a gesture at `side` acts on."""
-        return list(SIDES) if self.copy else [side]
+        return list(SIDES) if self.settings.copy else [side]
 
     # Samples of an instant
 

@@ -65,7 +65,7 @@ class PageMenus:
             close()
             self._post(command)
 
-        on_user_update(large, lambda on: chosen(c.SetPresenting(on)))
+        on_user_update(large, lambda on: chosen(c.Set("presenting", on)))
         for name, box in boxes.items():
             on_user_update(box, partial(self._preferences.set, name))
         return close

@@ -10,7 +10,7 @@ import viser
 from viser import uplot
 
 from onpath.app.common.palette import OF_SIDE
-from onpath.app.lab.commands import AskPhase
+from onpath.app.lab.commands import Set
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.page.panels.phase_plot import NAME as PHASE_NAME
 from onpath.app.page.panels.phase_plot import PhasePlot
@@ -275,7 +275,9 @@ class MorePlots:
             self._choice = gui.add_dropdown(
                 words("plots.show"), list(self._plots), hint=words("plots.show_hint")
             )
-        on_user_update(self._choice, lambda name: post(AskPhase(self._plots.get(name) is PHASE)))
+        on_user_update(
+            self._choice, lambda name: post(Set("phase", self._plots.get(name) is PHASE))
+        )
         self._drawn: tuple[Plot | None, bool] = None, False
 
     def follow(self, snapshot: PageSnapshot) -> None:

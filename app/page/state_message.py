@@ -28,7 +28,7 @@ def state_message(
         said: what the page says.
         seen: how the picture shows the robots.
     """
-    laws, run = snapshot.laws, snapshot.run
+    laws, run, rate = snapshot.laws, snapshot.run, snapshot.settings.rate
     titles = side_titles(laws, words)
     is_level_set = snapshot.parameters["across"] == LEVEL_SET
     names = displayed_names(laws, words, snapshot.key.in_lesson)
@@ -42,9 +42,9 @@ def state_message(
         captions=[captions.get(side, "") for side in laws],
         clocks=[law_named(law).by_clock for law in laws.values()],
         stopped=[side in snapshot.stopped for side in laws],
-        rate=run.rate,
-        achieved=round(snapshot.achieved_speed / run.rate, 1) * run.rate,
-        together=run.copy,
+        rate=rate,
+        achieved=round(snapshot.achieved_speed / rate, 1) * rate,
+        together=snapshot.settings.copy,
         undo=run.can_undo_going_on,
         message=snapshot.message,
         level=snapshot.message_level if snapshot.message else "",

@@ -104,7 +104,7 @@ class LabFeed(CountingDisplay):
             *(run.slot for run in simulation.runs.values()),
             simulation.viewing,
             simulation.editor.version,
-            simulation.exaggeration,
+            simulation.settings.larger,
             lab.lessons.progress,
         )
         return len(now) != len(shown) or not all(map(is_, now, shown))

@@ -141,7 +141,7 @@ class ScheduledLab(Updated):
         self._elapsed = NOTHING
         simulation = self.simulation
         before = simulation.time
-        yield from self.lab.frame(simulation.rate * elapsed.length)
+        yield from self.lab.frame(simulation.settings.rate * elapsed.length)
         if simulation.running and not self.lab.frozen:
             kept = (1 - FADING) ** elapsed.frames
             self._simulated = kept * self._simulated + simulation.time - before

@@ -8,8 +8,9 @@ from typing import Any, Protocol
 import msgspec
 
 from onpath.app.lab.lab import Lab
-from onpath.app.lab.setups.capture import capture
-from onpath.app.lab.setups.former import with_paths_of_today
+from onpath.app.lab.setups.capture import capture, own_differences
+from onpath.app.lab.setups.former import own_of_today, with_paths_of_today
+from onpath.app.lab.setups.plan import own_settings
 from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.stored import (
     from_data,
@@ -18,10 +19,11 @@ from onpath.app.lab.setups.stored import (
     without_absent_robots,
 )
 from onpath.lessons.progress import Progress, read_progress
+from onpath.models.closed_loop.lab_settings import settings_kept
 
 SAVE_INTERVAL = 60  # frames between checks for changes
 LabState = dict[str, Any]
-NEW = (Setup(), Progress(), None)
+NEW = (Setup(), Progress(), None, dict[str, Any]())
 
 
 class Keeper(Protocol):
@@ -93,9 +95,11 @@ def put_back(lab: Lab, state: LabState) -> None:
     data, absent = without_absent_laws(data)
     setup, refused = with_paths_of_today(from_data(data))
     progress = read_progress(state.get("lessons"))
+    own = own_settings(own_of_today(state), "lab")
     before = without_absent_laws(without_absent_robots(state.get("before"))[0])[0]
     earlier = with_paths_of_today(from_data(before))[0] if before else None
     lab.set_up(setup)
+    lab.simulation.set(**{name: getattr(own, name) for name in settings_kept("lab")})
     lab.lessons.resume(progress, earlier, lab)
     messages = list[str]()
     if refused:
@@ -109,13 +113,15 @@ def put_back(lab: Lab, state: LabState) -> None:
         lab.show_message(" ".join(messages), "warning")
 
 
-def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None]:
-    return capture(lab.simulation), lab.lessons.progress, lab.lessons.before
+def _now(lab: Lab) -> tuple[Setup, Progress, Setup | None, dict[str, Any]]:
+    own = own_differences(lab.simulation.settings, "lab")
+    return capture(lab.simulation), lab.lessons.progress, lab.lessons.before, own
 
 
-def _state(setup: Setup, progress: Progress, before: Setup | None) -> LabState:
+def _state(setup: Setup, progress: Progress, before: Setup | None, own: dict[str, Any]) -> LabState:
     return {
         "setup": to_data(setup),
         "lessons": msgspec.to_builtins(progress),
         "before": None if before is None else to_data(before),
+        "settings": own,
     }

@@ -15,8 +15,6 @@ CONTROLS = (
 DRAWINGS = ("labels", "tube", "grid", "rank", "errors", "mass")
 """What a scene can draw besides the robots."""
 EVENTS: tuple[str, ...] = get_args(EventName)
-RATES = (0.125, 4.0)
-"""Slowest and fastest motion: simulated seconds per second."""
 MOST_PLOTS = 2
 MOST_MARKS = 12
 REACH = 500.0

@@ -23,10 +23,10 @@ from onpath.lessons.vocabulary.names import (
     LONGEST,
     MOST_MARKS,
     MOST_PLOTS,
-    RATES,
     REACH,
     one_of,
 )
+from onpath.models.closed_loop.lab_settings import RATES
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.closed_loop.start import Start, check_start
 from onpath.models.control.settable import changed, specs, with_values
@@ -119,8 +119,8 @@ def action_faults(action: Action, robot: str) -> Iterator[str]:
         yield from one_of(action.robot or "", ROBOTS, "robot")
     elif what == "laws" and action.laws is not None and robot in ROBOTS:
         yield from _law_faults(action.laws, ROBOTS[robot])
-    elif what == "rate" and not RATES[0] <= (action.rate or 0.0) <= RATES[1]:
-        yield f"rate = {action.rate:g}: between {RATES[0]:g} and {RATES[1]:g}"
+    elif what == "rate" and not RATES[0] <= (action.rate or 0.0) <= RATES[-1]:
+        yield f"rate = {action.rate:g}: between {RATES[0]:g} and {RATES[-1]:g}"
     elif what == "start" and action.start is not None:
         yield from _start_faults(action.start)
 

@@ -8,6 +8,8 @@ from onpath.models.paths.frames import SlantedPlane
 from onpath.models.systems.beam import MOST_MODES
 from onpath.models.systems.flexible_five_bar import PLANTS
 from onpath.models.systems.parameter_specs import (
+    MM,
+    Need,
     choice,
     model_error,
     number,
@@ -33,6 +35,8 @@ class FlexibleParameters(Parameters):
         "removes a lasting offset (integral)",
         group="gains",
         label="K3 across",
+        symbol="K₃",
+        scale="log",
     )
     K5: float = number(
         5.0,
@@ -41,6 +45,8 @@ class FlexibleParameters(Parameters):
         "how hard the speed along the path is held",
         group="gains",
         label="K5 along",
+        symbol="K₅",
+        scale="log",
     )
     speed: float = wanted_speed(2.0, (-10, 10, 0.1))
     alpha: float = number(
@@ -50,6 +56,8 @@ class FlexibleParameters(Parameters):
         "share of the deflection that the controller sees: 1 the tip, 0 the straight link",
         group="basic",
         label="α",
+        symbol="α",
+        needs=(Need("output", ("redefined",)),),
     )
     output: str = choice(
         "composite",  # the only one that is stable under every pull
@@ -57,6 +65,7 @@ class FlexibleParameters(Parameters):
         "what the controller puts on the path: y with a share of the deflection, or the tip itself",
         group="basic",
         label="Output",
+        compiles=True,
     )
     tip_damping: float = number(
         0.3,
@@ -65,6 +74,7 @@ class FlexibleParameters(Parameters):
         "damping ratio that the waist gives the beam",
         group="gains",
         label="Tip damping",
+        needs=(Need("output", ("composite",)),),
     )
     tip_prediction: float = number(
         1.2,
@@ -73,6 +83,7 @@ class FlexibleParameters(Parameters):
         "how quickly the deflection is foreseen",
         group="gains",
         label="Tip prediction",
+        needs=(Need("output", ("composite",)),),
     )
     tip_shaping: float = number(
         0.25,
@@ -81,6 +92,7 @@ class FlexibleParameters(Parameters):
         "how quickly the wanted speed may change",
         group="gains",
         label="Speed shaping",
+        needs=(Need("output", ("composite",)),),
     )
     tip_yielding: float = number(
         100.0,
@@ -89,6 +101,7 @@ class FlexibleParameters(Parameters):
         "how much progress gives way to a tip held back",
         group="gains",
         label="Yielding",
+        needs=(Need("output", ("composite",)),),
     )
     b: float = number(
         PLANE.b,
@@ -97,6 +110,7 @@ class FlexibleParameters(Parameters):
         "slope of the plane y1 = b y2 + d of the path, eq. (23)",
         group="path",
         label="b",
+        symbol="b",
     )
     d: float = number(
         PLANE.d,
@@ -105,6 +119,8 @@ class FlexibleParameters(Parameters):
         "distance of that plane from the waist, at y2 = 0",
         group="path",
         label="d",
+        symbol="d",
+        shown_in=MM,
     )
     centre: float = number(
         PLANE.centre,
@@ -113,6 +129,8 @@ class FlexibleParameters(Parameters):
         "height y3 of the path's centre",
         group="path",
         label="Centre y3",
+        symbol="y₃",
+        shown_in=MM,
     )
     plant: str = choice(
         "lagrangian",
@@ -120,6 +138,7 @@ class FlexibleParameters(Parameters):
         "Lagrange's equations, or (20)-(21) read with ∫φ² = 1: odd units, no joint friction",
         group="robot",
         label="Plant",
+        compiles=True,
     )
     modes: int = choice(
         3,
@@ -127,6 +146,7 @@ class FlexibleParameters(Parameters):
         "how many modes of the beam are simulated",
         group="robot",
         label="Modes",
+        compiles=True,
     )
     rho: float = number(
         0.2,
@@ -135,6 +155,7 @@ class FlexibleParameters(Parameters):
         "mass of the beam per metre",
         group="robot",
         label="ρ",
+        symbol="ρ",
     )
     frequency: float = number(
         4.0,
@@ -151,6 +172,7 @@ class FlexibleParameters(Parameters):
         "damping ratio of every mode",
         group="robot",
         label="Damping ζ",
+        symbol="ζ",
     )
     strain_noise: float = number(
         0.0,
@@ -159,6 +181,8 @@ class FlexibleParameters(Parameters):
         "standard deviation of the deflection of the tip as the strain gauges measure it",
         group="realism",
         label="Strain gauge noise",
+        shown_in=MM,
+        compiles=True,
         on=0.0005,
     )
     payload: float = unknown_payload((0, 0.1, 0.005), on=0.02)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from onpath.models.systems.parameter_specs import choice, number, wanted_speed
+from onpath.models.systems.parameter_specs import DEGREES, Need, choice, number, wanted_speed
 
+ALONG = (Need("task", ("speed",)),)
 DISTANCE, LEVEL_SET = "distance", "level_set"  # meanings of ξ across the path, [m] or [m²]
 
 
@@ -24,6 +25,8 @@ class LawParameters:
         "spring that pulls back onto the path",
         group="gains",
         label="K1 across",
+        symbol="K₁",
+        scale="log",
     )
     K2: float = number(
         40.0,
@@ -32,6 +35,8 @@ class LawParameters:
         "damps motion across the path",
         group="gains",
         label="K2 across",
+        symbol="K₂",
+        scale="log",
     )
     K3: float = number(
         1000.0,
@@ -40,6 +45,8 @@ class LawParameters:
         "removes a lasting offset (integral)",
         group="gains",
         label="K3 across",
+        symbol="K₃",
+        scale="log",
     )
     tracker_integral: str = choice(
         "off",
@@ -47,6 +54,7 @@ class LawParameters:
         "whether K3 acts in a law that follows the clock: held back, its integral winds up",
         group="gains",
         label="Tracker's integral",
+        needs=(Need("K3"),),
     )
     K4: float = number(
         25.0,
@@ -55,6 +63,9 @@ class LawParameters:
         "spring towards the target position",
         group="gains",
         label="K4 along",
+        symbol="K₄",
+        scale="log",
+        needs=(Need("task", ("position",)),),
     )
     K5: float = number(
         10.0,
@@ -63,6 +74,8 @@ class LawParameters:
         "how hard the speed along the path is held",
         group="gains",
         label="K5 along",
+        symbol="K₅",
+        scale="log",
     )
     task: str = choice(
         "speed",
@@ -79,6 +92,7 @@ class LawParameters:
         "how quickly the wanted speed changes; 0: at once",
         group="task",
         label="Speed ramp",
+        needs=(*ALONG, Need("speed_profile", ("constant",))),
     )
     speed_profile: str = choice(
         "constant",
@@ -87,6 +101,7 @@ class LawParameters:
         " speed, or stop and go at the speed; it is fed forward as in (19), instead of the ramp",
         group="task",
         label="Speed profile",
+        needs=ALONG,
     )
     profile_period: float = number(
         2.0,
@@ -95,6 +110,8 @@ class LawParameters:
         "period of the sine and of stop and go; of ramp up, the time until the speed is reached",
         group="task",
         label="Profile period",
+        scale="log",
+        needs=(*ALONG, Need("speed_profile", ("ramp_up", "sine", "stop_and_go"))),
     )
     target: float = number(
         math.pi / 2,
@@ -103,6 +120,9 @@ class LawParameters:
         "where to stop, with task = position",
         group="task",
         label="Target",
+        symbol="θ",
+        needs=(Need("task", ("position",)),),
+        shown_in=DEGREES,
     )
     across: str = choice(
         DISTANCE,
@@ -111,6 +131,7 @@ class LawParameters:
         " command line also polynomials, in m)",
         group="gains",
         label="Across is",
+        compiles=True,
     )
     own_gains: tuple[tuple[str, float], ...] = ()
     """Gains of single laws by name, where they differ from the laws' defaults: see `changed` in

@@ -1,35 +1,70 @@
-"""Declarations of parameters: unit, range, options and help of each, and the check of a value."""
+"""Declarations of settings: unit, range, options and help of each, and the check of a value."""
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, Literal
 
 from onpath.models.errors import CodedError, Message
 
 MINUS = "\N{MINUS SIGN}"  # typesetters and phones replace a hyphen by it
 _WITH_COMMA = re.compile(r"[-+]?\d+,\d+")
 LONGEST_NAME = 60  # [characters] of an unknown name in a message
+MM, DEGREES = ("mm", 1e3), ("°", 180 / math.pi)
+"""`Spec.shown_in` of lengths and angles."""
+_SWITCHED = {"true": True, "on": True, "false": False, "off": False}
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
 FORMER_NAMES = {"law": "output"}
 """Former name of a parameter -> its present one, which is suggested and read in stored set-ups."""
 
 
+Scale = Literal["linear", "log"]
+
+
 @dataclass(frozen=True, slots=True)
-class Spec:
-    """Declaration of a parameter.
+class Need:
+    """What a setting needs in order to act: another setting with a certain value.
 
     Attributes:
-        group: "basic", "gains", "task", "path", "realism" or "robot".
+        name: of the other setting.
+        of: values with which it suffices; empty: any but 0, "off" and False.
+        others: names of settings of which each suffices in its place.
+    """
+
+    name: str
+    of: tuple[Any, ...] = ()
+    others: tuple[str, ...] = ()
+
+    def met(self, values: Mapping[str, Any]) -> bool:
+        """Whether the values of all settings fulfil it; one that is missing does not."""
+        present = [values[name] for name in (self.name, *self.others) if name in values]
+        return any(value in self.of if self.of else value not in (0, "off") for value in present)
+
+
+@dataclass(frozen=True, slots=True)
+class Spec:
+    """Declaration of a setting: a parameter, a gain, or one of the lab's own settings.
+
+    Attributes:
+        group: "basic", "gains", "task", "path", "realism" or "robot"; the lab's own settings have
+            groups of their own.
         label: name on a widget.
-        unit: "" for none.
+        unit: of its value everywhere, SI where there is one; "" for none.
         low, high, step: range of a number.
-        options: of a choice; empty for a number.
-        help: a description in one line.
+        options: of a choice, (False, True) of a switch; empty for a number.
+        help: a description in one line: what one will see.
         on: the value that switches the parameter on, if 0 means "off".
+        symbol: as in the paper, such as "K₁"; "" for none.
+        scale: of a slider; a logarithmic one whose range begins at 0 has 0 at its end, and then
+            goes on from `step`.
+        needs: all that it needs in order to act.
+        compiles: whether another loop is compiled for some of its values.
+        shown_in: if pages show another unit, that unit and how many of it make one `unit`, such as
+            ("mm", 1000).
     """
 
     group: str
@@ -41,6 +76,22 @@ class Spec:
     options: tuple[Any, ...]
     help: str
     on: float | None = None
+    symbol: str = ""
+    scale: Scale = "linear"
+    needs: tuple[Need, ...] = ()
+    compiles: bool = False
+    shown_in: tuple[str, float] | None = None
+
+    @property
+    def kind(self) -> Literal["number", "choice", "switch"]:
+        """What kind of value it has."""
+        if not self.options:
+            return "number"
+        return "switch" if self.options == (False, True) else "choice"
+
+    def acts(self, values: Mapping[str, Any]) -> bool:
+        """Whether it acts, given the values of all settings."""
+        return all(need.met(values) for need in self.needs)
 
 
 def number(
@@ -51,9 +102,15 @@ def number(
     *,
     group: str,
     label: str,
-    on: float | None = None,
+    **more: Any,
 ) -> Any:
-    """A dataclass field for a number; `bounds` are (low, high, step)."""
+    """A dataclass field for a number.
+
+    Args:
+        bounds: (low, high, step).
+        text: `Spec.help`.
+        more: further attributes of `Spec`.
+    """
     low, high, step = bounds
     spec = Spec(
         group=group,
@@ -64,20 +121,15 @@ def number(
         step=step,
         options=(),
         help=text,
-        on=on,
+        **more,
     )
     return field(default=default, metadata={"spec": spec})
 
 
 def choice(
-    default: Any,
-    options: tuple[Any, ...],
-    text: str,
-    *,
-    group: str,
-    label: str,
+    default: Any, options: tuple[Any, ...], text: str, *, group: str, label: str, **more: Any
 ) -> Any:
-    """A dataclass field for one of `options`."""
+    """A dataclass field for one of `options`; see `number`."""
     spec = Spec(
         group=group,
         label=label,
@@ -87,8 +139,18 @@ def choice(
         step=0.0,
         options=options,
         help=text,
+        **more,
     )
     return field(default=default, metadata={"spec": spec})
+
+
+def switch(default: bool, text: str, *, group: str, label: str, **more: Any) -> Any:
+    """A dataclass field for something that is on or off; see `number`."""
+    return choice(default, (False, True), text, group=group, label=label, **more)
+
+
+NOISY = Need("sensor_noise", others=("strain_noise",))
+INEXACT = Need("encoder_counts", others=("sensor_noise", "strain_noise"))
 
 
 def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
@@ -97,7 +159,8 @@ def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
         "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
         " sine, and otherwise the largest speed"
     )
-    return number(default, "rad/s", bounds, text, group="task", label="Speed")
+    needs = (Need("task", ("speed",)),)
+    return number(default, "rad/s", bounds, text, group="task", label="Speed", needs=needs)
 
 
 def model_error(label: str, text: str, on: float = 30.0) -> Any:
@@ -126,13 +189,22 @@ def velocity_filter(default: float) -> Any:
         " without steps or noise"
     )
     bounds = (0.0005, 0.05, 0.0005)
-    return number(default, "s", bounds, text, group="realism", label="Velocity filter")
+    return number(
+        default,
+        "s",
+        bounds,
+        text,
+        group="realism",
+        label="Velocity filter",
+        needs=(INEXACT, Need("observer_time", (0.0,))),
+        shown_in=("ms", 1e3),
+    )
 
 
 def path_rise() -> Any:
     """A dataclass field for the rise of the path of a robot that takes space curves, [m]."""
     text, bounds = "the path rises and falls by this, twice around: a saddle", (-0.05, 0.05, 0.001)
-    return number(0.0, "m", bounds, text, group="path", label="Rise of the path")
+    return number(0.0, "m", bounds, text, group="path", label="Rise of the path", shown_in=MM)
 
 
 def unknown_name(name: str, known: list[str], what: str = "parameter") -> CodedError:
@@ -161,7 +233,7 @@ def checked(spec: Spec, name: str, value: Any) -> Any:
     """
     if spec.options:
         for option in spec.options:
-            if str(option) == str(value):
+            if str(option) == str(value) or _SWITCHED.get(str(value)) is option:
                 return option
         options = ", ".join(str(option) for option in spec.options)
         raise CodedError("error.value_not_an_option", name=name, value=repr(value), options=options)
@@ -180,6 +252,8 @@ def number_of(name: str, value: Any) -> float:
     """
     plain = value.strip().replace(MINUS, "-") if isinstance(value, str) else value
     try:
+        if isinstance(plain, bool):
+            raise TypeError
         return float(plain)
     except (TypeError, ValueError, OverflowError):
         if isinstance(plain, str) and _WITH_COMMA.fullmatch(plain):

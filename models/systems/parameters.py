@@ -14,7 +14,15 @@ from types import MappingProxyType
 from typing import TypeVar
 
 from onpath.models.systems.law_parameters import LawParameters
-from onpath.models.systems.parameter_specs import Spec, choice, number, velocity_filter
+from onpath.models.systems.parameter_specs import (
+    INEXACT,
+    NOISY,
+    Need,
+    Spec,
+    choice,
+    number,
+    velocity_filter,
+)
 
 TICK = 1e-3  # [s], length of a tick at control rates up to 1 kHz
 
@@ -32,6 +40,7 @@ class Parameters(LawParameters):
         "motors give no more than this; 0: no limit",
         group="realism",
         label="Torque limit",
+        compiles=True,
         on=0.5,
     )
     at_limit: str = choice(
@@ -42,6 +51,8 @@ class Parameters(LawParameters):
         " that the whole path allows; cut: neither",
         group="realism",
         label="At the limit",
+        needs=(Need("torque_limit"),),
+        compiles=True,
     )
     at_limit_for: str = choice(
         "all",
@@ -50,6 +61,8 @@ class Parameters(LawParameters):
         " acceleration, or path following and typed laws alone",
         group="realism",
         label="Given up by",
+        needs=(Need("torque_limit"), Need("at_limit", ("across_first", "slow_down"))),
+        compiles=True,
     )
     torque_step: float = number(
         0.0,
@@ -58,6 +71,7 @@ class Parameters(LawParameters):
         "the motors' torque is a multiple of this; 0: any torque",
         group="realism",
         label="Torque steps",
+        compiles=True,
         on=0.02,
     )
     encoder_counts: float = number(
@@ -67,6 +81,8 @@ class Parameters(LawParameters):
         "steps of the joint encoders; 0: exact sensing",
         group="realism",
         label="Encoder",
+        compiles=True,
+        scale="log",
         on=2000.0,
     )
     encoder_filter: float = velocity_filter(0.005)
@@ -78,6 +94,9 @@ class Parameters(LawParameters):
         " in this time. 0: the filter gives them; no effect without steps or noise",
         group="realism",
         label="Observer",
+        needs=(INEXACT,),
+        compiles=True,
+        shown_in=("ms", 1e3),
         on=0.008,
     )
     sensor_noise: float = number(
@@ -87,6 +106,7 @@ class Parameters(LawParameters):
         "standard deviation of the measured joint angles",
         group="realism",
         label="Sensor noise",
+        compiles=True,
         on=0.0001,
     )
     seed: float = number(
@@ -96,6 +116,7 @@ class Parameters(LawParameters):
         "chooses the random numbers of the noise: the same seed, the same run",
         group="realism",
         label="Noise seed",
+        needs=(NOISY,),
     )
     coulomb: float = number(
         0.0,
@@ -104,6 +125,7 @@ class Parameters(LawParameters):
         "dry friction in the joints; 0: none",
         group="realism",
         label="Dry friction",
+        compiles=True,
         on=0.05,
     )
     stiction: float = number(
@@ -113,6 +135,7 @@ class Parameters(LawParameters):
         "a joint at rest stays there up to this torque, and slides with the dry friction; 0: none",
         group="realism",
         label="Static friction",
+        compiles=True,
         on=0.08,
     )
     control_rate: int = choice(
@@ -123,6 +146,7 @@ class Parameters(LawParameters):
         " 3 % above theirs",
         group="realism",
         label="Control rate",
+        compiles=True,
     )
     look_ahead: str = choice(
         "half_tick",
@@ -131,6 +155,7 @@ class Parameters(LawParameters):
         " the speed right at low control rates, but halves the largest K2",
         group="realism",
         label="Look-ahead",
+        needs=(Need("control_rate", (50, 100, 200, 250, 500)),),
     )
     delay: float = number(
         0.0,
@@ -139,6 +164,7 @@ class Parameters(LawParameters):
         "time from a measurement to the torque computed from it; 0: at once",
         group="realism",
         label="Computing delay",
+        compiles=True,
         on=1.0,
     )
 

@@ -61,6 +61,7 @@ class RodGantryParameters(Parameters):
         "share of the swing that the controller sees: 1 the pen, 0 the carriage",
         group="basic",
         label="α",
+        symbol="α",
     )
     rod: float = number(
         0.3, "kg", (0.05, 0.5, 0.01), "mass of the hanging rod", group="robot", label="Rod"

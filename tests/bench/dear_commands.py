@@ -72,7 +72,7 @@ def _parameter(draw: random.Random) -> dict[str, Any]:
     name = draw.choice([*specs])
     spec = specs[name]
     values = spec.options or (spec.low, spec.high, draw.uniform(spec.low, spec.high))
-    return {"do": "SetParameter", "name": name, "value": draw.choice(values)}
+    return {"do": "Set", "name": name, "value": draw.choice(values)}
 
 
 def _law(draw: random.Random) -> dict[str, Any]:

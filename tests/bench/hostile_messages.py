@@ -91,7 +91,7 @@ COMMANDS = [
     '{"do": "Grab", "side": "left", "target": [1e9, -1e9]}',
     '{"do": "MovePoint", "index": -1000000000, "target": [0, 0]}',
     '{"do": "DrawPath", "stroke": [[0.1, 0.1], [0.1, 0.1]]}',
-    '{"do": "SetParameter", "name": "K1", "value": 1e9}',
+    '{"do": "Set", "name": "K1", "value": 1e9}',
     '{"do": "TypeLaw", "side": "left", "text": "across = ((((((e1))))))"}',
     '{"do": "ChooseRobot", "name": "flexible"}',
     '{"do": "ChooseRobot", "name": "five_bar"}',

@@ -81,8 +81,8 @@ def mouse_latency(server: LabServer, browser: str, times: int, draws: bool = Tru
 
         until(lambda: watch.tip is not None and any(lab.display for lab in server.thread.labs))
         lab = next(lab for lab in server.thread.labs if lab.display is not None)
-        lab.lab.post(c.SetParameter("task", "position"))
-        lab.lab.post(c.SetParameter("target", 0.4))  # between two control points
+        lab.lab.post(c.Set("task", "position"))
+        lab.lab.post(c.Set("target", 0.4))  # between two control points
         page.wait_for_timeout(3000)
         box = page.locator("canvas").first.bounding_box()
         assert box is not None

@@ -75,7 +75,7 @@ def test_simulated_browsers_see_and_do_what_real_ones_do() -> None:
 
 @pytest.mark.thorough
 def test_what_a_script_says_reaches_its_lab_also_after_it_was_hung_up_on() -> None:
-    said = cycle([b"no text", '{"do": "SetParameter", "name": "K1", "value": 77.0}'])
+    said = cycle([b"no text", '{"do": "Set", "name": "K1", "value": 77.0}'])
     server = LabServer("127.0.0.1", 0, LoopCache())
 
     async def attack() -> None:

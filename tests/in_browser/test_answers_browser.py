@@ -75,7 +75,7 @@ def test_a_committed_choice_is_locked_and_judged_when_its_run_is_over(
     assert page.get_by_label("Why?").is_hidden()
     tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
-    tab.ask(c.SetRate(4.0))
+    tab.ask(c.Set("rate", 4.0))
     wait_for(lambda: tab.lab.lessons.has_played())
     for told in (page.locator(".compared"), page.locator("#op-column > .step + [role=status]")):
         expect(told).to_contain_text("Not quite.")

@@ -70,7 +70,7 @@ def test_pause_step_and_run(tab: Tab) -> None:
 
 def test_time_runs_slower(tab: Tab) -> None:
     tab.page.get_by_label("Time runs at").select_option("×0.125")
-    wait_for(lambda: tab.simulation.rate == 0.125)
+    wait_for(lambda: tab.simulation.settings.rate == 0.125)
     tab.page.get_by_text(re.compile(r"running at 0\.[01]\d×")).wait_for()
 
 
@@ -111,7 +111,7 @@ def test_a_path_that_crosses_itself_is_followed_with_a_warning(tab: Tab) -> None
 
 
 def test_a_robot_that_leaves_its_workspace_stops_and_says_why(tab: Tab) -> None:
-    tab.ask(c.SetParameter("K1", 0.0), c.SetParameter("K2", 0.0))
+    tab.ask(c.Set("K1", 0.0), c.Set("K2", 0.0))
     tab.ask(*[c.MoveHand(-0.1, -0.1)] * 4)
     tab.page.get_by_role("status").filter(has_text="Reset starts the run again").wait_for()
     assert any(run.diverged for run in tab.simulation.runs.values())

@@ -229,9 +229,9 @@ def test_gains_of_all_are_points_that_can_be_read_from_afar(tabs: Class) -> None
     teacher, (first, second) = tabs.teacher, tabs.students
     teacher.page.get_by_role("tab", name="Gains").click()
     shown = teacher.page.get_by_role("img", name="Everyone's gains")
-    first.ask(c.SetParameter("K1", 900.0))
+    first.ask(c.Set("K1", 900.0))
     wait_for(lambda: shown.locator("circle").count() == 2)
-    second.ask(c.SetParameter("K1", 900.0))
+    second.ask(c.Set("K1", 900.0))
     wait_for(lambda: shown.locator("circle").count() == 1)
     page = teacher.page
     page.set_viewport_size({"width": 1920, "height": 1080})
@@ -361,7 +361,7 @@ def test_every_question_of_the_course_fits_on_a_projection(tabs: Class, language
 
 def test_a_page_says_that_it_presents_however_that_was_chosen(tabs: Class) -> None:
     for on in (True, False):
-        tabs.teacher.ask(c.SetPresenting(on))  # as the window "Language, display" does
+        tabs.teacher.ask(c.Set("presenting", on))  # as the window "Language, display" does
         wait_until_presenting(tabs, on)
 
 
@@ -391,7 +391,7 @@ def wait_until_presenting(tabs: Class, on: bool) -> None:
 
 def test_a_setup_that_is_sent_leaves_the_lesson_where_it_is(tabs: Class) -> None:
     teacher, (first, _) = tabs.teacher, tabs.students
-    teacher.ask(c.SetParameter("K2", 33.0))
+    teacher.ask(c.Set("K2", 33.0))
     teacher.press("Send my set-up to all")
     wait_for(lambda: "“Set up again” restores" in first.said())
     assert first.simulation.parameters.K2 == 33.0 and first.lab.lessons.index == 1

@@ -39,7 +39,7 @@ def test_laws_are_compared_while_the_lab_goes_on(browser: Browser, server: LabSe
     tab.press("Compare")
     expect(tab.page.locator(f"{TABLE} tbody tr", has_text=TYPED)).to_have_count(1, timeout=60_000)
 
-    tab.ask(c.SetParameter("speed", 0.0))
+    tab.ask(c.Set("speed", 0.0))
     tab.press("Compare")
     tab.page.get_by_text("A comparison needs a closed path").wait_for()
     assert tab.errors == []

@@ -220,7 +220,7 @@ def test_a_summary_is_told_on_demand(tab: Tab) -> None:
 def test_a_refusal_that_was_closed_is_told_again(tab: Tab) -> None:
     message = tab.page.locator("#op-message")
     for _ in range(2):
-        tab.ask(c.SetRate(1000))
+        tab.ask(c.Set("rate", 1000))
         expect(message).to_contain_text("1000")
         message.get_by_role("button", name="Close").click()
         expect(message).to_be_hidden()
@@ -374,7 +374,7 @@ def test_what_is_said_of_a_box_goes_with_it(tab: Tab) -> None:
     tab.ask(c.SetLanguage("de"))
     tab.wait_until_built()
     expect(tab.page.locator(WRONG)).to_be_hidden()
-    tab.ask(c.SetLanguage("en"), c.SetParameter("K1", 400.0))
+    tab.ask(c.SetLanguage("en"), c.Set("K1", 400.0))
     tab.wait_until_built()
 
 
@@ -414,7 +414,7 @@ def test_digits_in_groups_are_not_taken_for_a_decimal_silently(
         tab.page.keyboard.press("Enter")
         wait_for(lambda n=value: gain(tab) == n)
     expect(tab.page.locator(WRONG)).to_be_hidden()
-    tab.ask(c.SetLanguage("en"), c.SetParameter("K1", 400.0))
+    tab.ask(c.SetLanguage("en"), c.Set("K1", 400.0))
     tab.wait_until_built()
 
 
@@ -447,7 +447,7 @@ def test_a_number_counts_when_it_is_complete(tab: Tab) -> None:
     assert seen == {400}
     tab.page.keyboard.press("Tab")
     wait_for(lambda: gain(tab) == 505)
-    tab.ask(c.SetParameter("K1", 400.0))
+    tab.ask(c.Set("K1", 400.0))
     tab.blur()
 
 

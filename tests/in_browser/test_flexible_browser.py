@@ -62,7 +62,7 @@ def tip(tab: Tab) -> np.ndarray:
 def test_the_tip_is_pulled_in_the_plane_that_was_chosen(tab: Tab, plane: str) -> None:
     lab = tab.lab
     tab.choose("Pull in", plane)
-    tab.ask(c.SetParameter("speed", 0.0), c.Reset(), c.SetRunning(False))
+    tab.ask(c.Set("speed", 0.0), c.Reset(), c.SetRunning(False))
     tab.ask(*[c.StepOnce()] * 50)
     tab.settle()
     before, start = tip(tab), tab.pixel(FOLLOWER, tip(tab))
@@ -104,9 +104,9 @@ def test_the_path_is_dragged_in_its_slanted_plane(tab: Tab) -> None:
 
 def test_a_divergence_is_caught_reported_and_reset(tab: Tab) -> None:
     lab = tab.lab
-    tab.ask(c.SetParameter("speed", 2.0), c.Reset(), c.SetRunning(True))
+    tab.ask(c.Set("speed", 2.0), c.Reset(), c.SetRunning(True))
     tab.enter("Drawn larger", "5")
-    wait_for(lambda: lab.simulation.exaggeration == 5.0)
+    wait_for(lambda: lab.simulation.settings.larger == 5.0)
     tab.enter("α", "0.95")
     wait_for(lambda: lab.simulation.parameters.output == "redefined")  # type: ignore[attr-defined]
     wait_for(lambda: str(UNSTABLE) in tab.said())
@@ -132,12 +132,12 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
     browser: Browser, server: LabServer
 ) -> None:
     tab = Tab(server, browser.new_context(viewport={"width": 1280, "height": 800}), draws=False)
-    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
+    tab.ask(c.ChooseRobot("flexible"), c.Set("output", "redefined"))
     wait_for(tab.is_built)
     tab.ask(c.SetRunning(True))
     time = tab.simulation.time
     wait_for(lambda: tab.simulation.time > time + 1.5)
-    tab.ask(c.SetParameter("alpha", 1.0))
+    tab.ask(c.Set("alpha", 1.0))
     message = tab.page.locator("#op-message")
     wait_for(lambda: tab.lab.breakdown.replaying)  # by itself
     message.get_by_text("drawn 5 times as large").wait_for()
@@ -160,10 +160,10 @@ def test_a_breakdown_is_shown_slowly_and_mended_from_its_message(
 
 def blow_up(tab: Tab) -> None:
     """Make the actual tip the output of the flexible robot, until it has stopped."""
-    tab.ask(c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
+    tab.ask(c.ChooseRobot("flexible"), c.Set("output", "redefined"))
     wait_for(tab.is_built)
     tab.ask(c.SetRunning(True))
-    tab.ask(c.SetParameter("alpha", 1.0))
+    tab.ask(c.Set("alpha", 1.0))
     tab.page.locator("#op-message").get_by_role("button", name="Show it slowly").wait_for()
 
 

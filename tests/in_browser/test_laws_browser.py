@@ -135,4 +135,4 @@ def test_a_law_that_is_typed_elsewhere_is_shown_in_its_box(tab: Tab) -> None:
     )
     tab.press("Use this law")
     wait_for(lambda: tab.simulation.laws[LEFT] == law)
-    assert tab.lab.law_refusals == {}
+    assert tab.lab.refused == {}

@@ -95,7 +95,7 @@ def test_the_result_is_plotted_on_the_same_axes(tab: Tab) -> None:
     tab.press("Let it happen")
     wait_for(lambda: tab.lab.lessons.playing)
     assert tab.page.get_by_text("Four arches").is_hidden()  # not told before it has happened
-    tab.ask(c.SetRate(4.0))
+    tab.ask(c.Set("rate", 4.0))
     wait_for(lambda: tab.lab.lessons.has_played())
     tab.page.get_by_text("Four arches, not one bump").wait_for()
     truth = tab.lab.lessons.notes.truths["1"]
@@ -117,7 +117,7 @@ def test_a_task_is_failed_then_passed(tab: Tab) -> None:
         wait_for(lambda step=step: tab.lab.lessons.index == step)
     wait_for_heading(tab, "Hold it yourself")
     expect(tab.page.locator(".step.open .words")).to_be_focused()
-    tab.ask(c.SetRate(2.0), c.SetParameter("K1", 40), c.SetParameter("K2", 12))
+    tab.ask(c.Set("rate", 2.0), c.Set("K1", 40), c.Set("K2", 12))
     tab.ask(c.SetRunning(False), c.Reset())  # how far it gives way depends on where it is held
     hold_for(tab, 2.6)
     tab.page.get_by_text("wanted: below 3 mm (2.0 of 2 s)").first.wait_for()

@@ -159,7 +159,7 @@ def test_the_legend_of_a_step_s_plot_is_seen_whole(browser: Browser, presenting:
     width, height = (1920, 1080) if presenting else (1280, 800)
     context = browser.new_context(viewport={"width": width, "height": height})
     tab = Tab(server, context, draws=False)
-    tab.ask(c.SetPresenting(presenting))
+    tab.ask(c.Set("presenting", presenting))
     tab.wait_until_built()
     take(tab, 4, "03-the-five-bar")
     names = tab.page.locator(".u-legend tr")

@@ -45,7 +45,7 @@ def test_pulling_an_end_point_pulls_both(tab: Tab, name: str) -> None:
         pulled = hand_targets(lab)
         moved = {each: pulled[each] - before[each] for each in pulled}
         np.testing.assert_allclose(moved[TRACKER], moved[FOLLOWER], atol=1e-9)
-        tab.ask(c.SetParameter("speed", 0.0), c.SetRunning(True))
+        tab.ask(c.Set("speed", 0.0), c.SetRunning(True))
         wait_for(lambda: lab.simulation.time > 0.8)
         for each, run in lab.simulation.runs.items():
             assert (tab.tip(each) - before[each]) @ moved[each] > 0, each
@@ -63,14 +63,14 @@ def hand_targets(lab: Lab) -> dict[str, np.ndarray]:
 
 def test_without_copy_only_the_robot_in_hand_is_pulled(tab: Tab) -> None:
     tab.page.get_by_label("Copy to both").uncheck()
-    wait_for(lambda: not tab.simulation.copy)
+    wait_for(lambda: not tab.simulation.settings.copy)
     stop_between_control_points(tab)
     start = tab.placed(TRACKER, tab.tip(TRACKER))
     with tab.dragging(start, (start[0] - 30, start[1])):
         wait_for(lambda: tab.simulation.forces.hands)
         assert list(tab.simulation.forces.hands) == [TRACKER]
     tab.page.get_by_label("Copy to both").check()
-    wait_for(lambda: tab.simulation.copy)
+    wait_for(lambda: tab.simulation.settings.copy)
 
 
 def test_dragging_a_control_point_bends_the_path_and_blends_in(tab: Tab) -> None:

@@ -193,14 +193,14 @@ DESK = pytest.mark.parametrize("tab", [(1366, 768)], indirect=True, ids=["desk"]
 @DESK
 def test_what_a_symbol_means_is_drawn_where_it_is_while_the_robots_move(tab: Tab) -> None:
     random = np.random.default_rng(41)
-    tab.ask(c.SetRate(0.25))  # on a busy machine, the history has few rows for a second
+    tab.ask(c.Set("rate", 0.25))  # on a busy machine, the history has few rows for a second
     for symbol in SYMBOLS:
         if symbol in ("y", "K_3"):
             continue  # a ring around the end-point; nothing but a slider
         light(tab, symbol)
         since, ahead = tab.simulation.time, random.uniform(0.1, 0.2)
         target = tab.simulation.runs["left"].shown()["y"] + random.uniform(-0.04, 0.04, 2)
-        tab.ask(c.SetCopy(True), c.Grab("left", target), c.SetRunning(True))
+        tab.ask(c.Set("copy", True), c.Grab("left", target), c.SetRunning(True))
         wait_for(lambda since=since, ahead=ahead: tab.simulation.time > since + ahead)
         ways = list(map(undotted, drawn_lines(tab)))
         tab.ask(c.SetRunning(False), c.Release("left"))

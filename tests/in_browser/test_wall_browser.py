@@ -90,7 +90,7 @@ def test_the_force_on_the_wall_is_shown(tab: Tab) -> None:
 
 def test_a_start_is_dragged_and_typed_and_taken_at_reset(tab: Tab) -> None:
     simulation, page = tab.simulation, tab.page
-    tab.ask(c.SetParameter("speed", 0.0))
+    tab.ask(c.Set("speed", 0.0))
     tab.elapse(0.2)
     tab.open("Start")
     page.get_by_label("Show it, to drag it").check()

@@ -49,7 +49,7 @@ def test_a_lost_picture_is_reported_and_comes_back_with_the_lab(
 ) -> None:
     context = fresh(browser)
     tab = Tab(server, context, draws=False)
-    tab.ask(c.SetParameter("K1", 640.0))
+    tab.ask(c.Set("K1", 640.0))
     lab, time = tab.lab, tab.simulation.time
     told = tab.page.get_by_role("alert").filter(has_text="picture of the robots was lost")
     assert told.count() == 0

@@ -75,7 +75,7 @@ def let_go(k2: float) -> Lab:
     """A lab at rest that has been pulled across, and let go for three seconds."""
     lab = Lab(loop_cache(), FIVE_BAR)
     for name, value in {"K1": 400, "K2": k2, "K3": 0, "speed": 0}.items():
-        do(lab, c.SetParameter(name, value))
+        do(lab, c.Set(name, value))
     do(lab, c.Reset(), c.SetRunning(True))
     pull = Action(at=0.5, pull=(30.0, 0.0)), Action(at=2.5, release=True)
     lab.script = player_of(Script(pull, 5.5))

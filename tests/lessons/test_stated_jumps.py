@@ -47,7 +47,7 @@ def distances(lab: Lab, seconds: float) -> np.ndarray:
 def test_eight_seconds_after_the_spring_is_stiff_it_is_near_and_stays_so(begun: float) -> None:
     lab, bound = opened()
     distances(lab, begun)
-    do(lab, c.SetParameter("K1", 1100.0), c.SetParameter("K2", 66.0))
+    do(lab, c.Set("K1", 1100.0), c.Set("K2", 66.0))
     distances(lab, WAIT - WINDOW)
     assert distances(lab, 52.0).max() < bound
 

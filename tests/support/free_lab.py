@@ -27,5 +27,5 @@ def begin_anew(tab: Tab) -> None:
     tab.page.mouse.move(1, 1)
     tab.blur()
     tab.ask(c.ResetParameters(), c.ChoosePath("circle"), c.SelectPoint(None), c.Reset())
-    tab.ask(c.SetCopy(True), c.SetRate(1.0), c.SetRunning(True))
+    tab.ask(c.Set("copy", True), c.Set("rate", 1.0), c.SetRunning(True))
     wait_for(lambda: tab.simulation.time > 0.1)

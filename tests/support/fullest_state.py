@@ -22,6 +22,7 @@ from onpath.lessons.schema import (
     Sketch,
     Step,
 )
+from onpath.models.closed_loop.lab_settings import settings_kept
 from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import SIDES
@@ -45,7 +46,7 @@ def fullest_state(course: Course) -> dict[str, Any]:
     notes = {name: _notes(lesson) for name, lesson in lessons.items()}
     longest = max([*lessons, ""], key=len)
     route = max([*course.routes, ""], key=len)
-    progress = Progress(lesson=longest, presenting=True, notes=notes, route=route, ended=True)
+    progress = Progress(lesson=longest, notes=notes, route=route, ended=True)
     setup = to_data(_setup())
     return {"setup": setup, "lessons": msgspec.to_builtins(progress), "before": setup}
 
@@ -101,13 +102,11 @@ def _truth() -> Truth:
 
 def _setup() -> Setup:
     """All robots with another value of every parameter, a drawn path, a start and a wall."""
-    start = ("theta", "beside", "along", "across", "clock_offset")
     robots = {
         name: RobotSetup(
             parameters=dict.fromkeys(specs(entry.parameters), -1.23456e-10),
             path=Path(DRAWN, False, (-123456,) * (2 * TERMS)),
-            start=dict.fromkeys(start, -1.23456e-10),
-            wall=(-1.23456e-10,) * 3,
+            settings=dict.fromkeys(settings_kept("code", of_robot=True), -1.23456e-10),
         )
         for name, entry in ROBOTS.items()
     }
@@ -116,9 +115,6 @@ def _setup() -> Setup:
     return Setup(
         robot=longest,
         robots=robots,
-        rate=0.123456,
-        copy=False,
-        exaggeration=1.23456,
         laws=laws,
-        hold="across",
+        settings=dict.fromkeys(settings_kept("code"), -1.23456e-10),
     )

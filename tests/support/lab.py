@@ -50,7 +50,7 @@ def run(lab: Lab, seconds: float) -> None:
     """Run frame by frame, as the simulation thread does."""
     for _ in range(round(seconds / FRAME)):
         lab.drain()
-        lab.advance(lab.simulation.rate * FRAME)
+        lab.advance(lab.simulation.settings.rate * FRAME)
 
 
 def do(lab: Lab, *commands: Command) -> None:
@@ -89,7 +89,7 @@ def assert_sound(lab: Lab) -> None:
     assert curve_faults(lab.simulation.robot.margin, editor.design.curve) == []
     assert np.isfinite(editor.table).all() and np.isfinite(editor.points()).all()
     assert editor.selected is None or 0 <= editor.selected < len(editor.design.points)
-    assert 0.125 <= lab.simulation.rate <= 4
+    assert 0.125 <= lab.simulation.settings.rate <= 4
     assert lab.simulation.forces.held <= set(SIDES) and set(lab.simulation.forces.hands) <= set(
         SIDES
     )

@@ -74,7 +74,7 @@ class Pupil:
     def hurry(self) -> None:
         """Let time run as fast as a student can."""
         self.tab.page.locator("#op-strip .transport select").select_option(index=5)
-        wait_for(lambda: self.tab.simulation.rate == 4.0)
+        wait_for(lambda: self.tab.simulation.settings.rate == 4.0)
 
     def open(self, label: str, name: str) -> None:
         """Open a lesson from the list of lessons."""

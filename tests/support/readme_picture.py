@@ -47,7 +47,7 @@ def main() -> None:
     with sync_playwright() as playwright:
         chromium = playwright.chromium.launch(executable_path=CHROMIUM, args=PLAIN)
         tab = Tab(server, chromium.new_context(viewport=WINDOW))
-        tab.ask(c.SetRunning(False), c.SetParameter("speed", 3.0), c.Reset())
+        tab.ask(c.SetRunning(False), c.Set("speed", 3.0), c.Reset())
         tab.elapse(4.0)
         first, *others = photograph(tab)
         chromium.close()

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from onpath.app.lab.setups.capture import capture_path, kept
 from onpath.app.lab.setups.setup import RobotSetup, Setup
+from onpath.models.closed_loop.lab_settings import settings_kept
 from onpath.models.control.settable import specs, value_of
 from onpath.models.paths.path_design import PathDesign, drawn, presets
 from onpath.models.systems.catalogue import ROBOTS
@@ -51,6 +52,13 @@ def _value(spec: Spec) -> st.SearchStrategy[Any]:
     return st.floats(spec.low, spec.high).map(lambda x: kept(spec, x))
 
 
+def _own(of_robot: bool) -> st.SearchStrategy[dict[str, Any]]:
+    """Values of the lab's own settings that differ from a new lab's."""
+    known = {n: s for n, s in settings_kept("code", of_robot).items() if "start" not in n}
+    values = {n: _value(s.spec).filter(lambda v, s=s: v != s.default) for n, s in known.items()}
+    return st.fixed_dictionaries({}, optional=values)
+
+
 @st.composite
 def sides(draw: st.DrawFn, robot: str) -> RobotSetup:
     """A set-up of one robot, as `capture` makes it."""
@@ -58,7 +66,7 @@ def sides(draw: st.DrawFn, robot: str) -> RobotSetup:
     some = draw(st.lists(st.sampled_from(list(specs(lab).items())), max_size=6))
     values = {name: draw(_value(spec)) for name, spec in some}
     own = {name: value for name, value in values.items() if value != value_of(lab, name)}
-    return RobotSetup(own, capture_path(draw(designs), PRESETS))
+    return RobotSetup(own, capture_path(draw(designs), PRESETS), draw(_own(of_robot=True)))
 
 
 @st.composite
@@ -69,7 +77,5 @@ def setups(draw: st.DrawFn) -> Setup:
     return Setup(
         robot=draw(st.sampled_from(list(ROBOTS))),
         robots={name: robot for name, robot in found.items() if robot != RobotSetup()},
-        rate=draw(st.sampled_from([0.125, 0.5, 1.0, 4.0])),
-        copy=draw(st.booleans()),
-        exaggeration=draw(st.sampled_from([1.0, 2.5, 20.0])),
+        settings=draw(_own(of_robot=False)),
     )

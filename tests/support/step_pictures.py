@@ -101,7 +101,7 @@ def photograph(
         context = browser.new_context(viewport={"width": width, "height": height})
         context.add_init_script(SELDOM_DRAWN)
         tab = Tab(server, context)
-        tab.ask(c.SetLanguage(language), c.SetPresenting(width >= PRESENTED))
+        tab.ask(c.SetLanguage(language), c.Set("presenting", width >= PRESENTED))
         tab.wait_until_built()
         files += shots(tab, name, folder)
         if tab.errors:

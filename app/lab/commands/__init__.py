@@ -13,8 +13,6 @@ from onpath.app.lab.commands.forces import (
     Hold,
     MoveHand,
     Release,
-    SetCopy,
-    SetHoldDirection,
 )
 from onpath.app.lab.commands.laws import ChooseLaw, TypeLaw
 from onpath.app.lab.commands.lessons import (
@@ -31,10 +29,8 @@ from onpath.app.lab.commands.lessons import (
     PlayStep,
     Predict,
     SetLanguage,
-    SetPresenting,
     ShowHint,
 )
-from onpath.app.lab.commands.parameters import ChooseRobot, Identify, ResetParameters, SetParameter
 from onpath.app.lab.commands.path import (
     AddPoint,
     ChoosePath,
@@ -51,36 +47,31 @@ from onpath.app.lab.commands.path import (
     Undo,
 )
 from onpath.app.lab.commands.pulse import Pulse
+from onpath.app.lab.commands.robots import ChooseRobot, Identify
+from onpath.app.lab.commands.settings import ResetParameters, Set
 from onpath.app.lab.commands.sharing import Share, UseShared
-from onpath.app.lab.commands.start import MoveStart, SetStart, StartOnPath
+from onpath.app.lab.commands.start import MoveStart, StartOnPath
 from onpath.app.lab.commands.time import (
-    AskPhase,
     GoOn,
     LookAt,
     LookBack,
     ReplayBreakdown,
     Reset,
-    SetExaggeration,
-    SetRate,
     SetRunning,
     StepOnce,
     UndoGoOn,
     UseEarlierSettings,
 )
-from onpath.app.lab.commands.wall import TURN, MoveWall, NudgeWall, PlaceWall, SetWall, SwingWall
+from onpath.app.lab.commands.wall import TURN, MoveWall, NudgeWall, SwingWall
 from onpath.app.lab.lab import Command as Command
-from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES
 
 __all__ = [
-    "EXAGGERATIONS",
-    "RATES",
     "TURN",
     "Act",
     "AddPoint",
     "AnswerInWords",
     "AnswerNumber",
     "AnswerQuiz",
-    "AskPhase",
     "BeginStepAnew",
     "ChooseLaw",
     "ChoosePath",
@@ -110,7 +101,6 @@ __all__ = [
     "NudgeWall",
     "OpenLesson",
     "PlacePoint",
-    "PlaceWall",
     "PlayStep",
     "Predict",
     "Pulse",
@@ -123,16 +113,9 @@ __all__ = [
     "ResetParameters",
     "SelectNext",
     "SelectPoint",
-    "SetCopy",
-    "SetExaggeration",
-    "SetHoldDirection",
+    "Set",
     "SetLanguage",
-    "SetParameter",
-    "SetPresenting",
-    "SetRate",
     "SetRunning",
-    "SetStart",
-    "SetWall",
     "Share",
     "ShowHint",
     "StartOnPath",

@@ -27,7 +27,12 @@ _AT_NAME = "at `$.do`"
 Number = Annotated[float, msgspec.Meta(ge=-LARGEST, le=LARGEST)]
 Whole = Annotated[int, msgspec.Meta(ge=-int(LARGEST), le=int(LARGEST))]
 Text = Annotated[str, msgspec.Meta(max_length=MOST_TEXT)]
-_CHECKED: dict[Any, Any] = {float: Number, int: Whole, str: Text, Any: Whole | Number | Text}
+_CHECKED: dict[Any, Any] = {
+    float: Number,
+    int: Whole,
+    str: Text,
+    Any: bool | Whole | Number | Text | None,
+}
 
 
 class NoCommand(ValueError):

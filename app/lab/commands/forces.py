@@ -11,7 +11,6 @@ from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.obstacles import check_direction
 from onpath.models.control.sides import RIGHT, SIDES
 
 
@@ -20,7 +19,7 @@ class Hold(Command):
     """Hold end-points back, or release them; None toggles.
 
     Attributes:
-        side: whose end-point; None means both. See `SetCopy`.
+        side: whose end-point, and with `LabSettings.copy` the other, too; None means both.
     """
 
     on: bool | None = None
@@ -33,27 +32,8 @@ class Hold(Command):
         if self.side is not None:
             names = simulation.targets(checks.side(self.side))
         on = not simulation.forces.held.intersection(names) if self.on is None else self.on
-        simulation.forces.hold(names, on, simulation.editor.curve, simulation.hold_direction)
-
-
-@dataclass(frozen=True, slots=True)
-class SetHoldDirection(Command):
-    """Choose the direction in which brakes act; an active brake is applied again where it is.
-
-    Attributes:
-        direction: one of `models.closed_loop.obstacles.DIRECTIONS`.
-    """
-
-    direction: str
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        direction = check_direction(self.direction)
-        lab.return_to_present()
-        simulation = lab.simulation
-        simulation.hold_direction, held = direction, sorted(simulation.forces.held)
-        simulation.forces.hold(held, False, simulation.editor.curve)
-        simulation.forces.hold(held, True, simulation.editor.curve, direction)
+        direction = simulation.settings.hold_direction
+        simulation.forces.hold(names, on, simulation.editor.curve, direction)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,17 +83,6 @@ class MoveHand(Command):
         name = forces.grabbed or RIGHT
         target = forces.hands.get(name, simulation.runs[name].shown()["y"])
         _grab(lab, name, displaced(simulation.robot.frame, target, by))
-
-
-@dataclass(frozen=True, slots=True)
-class SetCopy(Command):
-    """Set whether pulling and holding act on both robots."""
-
-    on: bool
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        lab.simulation.copy = bool(self.on)
 
 
 def _grab(lab: Lab, name: str, target: Array) -> None:

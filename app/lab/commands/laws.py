@@ -33,7 +33,7 @@ class ChooseLaw(Command):
         if not simulation.suits(law):
             raise CodedError("error.law_does_not_suit", law=law_named(law).label)
         simulation.choose_law(self.side, law)
-        if lab.law_refusals.pop(self.side, ""):
+        if lab.refused.pop(self.side, ""):
             lab.clear_message()
 
 
@@ -56,5 +56,5 @@ class TypeLaw(Command):
             own_law(self.text)  # names of the registry are not typed laws
             ChooseLaw(side, self.text).apply(lab)
         except ValueError as error:
-            lab.law_refusals[side] = lab.words.sentence(error)
+            lab.refused[side] = lab.words.sentence(error)
             raise

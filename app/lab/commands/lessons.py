@@ -198,14 +198,3 @@ class SetLanguage(Command):
             raise unknown_name(self.language, languages(), "language")
         lab.lessons.set_language(self.language)
         lab.clear_message()
-
-
-@dataclass(frozen=True, slots=True)
-class SetPresenting(Command):
-    """Turn large type for a projector on or off."""
-
-    on: bool
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        lab.lessons.set_presenting(bool(self.on))

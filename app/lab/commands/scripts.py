@@ -12,15 +12,16 @@ from typing_extensions import override
 from onpath.app.lab.commands.checks import point
 from onpath.app.lab.commands.forces import Release
 from onpath.app.lab.commands.laws import ChooseLaw
-from onpath.app.lab.commands.parameters import ChooseRobot, Identify, SetParameter
 from onpath.app.lab.commands.path import ChoosePath, MovePoint
+from onpath.app.lab.commands.robots import ChooseRobot, Identify
+from onpath.app.lab.commands.settings import Set
 from onpath.app.lab.commands.time import Reset, SetRunning
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.script_player import ScriptPlayer
-from onpath.app.lab.setups.setup import RATES
 from onpath.lessons.action_schema import Action, Laws, RobotName, RunStart, Script
 from onpath.lessons.sides import SIDE_OF
+from onpath.models.closed_loop.lab_settings import RATES, settings_of_start
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.sides import SIDES, checked_laws
 from onpath.models.errors import CodedError
@@ -28,7 +29,7 @@ from onpath.models.errors import CodedError
 
 @dataclass(frozen=True, slots=True)
 class ScriptHold(Command):
-    """Hold end-points back or release them, regardless of `SetCopy`.
+    """Hold end-points back or release them, regardless of `LabSettings.copy`.
 
     Attributes:
         only: one robot; empty for both.
@@ -44,7 +45,7 @@ class ScriptHold(Command):
 
 @dataclass(frozen=True, slots=True)
 class ScriptPull(Command):
-    """Pull end-points away from their current position, regardless of `SetCopy`.
+    """Pull end-points away from their current position, regardless of `LabSettings.copy`.
 
     Attributes:
         by: displacement in the path's plane, [mm].
@@ -83,7 +84,7 @@ class ScriptRate(Command):
     @override
     def apply(self, lab: Lab) -> None:
         wanted = self.rate * lab.lessons.rate_before
-        lab.simulation.rate = min(max(wanted, RATES[0]), RATES[-1])
+        lab.simulation.set(rate=min(max(wanted, RATES[0]), RATES[-1]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +97,7 @@ class ScriptStart(Command):
     def apply(self, lab: Lab) -> None:
         start = Start(**self.start.numbers)
         lab.simulation.check_start(start)
-        lab.simulation.start = start
+        lab.simulation.set(**settings_of_start(start))
         lab.simulation.reset()
 
 
@@ -154,7 +155,7 @@ _COMMANDS: dict[str, Callable[[Action], list[Command]]] = {
     "hold": lambda action: [ScriptHold(bool(action.hold), action.only)],
     "pull": _pull,
     "release": lambda _: [Release()],
-    "set": lambda action: [SetParameter(name, value) for name, value in (action.set or {}).items()],
+    "set": lambda action: [Set(name, value) for name, value in (action.set or {}).items()],
     "path": lambda action: [ChoosePath(action.path or "")],
     "move": _move,
     "robot": lambda action: [ChooseRobot(action.robot or "")],

@@ -1,35 +1,16 @@
-"""Commands that choose where and how a run starts."""
+"""Commands that choose where a run starts, by mouse and button."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from typing_extensions import override
 
-from onpath.app.lab.commands.checks import finite, point
+from onpath.app.lab.commands.checks import point
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
-from onpath.models.closed_loop.start import BOUNDS, ON_PATH, Start, nearest_start
-from onpath.models.systems.parameter_specs import unknown_name
-
-
-@dataclass(frozen=True, slots=True)
-class SetStart(Command):
-    """Set one number of the start of the next run.
-
-    Attributes:
-        name: a field of `Start`.
-        value: in SI units.
-    """
-
-    name: str
-    value: float
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        if self.name not in BOUNDS:
-            raise unknown_name(self.name, list(BOUNDS), "start")
-        _take(lab, replace(lab.simulation.start, **{self.name: finite(self.value)}))
+from onpath.models.closed_loop.lab_settings import settings_of_start
+from onpath.models.closed_loop.start import ON_PATH, Start, nearest_start
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,5 +46,5 @@ def _take(lab: Lab, start: Start) -> None:
         ValueError: the start is not possible; nothing has changed.
     """
     lab.simulation.check_start(start)
-    lab.simulation.start = start
+    lab.simulation.set(**settings_of_start(start))
     lab.clear_message()

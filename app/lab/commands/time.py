@@ -7,10 +7,9 @@ from typing import ClassVar
 
 from typing_extensions import override
 
-from onpath.app.lab.commands.checks import finite, within
+from onpath.app.lab.commands.checks import finite
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.looking_back import go_on, look_back, undo_going_on
-from onpath.app.lab.setups.setup import EXAGGERATIONS, RATES
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +63,7 @@ class ReplayBreakdown(Command):
         simulation = lab.simulation
         if lab.breakdown.begin(simulation):
             bends = simulation.entry.flexible_link is not None
-            larger = {"larger": f"{simulation.exaggeration:g}"} if bends else {}
+            larger = {"larger": f"{simulation.settings.larger:g}"} if bends else {}
             key = "say.slowly_larger" if bends else "say.slowly"
             lab.show_message(lab.fault_words(key, **larger), "replay")
 
@@ -79,28 +78,6 @@ class UseEarlierSettings(Command):
     def apply(self, lab: Lab) -> None:
         lab.breakdown.use_earlier_settings(lab.simulation)
         lab.show_message("")
-
-
-@dataclass(frozen=True, slots=True)
-class SetRate(Command):
-    """Set the simulated seconds per second, within the range of `RATES`."""
-
-    rate: float
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        lab.simulation.rate = within("speed", self.rate, RATES)
-
-
-@dataclass(frozen=True, slots=True)
-class AskPhase(Command):
-    """Include the phase plane in the snapshots, or leave it out."""
-
-    on: bool
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        lab.phase_asked = bool(self.on)
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,17 +130,6 @@ class UndoGoOn(Command):
             lab.remark(lab.words("say.brought_back", time=f"{lab.simulation.time:.1f}"))
         else:
             lab.show_message(lab.words("say.nothing_discarded"))
-
-
-@dataclass(frozen=True, slots=True)
-class SetExaggeration(Command):
-    """Set the magnification of the drawn deflection; it does not affect the simulation."""
-
-    factor: float
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        lab.simulation.exaggeration = within("exaggeration", self.factor, EXAGGERATIONS)
 
 
 def _look_back(lab: Lab, ago: float) -> None:

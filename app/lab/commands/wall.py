@@ -1,4 +1,4 @@
-"""Commands that place, move, turn and remove the wall, in the path's plane."""
+"""Commands that move and turn the wall by mouse and keys, in the path's plane."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing_extensions import override
 from onpath.app.lab.commands.checks import finite, point
 from onpath.app.lab.lab import Command, Lab
 from onpath.models.arrays import Array
+from onpath.models.closed_loop.lab_settings import settings_of_wall
 from onpath.models.closed_loop.obstacles import FARTHEST, Wall
 from onpath.models.paths.curves import Curve
 
@@ -24,21 +25,6 @@ def first_wall(curve: Curve) -> Wall:
     low, high = z.min(axis=0), z.max(axis=0)
     middle = (low[0] + high[0]) / 2
     return _wall(np.array([middle, high[1] - CUT * (high[1] - low[1])]), -math.pi / 2)
-
-
-@dataclass(frozen=True, slots=True)
-class SetWall(Command):
-    """Put a wall across the top of the path, or remove the wall; None toggles."""
-
-    on: bool | None = None
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        simulation = lab.simulation
-        on = simulation.wall is None if self.on is None else bool(self.on)
-        if on != (simulation.wall is not None):
-            lab.return_to_present()
-            simulation.set_wall(first_wall(simulation.editor.curve) if on else None)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,8 +41,7 @@ class MoveWall(Command):
     def apply(self, lab: Lab) -> None:
         target, now = point(self.target, 2), lab.simulation.wall
         if now is not None:
-            lab.return_to_present()
-            lab.simulation.set_wall(_wall(target, now.angle))
+            _put(lab, _wall(target, now.angle))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,9 +63,8 @@ class SwingWall(Command):
             return
         ahead = (target - now.place) * (1 if self.end > 0 else -1)
         if np.linalg.norm(ahead) > 1e-3:
-            lab.return_to_present()
             angle = math.atan2(ahead[1], ahead[0]) - math.pi / 2
-            lab.simulation.set_wall(_wall(now.place, angle))
+            _put(lab, _wall(now.place, angle))
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,29 +85,15 @@ class NudgeWall(Command):
         by, turn = np.array([finite(self.right), finite(self.up)]), finite(self.turn)
         now = lab.simulation.wall
         if now is None:
-            SetWall(True).apply(lab)
+            _put(lab, first_wall(lab.simulation.editor.curve))
             return
-        lab.return_to_present()
-        lab.simulation.set_wall(_wall(now.place + by, now.angle + turn))
+        _put(lab, _wall(now.place + by, now.angle + turn))
 
 
-@dataclass(frozen=True, slots=True)
-class PlaceWall(Command):
-    """Give the wall a place, [m], and the angle of its normal, [rad]; None leaves one unchanged."""
-
-    first: float | None = None
-    second: float | None = None
-    angle: float | None = None
-
-    @override
-    def apply(self, lab: Lab) -> None:
-        now = lab.simulation.wall
-        if now is None:
-            return
-        old, new = (now.z1, now.z2, now.angle), (self.first, self.second, self.angle)
-        values = [o if n is None else finite(n) for o, n in zip(old, new, strict=True)]
-        lab.return_to_present()
-        lab.simulation.set_wall(_wall(np.array(values[:2]), values[2]))
+def _put(lab: Lab, wall: Wall) -> None:
+    """Put a wall in the robots' way, in the present."""
+    lab.return_to_present()
+    lab.simulation.set(**settings_of_wall(wall))
 
 
 def _wall(place: Array, angle: float) -> Wall:

@@ -119,7 +119,7 @@ def played(setup: Setup, script: Script, loop_cache: LoopCache) -> Played:
     lab.script, simulation.running = player, True
     while lab.script is not None:
         lab.drain()
-        lab.advance(simulation.rate * FRAME)
+        lab.advance(simulation.settings.rate * FRAME)
         samples.follow(simulation)
         heard = words.said(lab.message)
         said |= heard

@@ -76,7 +76,7 @@ def play(lab: Lab, script: Script, task: Task | None = None) -> Iterator[list[Ve
     for _ in range(round(3 * script.seconds / LOOKS)):
         for _ in range(round(LOOKS / FRAME)):
             lab.drain()
-            lab.advance(simulation.rate * FRAME)
+            lab.advance(simulation.settings.rate * FRAME)
         if simulation.editor.faults or (lab.script is None and not player.finished):
             raise ValueError(lab.message)
         yield [] if task is None else judged(task, record_of(simulation, begin), earlier, words)

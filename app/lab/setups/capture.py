@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict
 from functools import lru_cache
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 from onpath.app.lab.robot_settings import RobotSettings
 from onpath.app.lab.setups.setup import DRAWN, EDITED, UNIT, Path, RobotSetup, Setup
 from onpath.app.lab.simulation import Simulation
-from onpath.models.closed_loop.start import Start
+from onpath.models.closed_loop.lab_settings import Kept, LabSettings, settings_kept
 from onpath.models.control.settable import specs, values_of
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.paths.path_design import PathDesign
@@ -34,30 +33,29 @@ def capture(simulation: Simulation) -> Setup:
     return Setup(
         robot=simulation.entry.name,
         robots={name: robot for name, robot in captured.items() if robot != RobotSetup()},
-        rate=_rounded(simulation.rate),
-        copy=simulation.copy,
-        exaggeration=_rounded(simulation.exaggeration),
         laws={side: law for side, law in chosen if law != DEFAULT_LAWS[side]},
-        hold=simulation.hold_direction,
+        settings=dict(own_differences(simulation.settings, "code")),
     )
 
 
 def _captured(name: str, settings: RobotSettings, paths: Mapping[str, PathDesign]) -> RobotSetup:
     """The set-up of one robot."""
-    editor, wall = settings.editor, settings.wall
+    editor = settings.editor
     return RobotSetup(
         parameters=dict(_differences(name, settings.parameters)),
         path=capture_path(editor.design, paths) if editor else Path(),
-        start=dict(_start_of(settings.start)),
-        wall=() if wall is None else (_rounded(wall.z1), _rounded(wall.z2), _rounded(wall.angle)),
+        settings=dict(own_differences(settings.own, "code", of_robot=True)),
     )
 
 
-@lru_cache(maxsize=128)  # every lab is captured once a second
-def _start_of(start: Start) -> dict[str, float]:
-    """The numbers of a start that are not 0."""
-    numbers = {name: _rounded(value) for name, value in asdict(start).items()}
-    return {name: value for name, value in numbers.items() if value}
+@lru_cache(maxsize=256)  # every lab is captured once a second
+def own_differences(
+    settings: LabSettings, where: Kept, of_robot: bool = False
+) -> dict[str, int | float | str]:
+    """The values of `settings_kept` that differ from a new lab's."""
+    known = settings_kept(where, of_robot)
+    values = {name: kept(each.spec, getattr(settings, name)) for name, each in known.items()}
+    return {name: value for name, value in values.items() if value != known[name].default}
 
 
 @lru_cache(maxsize=256)

@@ -7,6 +7,7 @@ changes the motion needs a line, too: its former value is the one that leaves th
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
@@ -16,6 +17,7 @@ import msgspec
 
 from onpath.app.lab.setups.plan import planned
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
+from onpath.models.closed_loop.lab_settings import settings_of_start
 from onpath.models.closed_loop.start import ON_PATH
 from onpath.models.control.settable import specs
 from onpath.models.errors import Message
@@ -53,10 +55,56 @@ CHANGES = (
     Change(4, "observer_bound", 10.0),
 )
 """By version, oldest first."""
-DEFAULTS = max(change.since for change in CHANGES)
-"""Present version of the defaults; stored data without a version are of version 1."""
+DEFAULTS = 5
+"""Present version of the defaults; stored data without a version are of version 1. Since 5, the
+lab's own settings stand under "settings"; see `as_of_today`."""
+OWN = {"rate": "rate", "copy": "copy", "exaggeration": "larger", "hold": "hold_direction"}
+"""Former name of a lab's own setting, which stood beside the robots -> its present name."""
 RENAMED: Mapping[tuple[str, Any], str] = {("plant", "as_printed"): "unit_modes"}
 """(Parameter, former name of an option) -> its present name."""
+
+
+def as_of_today(data: Any) -> Any:
+    """A stored set-up with the lab's own settings where they stand today.
+
+    What never had such a form is left as it is, for the check that follows.
+    """
+    if not isinstance(data, dict) or data.get("defaults", 1) == DEFAULTS:
+        return data
+    current = {name: value for name, value in data.items() if name not in OWN}
+    current["settings"] = {OWN[name]: value for name, value in data.items() if name in OWN}
+    if isinstance(robots := data.get("benches"), dict):
+        current["benches"] = {name: _robot_of_today(robot) for name, robot in robots.items()}
+    return current
+
+
+def _robot_of_today(robot: Any) -> Any:
+    """See `as_of_today`."""
+    if not isinstance(robot, dict):
+        return robot
+    start, wall = robot.get("start", {}), robot.get("wall", [])
+    if not isinstance(start, dict) or not isinstance(wall, list):
+        return robot
+    settings: dict[str, Any] = {f"start_{name}": value for name, value in start.items()}
+    if wall:
+        names = "wall_z1", "wall_z2", "wall_angle"
+        if len(wall) != len(names) or not all(isinstance(each, int | float) for each in wall):
+            return robot
+        z1, z2, angle = wall
+        if not -2 * math.pi <= angle <= 2 * math.pi:
+            return robot
+        settings |= zip(names, (z1, z2, math.remainder(angle, 2 * math.pi)), strict=True)
+        settings["wall"] = True
+    return {n: value for n, value in robot.items() if n not in ("start", "wall")} | {
+        "settings": settings
+    }
+
+
+def own_of_today(state: Mapping[str, Any]) -> Any:
+    """The lab's own settings of a stored state, some of which stood in the progress."""
+    lessons = state.get("lessons")
+    formerly = isinstance(lessons, dict) and "presenting" in lessons
+    return {"presenting": lessons["presenting"]} if formerly else state.get("settings", {})
 
 
 def former_defaults(robot: str, version: int) -> dict[str, Any]:
@@ -106,11 +154,18 @@ def with_paths_of_today(setup: Setup) -> tuple[Setup, tuple[Message, ...]]:
     for name, wanted in planned(setup, presets()).items():
         if reasons := wanted.path_faults:
             kept = robots.get(name, RobotSetup())
-            robots[name] = msgspec.structs.replace(kept, path=Path(), start={})
+            robots[name] = msgspec.structs.replace(kept, path=Path(), settings=_on_path(kept))
             messages += reasons
-        elif wanted.start != ON_PATH:
+        elif wanted.own.start != ON_PATH:
             try:
                 wanted.check_start()
             except ValueError:
-                robots[name] = msgspec.structs.replace(robots[name], start={})
+                kept = robots[name]
+                robots[name] = msgspec.structs.replace(kept, settings=_on_path(kept))
     return msgspec.structs.replace(setup, robots=robots), tuple(messages)
+
+
+def _on_path(robot: RobotSetup) -> dict[str, Any]:
+    """A robot's own settings, with the start of a new lab."""
+    start = settings_of_start(ON_PATH)
+    return {name: value for name, value in robot.settings.items() if name not in start}

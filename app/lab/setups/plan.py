@@ -5,7 +5,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
+from typing import Any
 
 import msgspec
 import numpy as np
@@ -13,17 +14,15 @@ import numpy as np
 from onpath.app.lab.setups.setup import (
     DRAWN,
     EDITED,
-    EXAGGERATIONS,
-    RATES,
     UNIT,
     Path,
     RobotSetup,
     Setup,
     plain,
 )
-from onpath.models.closed_loop.obstacles import Wall, check_direction
+from onpath.models.closed_loop.lab_settings import Kept, LabSettings, changed_setting, settings_kept
 from onpath.models.closed_loop.simulation import raised
-from onpath.models.closed_loop.start import ON_PATH, Start, check_start
+from onpath.models.closed_loop.start import ON_PATH, check_start
 from onpath.models.control.settable import changed
 from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError, Message
@@ -32,7 +31,7 @@ from onpath.models.paths.curve_fit import closed_through, control_points, open_t
 from onpath.models.paths.curves import Curve, from_terms, terms_of
 from onpath.models.paths.path_design import MOST_POINTS, REACH, PathDesign
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
-from onpath.models.systems.parameter_specs import NOTHING, out_of_range, unknown_name
+from onpath.models.systems.parameter_specs import NOTHING, unknown_name
 from onpath.models.systems.parameters import Parameters
 from onpath.models.systems.robots import Robot
 
@@ -47,8 +46,7 @@ class Wanted:
     entry: RobotEntry
     parameters: Parameters
     design: PathDesign
-    start: Start = ON_PATH
-    wall: Wall | None = None
+    own: LabSettings
 
     @property
     def path_faults(self) -> tuple[Message, ...]:
@@ -57,8 +55,8 @@ class Wanted:
 
     def check_start(self) -> None:
         """Refuse a start that is not possible; see `models.closed_loop.start.check_start`."""
-        if self.start != ON_PATH:
-            check_start(self._robot, self._path, self.parameters, self.start)
+        if self.own.start != ON_PATH:
+            check_start(self._robot, self._path, self.parameters, self.own.start)
 
     @property
     def _robot(self) -> Robot:
@@ -80,13 +78,11 @@ def planned(setup: Setup, paths: Mapping[str, PathDesign]) -> dict[str, Wanted]:
             law that does not suit the robot.
     """
     msgspec.convert(plain(setup), Setup)  # a set-up made in Python has not been validated
-    _within("speed", setup.rate, RATES)
-    _within("exaggeration", setup.exaggeration, EXAGGERATIONS)
+    own_settings(setup.settings)
     robots = dict(setup.robots)
     robots.setdefault(setup.robot, RobotSetup())
     wanted = {name: wanted_robot(name, robot, paths) for name, robot in robots.items()}
     checked_laws(setup.laws, wanted[setup.robot].entry)
-    check_direction(setup.hold)
     return wanted
 
 
@@ -100,20 +96,11 @@ def wanted_robot(name: str, robot: RobotSetup, paths: Mapping[str, PathDesign]) 
     for field, value in robot.parameters.items():
         tiny = isinstance(value, float) and abs(value) <= NOTHING
         parameters = changed(parameters, field, 0.0 if tiny else value)
-    if unknown := set(robot.start) - set(asdict(ON_PATH)):
-        raise unknown_name(min(unknown), list(asdict(ON_PATH)), "start")
-    if len(robot.wall) not in (0, 3):
-        raise CodedError("error.half_a_wall")
-    start, wall = Start(**robot.start), None
-    if robot.wall:
-        z1, z2, angle = robot.wall
-        wall = Wall(z1, z2, angle)
     return Wanted(
         entry=ROBOTS[name],
         parameters=parameters,
         design=_design(robot.path, paths),
-        start=start,
-        wall=wall,
+        own=own_settings(robot.settings, of_robot=True),
     )
 
 
@@ -122,9 +109,24 @@ def is_absent(robot: str) -> bool:
     return robot not in ROBOTS and _FROM_FILE.fullmatch(robot) is not None
 
 
-def _within(what: str, value: float, bounds: tuple[float, ...]) -> None:
-    if not bounds[0] <= value <= bounds[-1]:
-        raise out_of_range(what, f"{value:g}", f"{bounds[0]:g}", f"{bounds[-1]:g}")
+def own_settings(
+    values: Mapping[str, Any], where: Kept = "code", of_robot: bool = False
+) -> LabSettings:
+    """The lab's own settings with some values.
+
+    Args:
+        where, of_robot: see `settings_kept`; other settings are refused.
+
+    Raises:
+        ValueError: an unknown name or a bad value.
+    """
+    settings = LabSettings()
+    known = settings_kept(where, of_robot)
+    for name, value in values.items():
+        if name not in known:
+            raise unknown_name(name, list(known), "setting")
+        settings = changed_setting(settings, name, value)
+    return settings
 
 
 def _design(path: Path, paths: Mapping[str, PathDesign]) -> PathDesign:

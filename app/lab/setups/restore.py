@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from onpath.app.lab.path_editor import BLEND
-from onpath.app.lab.setups.plan import planned, wanted_robot
+from onpath.app.lab.setups.plan import own_settings, planned, wanted_robot
 from onpath.app.lab.setups.setup import RobotSetup, Setup
 from onpath.app.lab.simulation import Simulation
+from onpath.models.closed_loop.lab_settings import settings_kept
 from onpath.models.control.sides import checked_laws
 from onpath.models.errors import CodedError
 from onpath.models.systems.parameters import rise_of
@@ -25,8 +26,8 @@ def restore(simulation: Simulation, setup: Setup) -> None:
             raise CodedError("error.cannot_follow", robot=robot.entry.label, reasons=reasons)
         robot.check_start()
     laws = checked_laws(setup.laws, wanted[setup.robot].entry)
-    simulation.rate, simulation.copy = setup.rate, setup.copy
-    simulation.exaggeration, simulation.hold_direction = setup.exaggeration, setup.hold
+    settings = own_settings(setup.settings)
+    simulation.set(**{name: getattr(settings, name) for name in settings_kept("code")})
     for name in sorted(wanted, key=lambda name: name == setup.robot):
         robot = wanted[name]
         simulation.choose_robot(robot.entry)
@@ -37,5 +38,6 @@ def restore(simulation: Simulation, setup: Setup) -> None:
         simulation.editor.select(None)
         simulation.editor.advance(BLEND)
         simulation.set_parameters(robot.parameters)
-        simulation.start, simulation.wall = robot.start, robot.wall
+        kept = settings_kept("code", of_robot=True)
+        simulation.set(**{name: getattr(robot.own, name) for name in kept})
     simulation.reset(laws)

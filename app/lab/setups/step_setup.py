@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from onpath.app.lab.setups.setup import Path, RobotSetup, Setup
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.schema import Lesson
+from onpath.models.closed_loop.lab_settings import settings_kept
 
 
 def setup_of(lesson: Lesson, index: int) -> Setup:
@@ -23,8 +26,13 @@ def setup_of_scene(scene: StepSetup, robot: str) -> Setup:
         robot: if the scene names none.
     """
     robot, path = scene.robot or robot, Path(scene.path or Path().name)
+    own: dict[str, Any] = {f"start_{name}": value for name, value in scene.start.numbers.items()}
+    own |= {name: scene.set[name] for name in settings_kept("code", True) if name in scene.set}
+    settings = {name: scene.set[name] for name in settings_kept("code") if name in scene.set}
+    parameters = {n: value for n, value in scene.set.items() if n not in own | settings}
     return Setup(
         robot=robot,
-        robots={robot: RobotSetup(dict(scene.set), path, scene.start.numbers)},
+        robots={robot: RobotSetup(parameters, path, own)},
         laws=scene.laws.named,
+        settings=settings,
     )

@@ -11,7 +11,7 @@ from typing import Annotated, Any, TypeVar
 
 import msgspec
 
-from onpath.app.lab.setups.former import DEFAULTS, brought_up
+from onpath.app.lab.setups.former import DEFAULTS, as_of_today, brought_up
 from onpath.app.lab.setups.plan import is_absent, planned
 from onpath.app.lab.setups.setup import Setup, plain
 from onpath.models.control.laws.own import is_text
@@ -42,7 +42,7 @@ def from_data(data: Any) -> Setup:
     Raises:
         ValueError: it is not a valid set-up.
     """
-    stored = msgspec.convert(data, StoredSetup)
+    stored = msgspec.convert(as_of_today(data), StoredSetup)
     others = {name for name in stored.robots if is_absent(name)} - {stored.robot}
     stored = msgspec.structs.replace(stored, robots=_without(stored.robots, others))
     robots = brought_up(stored.robots, stored.defaults)
@@ -58,7 +58,7 @@ def without_absent_laws(data: Any) -> tuple[Any, tuple[str, ...]]:
     The data need not be valid otherwise.
     """
     try:
-        stored = msgspec.convert(data, StoredSetup)
+        stored = msgspec.convert(as_of_today(data), StoredSetup)
     except msgspec.ValidationError:
         return data, ()
     known = {name for entry in ROBOTS.values() for name in specs(entry.parameters)}
@@ -81,7 +81,7 @@ def without_absent_robots(data: Any) -> tuple[Any, tuple[str, ...]]:
     If its current robot is absent, it is a new lab's. The data need not be valid otherwise.
     """
     try:
-        stored = msgspec.convert(data, StoredSetup)
+        stored = msgspec.convert(as_of_today(data), StoredSetup)
     except msgspec.ValidationError:
         return data, ()
     absent = {name for name in (stored.robot, *stored.robots) if is_absent(name)}

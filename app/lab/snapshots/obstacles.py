@@ -8,7 +8,6 @@ import numpy as np
 
 from onpath.app.lab.segments import Segment
 from onpath.app.lab.simulation import Simulation
-from onpath.app.lab.snapshots.page_snapshot import StartState, WallState
 from onpath.models.arrays import Array
 from onpath.models.closed_loop.loop_vectors import settings_layout
 from onpath.models.closed_loop.obstacles import Wall, wall_force
@@ -60,11 +59,11 @@ def wall_then(robot: Robot, past: Segment) -> Array:
     return NOWHERE if lifted is None else _wall_rows(robot, lifted)
 
 
-def wall_state(simulation: Simulation) -> WallState | None:
-    """Numbers of the present wall, and the forces on the wall that is shown."""
-    wall, lifted = simulation.wall, _lifted(simulation)
-    if wall is None:
-        return None
+def wall_forces(simulation: Simulation) -> dict[str, float]:
+    """Forces between each end-point and the wall that is shown, by side, [N]; empty without one."""
+    lifted = _lifted(simulation)
+    if simulation.wall is None:
+        return {}
     forces: dict[str, float] = {side: 0.0 for side in SIDES}
     if lifted is not None:
         robot, n = simulation.robot, simulation.robot.system.n
@@ -73,19 +72,7 @@ def wall_state(simulation: Simulation) -> WallState | None:
         plant = robot.plant(simulation.parameters)
         for side, state in zip(SIDES, instant.states, strict=True):
             forces[side] = wall_force(robot, plant, state[:n], state[n : 2 * n], lifted)
-    return WallState(wall.z1, wall.z2, wall.angle, forces)
-
-
-def start_state(simulation: Simulation) -> StartState:
-    """Numbers of the start of the next run."""
-    start = simulation.start
-    return StartState(
-        theta=start.theta,
-        beside=start.beside,
-        along=start.along,
-        across=start.across,
-        clock_offset=start.clock_offset,
-    )
+    return forces
 
 
 @lru_cache(maxsize=256)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -10,6 +11,7 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.lessons.checks import Verdict
 from onpath.lessons.pace import Pace
 from onpath.lessons.progress import Progress, Truth
+from onpath.models.closed_loop.lab_settings import LabSettings
 from onpath.models.control.place import Place
 from onpath.models.control.settable import parameters_from
 from onpath.models.systems.catalogue import ROBOTS
@@ -22,45 +24,21 @@ ParameterValues = dict[str, float | int | str]
 
 @dataclass(frozen=True, slots=True)
 class RunState:
-    """The clock and the switches of a lab.
+    """The clock and the laws of a lab.
 
     Attributes:
         now: simulated time, also while the past is viewed, [s].
         viewing: the past instant being viewed, [s], or None.
         frozen: whether the teacher has stopped the lab.
         can_undo_going_on: whether a discarded timeline can be restored.
-        rate: requested simulated seconds per second.
-        copy: whether pulling and holding act on both robots.
-        exaggeration: magnification of the drawn deflection.
         laws: control law of each side, also while the past is viewed or its loop is being made.
-        hold_direction: in which brakes act, one of `models.closed_loop.obstacles.DIRECTIONS`.
-        law_refusals: why the law that was last typed for a side was refused, by side.
     """
 
     now: float
     viewing: float | None
     frozen: bool
     can_undo_going_on: bool
-    rate: float
-    copy: bool
-    exaggeration: float
     laws: dict[str, str]
-    law_refusals: dict[str, str]
-    hold_direction: str
-
-
-@dataclass(frozen=True, slots=True)
-class WallState:
-    """The wall; see `models.closed_loop.obstacles.Wall`.
-
-    Attributes:
-        forces: between each end-point and the wall, by side, [N].
-    """
-
-    z1: float
-    z2: float
-    angle: float
-    forces: dict[str, float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,17 +54,6 @@ class LawPlaces:
     time: float
     version: tuple[str | int, ...]
     of: dict[str, Place]
-
-
-@dataclass(frozen=True, slots=True)
-class StartState:
-    """The start of the next run; see `models.closed_loop.start.Start`."""
-
-    theta: float
-    beside: float
-    along: float
-    across: float
-    clock_offset: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,8 +119,9 @@ class PageSnapshot(Snapshot):
         parameters: of the robot and its controllers.
         joints: the right robot's joint coordinates, shape (n,), [rad].
         run, edit, lesson, plots: state of these parts of the page.
-        obstacle: the wall, or None.
-        beginning: the start of the next run.
+        settings: the lab's own settings.
+        refused: see `Lab.refused`.
+        wall_forces: between each end-point and the wall, by side, [N]; empty without a wall.
         places: of the robots on the path, for the poles of their laws.
         phase: ξ₁ and ξ₂ of the last seconds in every frame, shape (n, robots, 2), SI; shape
             (0, 0, 2) unless a phase plane is drawn.
@@ -169,10 +137,16 @@ class PageSnapshot(Snapshot):
     plots: PlotSamples
     shared: str
     nickname: str
-    obstacle: WallState | None
-    beginning: StartState
+    settings: LabSettings
+    refused: dict[str, str]
+    wall_forces: dict[str, float]
     places: LawPlaces
     phase: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values of all settings, by name: parameters, gains, and the lab's own."""
+        return {**self.parameters, **asdict(self.settings)}
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:

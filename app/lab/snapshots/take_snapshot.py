@@ -17,8 +17,7 @@ from onpath.app.lab.snapshots.obstacles import (
     drawn_brakes,
     drawn_start,
     drawn_wall,
-    start_state,
-    wall_state,
+    wall_forces,
 )
 from onpath.app.lab.snapshots.page_snapshot import (
     LessonSnapshot,
@@ -61,13 +60,13 @@ def take_motion(lab: Lab, before: PageSnapshot | Motion | None = None, student: 
         student: see `PageKey`.
     """
     simulation, key = lab.simulation, page_key(lab, student)
-    robot, exaggeration = simulation.robot, simulation.exaggeration
+    robot, larger = simulation.robot, simulation.settings.larger
     if simulation.viewing is None and not lab.breakdown.replaying:
         curve, table = simulation.editor.curve, simulation.editor.table
-        drawn, counts = drawn_now(robot, simulation.runs.values(), curve, table, exaggeration)
+        drawn, counts = drawn_now(robot, simulation.runs.values(), curve, table, larger)
     else:
         instant, curve, _ = _shown(lab)
-        drawn, counts = drawn_robots(robot, curve, instant, exaggeration)
+        drawn, counts = drawn_robots(robot, curve, instant, larger)
     return Motion(
         key=key,
         path=_path_snapshot(simulation, curve, key, before),
@@ -101,20 +100,16 @@ def take_page_snapshot(
             viewing=simulation.viewing,
             frozen=lab.frozen,
             can_undo_going_on=simulation.undo_timeline is not None,
-            rate=simulation.rate,
-            copy=simulation.copy,
-            exaggeration=simulation.exaggeration,
             laws=simulation.chosen_laws,
-            hold_direction=simulation.hold_direction,
-            law_refusals=dict(lab.law_refusals),
         ),
         edit=_path_edit(simulation),
         lesson=_lesson(lab),
         plots=_plots(simulation, scene["time"], scene["key"], before),
         shared=lab.shared,
         nickname=nickname,
-        obstacle=wall_state(simulation),
-        beginning=start_state(simulation),
+        wall_forces=wall_forces(simulation),
+        settings=simulation.settings,
+        refused=dict(lab.refused),
         places=law_places(simulation, scene["time"], before),
         phase=_phase(lab, scene["time"]),
     )
@@ -131,7 +126,7 @@ def _scene(lab: Lab, achieved: float, before: PageSnapshot | None, student: int)
         "running": simulation.running,
         "achieved_speed": achieved,
         "robots": robot_snapshots(
-            simulation.robot, curve, instant, traces, simulation.exaggeration
+            simulation.robot, curve, instant, traces, simulation.settings.larger
         ),
         "path": _path_snapshot(simulation, curve, key, before),
         "held": bool(simulation.forces.held),
@@ -190,7 +185,7 @@ def page_key(lab: Lab, student: int = 0) -> PageKey:
         robot=simulation.robot,
         language=run.words.language,
         in_lesson=run.lesson is not None,
-        presenting=run.progress.presenting,
+        presenting=simulation.settings.presenting,
         student=student,
     )
 
@@ -213,9 +208,10 @@ def _page_key(
 
 def scale_note(simulation: Simulation, words: Words) -> str:
     """A note if the drawing is not true to scale, else empty."""
-    if simulation.exaggeration == 1.0 or not simulation.robot.extras:
+    larger = simulation.settings.larger
+    if larger == 1.0 or not simulation.robot.extras:
         return ""
-    return words("scene.larger", factor=f"{simulation.exaggeration:g}")
+    return words("scene.larger", factor=f"{larger:g}")
 
 
 def _traces(simulation: Simulation, time: float) -> Array:

@@ -15,12 +15,12 @@ class CopyBox:
 
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._box = gui.add_checkbox(
-            words("controls.copy"), first.run.copy, hint=words("controls.copy_hint")
+            words("controls.copy"), first.settings.copy, hint=words("controls.copy_hint")
         )
         self._copies = LabValue(post)
-        on_user_update(self._box, lambda on: self._copies.change(c.SetCopy(on)))
+        on_user_update(self._box, lambda on: self._copies.change(c.Set("copy", on)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's choice, which every set-up brings with it."""
-        if self._copies.is_new(snapshot.run.copy):
-            put(self._box, value=snapshot.run.copy)
+        if self._copies.is_new(snapshot.settings.copy):
+            put(self._box, value=snapshot.settings.copy)

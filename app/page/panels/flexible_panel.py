@@ -22,6 +22,7 @@ from onpath.app.page.panels.widgets import (
 )
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import LARGEST
 from onpath.models.systems.robots import FlexibleLink
 
 LEAST, MOST = -1.0, 1.0  # range of alpha on its bar
@@ -74,19 +75,19 @@ class Exaggeration:
     def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
         self._slider = gui.add_slider(
             words("flexible.larger"),
-            min=c.EXAGGERATIONS[0],
-            max=c.EXAGGERATIONS[-1],
+            min=1.0,
+            max=LARGEST,
             step=1.0,
-            initial_value=first.run.exaggeration,
+            initial_value=first.settings.larger,
             hint=words("flexible.larger_hint"),
         )
         self._factor = LabValue(post)
-        on_user_update(self._slider, lambda x: self._factor.change(c.SetExaggeration(x)))
+        on_user_update(self._slider, lambda x: self._factor.change(c.Set("larger", x)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's value."""
-        if self._factor.is_new(snapshot.run.exaggeration):
-            put(self._slider, value=snapshot.run.exaggeration)
+        if self._factor.is_new(snapshot.settings.larger):
+            put(self._slider, value=snapshot.settings.larger)
 
 
 class FlexiblePanel:
@@ -161,8 +162,8 @@ class FlexiblePanel:
     def _set(self, command: c.Command) -> None:
         """Post a command; changing alpha also selects output redefinition, which uses it."""
         self._post(command)
-        if isinstance(command, c.SetParameter) and command.name == "alpha":
-            self._post(c.SetParameter("output", "redefined"))
+        if isinstance(command, c.Set) and command.name == "alpha":
+            self._post(c.Set("output", "redefined"))
 
 
 def deflections(snapshot: PageSnapshot, words: Words) -> str:
@@ -172,7 +173,7 @@ def deflections(snapshot: PageSnapshot, words: Words) -> str:
         words("flexible.deflection", robot=titles[side], value=f"{robot.deflection * 1e3:.1f}")
         for side, robot in snapshot.robots.items()
     ]
-    factor = snapshot.run.exaggeration
+    factor = snapshot.settings.larger
     scale = words("flexible.drawn", factor=f"{factor:g}") if factor != 1 else None
     return words(
         "flexible.deflections",

@@ -21,13 +21,13 @@ class HoldDirection:
             gui,
             words("run.direction"),
             {label: name for name, label in labels.items()},
-            lambda name: self._direction.change(c.SetHoldDirection(name)),
-            shown=labels[first.run.hold_direction],
+            lambda name: self._direction.change(c.Set("hold_direction", name)),
+            shown=labels[first.settings.hold_direction],
             hint=words("run.direction_hint"),
         )
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's direction."""
-        direction = snapshot.run.hold_direction
+        direction = snapshot.settings.hold_direction
         if self._direction.is_new(direction):
             put(self._menu, value=self._labels[direction])

@@ -64,7 +64,7 @@ KEYS = (
     Key("pull_up", "W", "W", c.MoveHand(0.0, TUG)),
     Key("pull_down", "S", "S", c.MoveHand(0.0, -TUG)),
     Key("let_go", "X", "X", c.Release()),
-    Key("wall", "M", "M", c.SetWall()),
+    Key("wall", "M", "M", c.Set("wall")),
     Key("wall_left", "J", "J", c.NudgeWall(right=-SHIFT)),
     Key("wall_right", "L", "L", c.NudgeWall(right=SHIFT)),
     Key("wall_up", "I", "I", c.NudgeWall(up=SHIFT)),

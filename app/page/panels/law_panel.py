@@ -57,7 +57,7 @@ class LawPanel:
         """
         run = snapshot.run
         for side, menu in self._menus.items():
-            law, refusal = run.laws[side], run.law_refusals.get(side, "")
+            law, refusal = run.laws[side], snapshot.refused.get(side, "")
             if law != self._laws[side] and not self._was_asked(side, law):
                 self._typing.discard(side)
                 if is_text(law):

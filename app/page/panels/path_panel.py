@@ -141,7 +141,7 @@ class PathPanel:
                 step=spec.step,
                 hint=parameter_help(name, spec, words),
             )
-            on_user_update(box, lambda value, name=name: post(c.SetParameter(name, value)))
+            on_user_update(box, lambda value, name=name: post(c.Set(name, value)))
             self._plane[name] = box
 
     def _add_files(

@@ -66,10 +66,11 @@ class StartPanel:
 
     def _change(self, name: str, value: float) -> None:
         most = BOUNDS[name]
-        self._start.change(c.SetStart(name, min(max(value * UNITS[name], -most), most)))
+        self._start.change(c.Set(f"start_{name}", min(max(value * UNITS[name], -most), most)))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's start."""
-        if self._start.is_new(snapshot.beginning):
-            for name, value in asdict(snapshot.beginning).items():
+        start = snapshot.settings.start
+        if self._start.is_new(start):
+            for name, value in asdict(start).items():
                 put_number(self._numbers[name], value / UNITS[name])

@@ -29,9 +29,7 @@ class WallPanel:
             most=words.number(wall.largest),
         )
         with gui.add_folder(words("wall.title"), expand_by_default=False):
-            self._switch = gui.add_checkbox(
-                words("wall.switch"), first.obstacle is not None, hint=hint
-            )
+            self._switch = gui.add_checkbox(words("wall.switch"), first.settings.wall, hint=hint)
             names = [f"y{axis}" for axis in robot_of(first).frame.axes]
             self._first, self._second = (
                 gui.add_number(
@@ -50,17 +48,17 @@ class WallPanel:
             self._forces = gui.add_html("")
         self._numbers = self._first, self._second, self._angle
         change = self._wall.change
-        on_user_update(self._switch, lambda on: change(c.SetWall(on)))
-        on_user_update(self._first, lambda mm: change(c.PlaceWall(first=mm / 1e3)))
-        on_user_update(self._second, lambda mm: change(c.PlaceWall(second=mm / 1e3)))
-        on_user_update(self._angle, lambda d: change(c.PlaceWall(angle=math.radians(d))))
-        self._show_rest(first.obstacle is not None)
+        on_user_update(self._switch, lambda on: change(c.Set("wall", on)))
+        on_user_update(self._first, lambda mm: change(c.Set("wall_z1", mm / 1e3)))
+        on_user_update(self._second, lambda mm: change(c.Set("wall_z2", mm / 1e3)))
+        on_user_update(self._angle, lambda d: change(c.Set("wall_angle", math.radians(d))))
+        self._show_rest(first.settings.wall)
         self.follow(first)
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's wall."""
-        wall = snapshot.obstacle
-        if not self._wall.is_new(wall):
+        wall, forces = snapshot.settings.obstacle, snapshot.wall_forces
+        if not self._wall.is_new((wall, forces)):
             return
         put(self._switch, value=wall is not None)
         self._show_rest(wall is not None)
@@ -70,11 +68,11 @@ class WallPanel:
         put_number(self._second, wall.z2 * 1e3)
         put_number(self._angle, math.degrees(wall.angle))
         titles = side_titles(snapshot.laws, self._words)
-        forces = [
+        rows = [
             (OF_SIDE[side].hex, titles[side], self._words.written(f"{force:.1f}"))
-            for side, force in wall.forces.items()
+            for side, force in forces.items()
         ]
-        content = render("panel/forces.html", title=self._words("wall.forces"), forces=forces)
+        content = render("panel/forces.html", title=self._words("wall.forces"), forces=rows)
         put(self._forces, content=content)
 
     def _show_rest(self, visible: bool) -> None:

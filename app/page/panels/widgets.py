@@ -11,7 +11,7 @@ import viser
 from typing_extensions import override
 
 from onpath.app.common.templates import render
-from onpath.app.lab.commands import Command, SetParameter
+from onpath.app.lab.commands import Command, Set
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
 from onpath.lessons.labels import option_label, parameter_heading, parameter_help, parameter_label
 from onpath.lessons.words import Words
@@ -150,7 +150,7 @@ class ParameterWidgets:
                 put(handle, value=self._shown(name, snapshot.parameters))
 
     def _change(self, name: str, value: Any) -> None:
-        self._values[name].change(SetParameter(name, value))
+        self._values[name].change(Set(name, value))
 
     def _add_choice(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
@@ -247,4 +247,4 @@ class SwitchedParameter(ParameterWidgets):
         put(self._slider, visible=on)
 
     def _turn(self, on: bool) -> None:
-        self._post(SetParameter(self._name, self._on if on else 0.0))
+        self._post(Set(self._name, self._on if on else 0.0))

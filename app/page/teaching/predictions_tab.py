@@ -96,7 +96,7 @@ class PredictionsTab:
         on_user_update(self._revealed, self._show_truth)
         on_user_update(self._lesson, lambda label: self._choose(self._lessons[label], 0))
         on_user_update(self._step, self._choose_step)
-        on_user_update(large, lambda on: post(c.SetPresenting(on)))
+        on_user_update(large, lambda on: post(c.Set("presenting", on)))
 
     def look(self, large: bool) -> None:
         """Show what the class displays now, which may have been chosen in another window."""

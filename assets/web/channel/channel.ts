@@ -200,7 +200,7 @@ export class RemoteEngine implements Engine {
             this.looked = null
             if (act.do === "hold") this.send({ do: "Hold", on: act.on })
             else if (act.do === "run") this.send({ do: "SetRunning", running: act.on })
-            else if (act.do === "rate") this.send({ do: "SetRate", rate: act.rate })
+            else if (act.do === "rate") this.send({ do: "Set", name: "rate", value: act.rate })
             else this.send({ do: ({ step: "StepOnce", reset: "Reset", goOn: "GoOn" } as const)[act.do] })
         }
     }

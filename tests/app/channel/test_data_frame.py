@@ -151,15 +151,15 @@ STEPS = st.sampled_from(
         c.UndoGoOn(),
         c.MoveHand(0.01, 0.02),
         c.Release(),
-        c.SetRate(0.25),
-        c.SetRate(4),
+        c.Set("rate", 0.25),
+        c.Set("rate", 4),
         c.ChoosePath("ellipse"),
         c.ChooseRobot("two_link_arm"),
         c.ChooseRobot("five_bar"),
         c.ChooseLaw(RIGHT, "trajectory_tracking"),
-        c.SetParameter("K1", 900.0),
-        c.SetParameter("across", "level_set"),
-        c.SetParameter("across", "distance"),
+        c.Set("K1", 900.0),
+        c.Set("across", "level_set"),
+        c.Set("across", "distance"),
     ]
 )
 
@@ -183,7 +183,7 @@ def test_a_page_knows_what_its_lab_did(
         do(lab, command)
         for i in range(frames):
             lab.drain()
-            lab.advance(lab.simulation.rate * FRAME)
+            lab.advance(lab.simulation.settings.rate * FRAME)
             reader.see(lab, reads=i % seldom == 0)
         reader.see(lab)
         assert_knows(reader, lab)
@@ -216,7 +216,7 @@ def test_a_page_that_reads_nothing_for_long_catches_up_from_the_history() -> Non
 
 def test_a_page_that_comes_late_is_told_the_last_minute_with_what_acted() -> None:
     lab = new_lab(1.0)
-    do(lab, c.SetCopy(False), c.Hold(True, LEFT))
+    do(lab, c.Set("copy", False), c.Hold(True, LEFT))
     for _ in range(30):
         lab.advance(FRAME)
     do(lab, c.Hold(False, LEFT), c.Grab(RIGHT, np.array([0.0, 0.3])))
@@ -239,7 +239,7 @@ def test_a_row_that_is_opened_later_has_its_past_in_its_present_unit() -> None:
     lab, reader = new_lab(1.0), Reader()
     reader.see(lab)
     plain = len(reader.rows[-1])
-    do(lab, c.SetParameter("across", "level_set"))
+    do(lab, c.Set("across", "level_set"))
     for _ in range(30):
         lab.advance(FRAME)
         reader.see(lab)

@@ -103,7 +103,9 @@ def rows(records: Records) -> list[Any]:
         return list(connection.execute(classes.select()))
 
 
-@pytest.mark.parametrize("push", [TakeStep("01-a", 2, "short"), TakeSetup(Setup(rate=0.5))])
+@pytest.mark.parametrize(
+    "push", [TakeStep("01-a", 2, "short"), TakeSetup(Setup(settings={"rate": 0.5}))]
+)
 def test_a_class_goes_on_in_another_process(two: list[Process], push: TakeStep | TakeSetup) -> None:
     one, other = two
     one.keeper.open()

@@ -218,7 +218,7 @@ def test_a_frozen_lab_stands_still_and_refuses_with_a_sentence(klass: Watched) -
     for command in (
         c.SetRunning(False),
         c.StepOnce(),
-        c.SetParameter("K1", 1.0),
+        c.Set("K1", 1.0),
         c.MoveHand(0.01, 0.0),
     ):
         lab.show_message("")
@@ -252,7 +252,7 @@ def test_who_joins_is_frozen_too_and_who_leaves_is_let_go(klass: Watched) -> Non
 
 def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> None:
     first, second = klass.student("Ada"), klass.student("Bob")
-    do(second, c.OpenLesson(LESSON), c.SetParameter("K1", 7.0))
+    do(second, c.OpenLesson(LESSON), c.Set("K1", 7.0))
     klass.room.push(TakeStep(LESSON, 1))
     klass.look()
     for lab in (first, second):
@@ -271,7 +271,7 @@ def test_a_step_is_opened_for_all_as_if_they_had_come_there(klass: Watched) -> N
 
 def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
     own = Lab(loop_cache(), FIVE_BAR, klass.course)
-    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    do(own, c.Set("K2", 33), c.ChoosePath("clover"))
     lab = klass.student("Ada")
     klass.room.freeze(True)
     klass.look()
@@ -284,14 +284,14 @@ def test_a_setup_is_taken_by_all_even_when_frozen(klass: Watched) -> None:
 def sent_setup(course: Course) -> Setup:
     """That no step of the lessons has."""
     own = Lab(loop_cache(), FIVE_BAR, course)
-    do(own, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    do(own, c.Set("K2", 33), c.ChoosePath("clover"))
     return capture(own.simulation)
 
 
 @pytest.mark.parametrize("step", range(8))
 def test_a_setup_leaves_a_student_in_the_open_step(klass: Watched, step: int) -> None:
     lab, setup = klass.student("Ada"), sent_setup(klass.course)
-    do(lab, c.SetParameter("K1", 7.0), c.OpenLesson(LESSON))
+    do(lab, c.Set("K1", 7.0), c.OpenLesson(LESSON))
     do(lab, *[c.GoToStep(1)] * step)
     run(lab, 0.2)
     waits, before = lab.locked, lab.lessons.progress
@@ -331,7 +331,7 @@ def test_a_setup_ends_what_plays_and_nothing_is_noted_of_it(klass: Watched) -> N
 
 def test_a_step_that_is_opened_is_a_step_of_a_lesson(klass: Watched) -> None:
     lab, free = klass.student("Ada"), klass.student("Bob")
-    do(lab, c.SetParameter("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
+    do(lab, c.Set("K1", 7.0), c.OpenLesson(OTHER), *[c.GoToStep(1)] * 6)
     klass.room.push(TakeStep(LESSON, 5))
     klass.look()
     assert lab.message == ENGLISH("class.step_elsewhere")

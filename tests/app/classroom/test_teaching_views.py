@@ -71,7 +71,7 @@ def test_the_gains_of_a_lab_reach_the_class(course: Course) -> None:
     room, lab = Classroom(lambda: 0.0), Lab(loop_cache(), FIVE_BAR, course)
     room.join("lab", room.code, "Ada")
     sync = ClassSync(room, {"lab": (lab, True)}.get)
-    do(lab, c.SetParameter("K1", 123.0), c.SetParameter("K5", 7.0))
+    do(lab, c.Set("K1", 123.0), c.Set("K5", 7.0))
     sync.look()
     member = room.member("lab")
     assert member is not None

@@ -36,7 +36,7 @@ def watched(lab: Lab, frames: int) -> list[tuple[float, dict[str, dict[str, np.n
     """(time, what each robot's log said) at the end of each frame."""
     seen = []
     for _ in range(frames):
-        lab.advance(lab.simulation.rate * FRAME)
+        lab.advance(lab.simulation.settings.rate * FRAME)
         rows = {
             n: {k: v.copy() for k, v in r.shown().items()} for n, r in lab.simulation.runs.items()
         }
@@ -49,17 +49,17 @@ def eventful() -> tuple[Lab, list]:
     seen = watched(lab, 20)
     do(lab, c.Hold(True))
     seen += watched(lab, 15)
-    do(lab, c.Hold(False), c.SetParameter("K3", 300), c.SetParameter("payload", 0.1))
+    do(lab, c.Hold(False), c.Set("K3", 300), c.Set("payload", 0.1))
     do(
         lab,
         c.Grab(FOLLOWER, y(lab.simulation, FOLLOWER) + np.array([0.0, 0.03])),
     )
     seen += watched(lab, 15)
-    do(lab, c.Release(), c.ChoosePath("ellipse"), c.SetParameter("encoder_counts", 4000))
+    do(lab, c.Release(), c.ChoosePath("ellipse"), c.Set("encoder_counts", 4000))
     seen += watched(lab, 30)
-    do(lab, c.ChoosePath("segment"), c.SetRate(4.0))
+    do(lab, c.ChoosePath("segment"), c.Set("rate", 4.0))
     seen += watched(lab, 5)
-    do(lab, c.SetParameter("control_rate", 50), c.SetRate(0.125))
+    do(lab, c.Set("control_rate", 50), c.Set("rate", 0.125))
     seen += watched(lab, 20)
     return lab, seen
 
@@ -82,7 +82,7 @@ def test_replay_is_what_was_simulated_to_the_last_bit() -> None:
 
 def test_replay_after_going_on_from_the_past() -> None:
     lab = new_lab(1.0)
-    do(lab, c.LookAt(0.5), c.GoOn(), c.SetParameter("K1", 100))
+    do(lab, c.LookAt(0.5), c.GoOn(), c.Set("K1", 100))
     seen = watched(lab, 20)
     for name, trajectory in replayed(lab.simulation).items():
         assert np.allclose(np.diff(trajectory.t), 1e-3, atol=1e-9)
@@ -93,7 +93,7 @@ def test_replay_after_going_on_from_the_past() -> None:
 
 def test_two_kilohertz_gives_whole_milliseconds() -> None:
     lab = new_lab()
-    do(lab, c.SetParameter("control_rate", 2000))
+    do(lab, c.Set("control_rate", 2000))
     for k in range(12):  # every frame another path, so that no segment joins the next
         do(lab, c.SelectPoint(0), c.NudgePoint(0.0005 * (-1) ** k, 0.0))
         lab.advance(FRAME)
@@ -145,7 +145,7 @@ def test_picture_and_page_are_whole() -> None:
 @pytest.mark.parametrize("language", languages())
 def test_the_picture_says_what_it_shows(language: str) -> None:
     lab, words = new_lab(0.3), Words(language)
-    do(lab, c.SetParameter("K1", 650.0), c.SetParameter("payload", 0.1), c.Hold(True))
+    do(lab, c.Set("K1", 650.0), c.Set("payload", 0.1), c.Hold(True))
     run(lab, 0.3)
     do(lab, c.Hold(False), c.ChooseLaw("left", "waiting_clock"))
     finish(loop_cache())

@@ -59,7 +59,7 @@ def test_both_loops_have_the_same_bits(name: str) -> None:
 def test_it_runs_compiled_in_the_lab_with_its_gain_in_the_share_code() -> None:
     loops = loop_cache()
     lab = Lab(loops)
-    do(lab, c.ChooseLaw(LEFT, LAW), c.SetParameter("reach", 4.5))
+    do(lab, c.ChooseLaw(LEFT, LAW), c.Set("reach", 4.5))
     for _ in range(3):
         run(lab, FRAME)
         finish(loops)

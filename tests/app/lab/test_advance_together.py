@@ -28,15 +28,15 @@ def random_command(rng: np.random.Generator, lab: Lab) -> list[c.Command]:
     parameter = [("K1", rng.uniform(50, 1500)), ("K3", rng.uniform(0, 40))][rng.integers(2)]
     other = [("encoder_counts", 500), ("torque_limit", 1.0), ("across", "level_set")]
     choices: list[list[c.Command]] = [
-        [c.SetParameter(*parameter)],
-        [c.SetParameter(*other[rng.integers(len(other))])],
+        [c.Set(*parameter)],
+        [c.Set(*other[rng.integers(len(other))])],
         [c.ChoosePath(str(rng.choice(list(presets()))))],
         [c.Hold(bool(rng.integers(2)))],
         [c.Grab(SIDES[rng.integers(2)], target)],
         [c.Release()],
-        [c.SetRate(float(rng.choice([0.5, 1.0, 2.0])))],
+        [c.Set("rate", float(rng.choice([0.5, 1.0, 2.0])))],
         [c.SetRunning(bool(rng.integers(3)))],
-        [*(c.SetParameter(*each) for each in WILD), c.Hold(True)],
+        [*(c.Set(*each) for each in WILD), c.Hold(True)],
         [c.Reset()],
     ]
     return choices[rng.integers(len(choices))]
@@ -51,10 +51,10 @@ def played(together: bool) -> Iterator[list[Lab]]:
             if rng.random() < 0.04:
                 do(lab, *random_command(rng, lab))
         if together:
-            advance_together([lab.frame(lab.simulation.rate * FRAME) for lab in labs])
+            advance_together([lab.frame(lab.simulation.settings.rate * FRAME) for lab in labs])
         else:
             for lab in labs:
-                lab.advance(lab.simulation.rate * FRAME)
+                lab.advance(lab.simulation.settings.rate * FRAME)
         yield labs
 
 
@@ -114,7 +114,7 @@ def test_a_frame_is_one_call_per_kind_of_loop(monkeypatch: pytest.MonkeyPatch) -
 
     labs = compiled_labs(7)
     for lab, gain in zip(labs, range(400, 1100, 100), strict=True):
-        do(lab, c.SetParameter("K1", gain))
+        do(lab, c.Set("K1", gain))
     monkeypatch.setattr(CompiledLoop, "run_many", counted)
     advance_together([lab.frame(FRAME) for lab in labs])
     assert calls == [len(labs)] * len(SIDES)
@@ -144,7 +144,7 @@ def test_no_lab_keeps_the_log_of_all_ticks() -> None:
     for run in (run for lab in labs for run in lab.simulation.runs.values()):
         records = run.slot[0].records
         assert records.base is None and records.shape == (5, run.state.size + run.row.size + 2)
-    do(labs[0], *(c.SetParameter(*each) for each in WILD), c.Hold(True))
+    do(labs[0], *(c.Set(*each) for each in WILD), c.Hold(True))
     while labs[0].simulation.runs[FOLLOWER].diverged is None:
         advance_together([lab.frame(FRAME) for lab in labs])
     assert len(labs[0].simulation.runs[FOLLOWER].slot[0].records) == 1

@@ -19,9 +19,9 @@ from tests.support.lab import FRAME, do, new_lab, run, take_snapshot
 def blown_up() -> Lab:
     """The flexible robot, whose actual tip has become the output after a while."""
     lab = new_lab()
-    do(lab, c.ChooseRobot("flexible"), c.SetParameter("output", "redefined"))
+    do(lab, c.ChooseRobot("flexible"), c.Set("output", "redefined"))
     run(lab, 1.5)
-    do(lab, c.SetParameter("alpha", 1.0))
+    do(lab, c.Set("alpha", 1.0))
     run(lab, 0.5)
     assert any(each.diverged for each in lab.simulation.runs.values())
     return lab
@@ -46,7 +46,7 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
     assert len({end.tobytes() for end in ends}) > 5  # not only the beginnings of frames
     assert np.isfinite(ends).all()
     assert any(f"{LARGER:g}" in note for note in notes)
-    assert simulation.exaggeration == 1.0 and simulation.viewing is None
+    assert simulation.settings.larger == 1.0 and simulation.viewing is None
     assert lab.message == said
 
 
@@ -55,14 +55,14 @@ def test_the_last_moments_are_shown_slowly_and_larger(blown_up: Lab) -> None:
 )
 def test_of_a_rigid_robot_it_says_nothing_of_bending(entry: RobotEntry) -> None:
     lab = new_lab()
-    do(lab, c.ChooseRobot(entry.name), c.SetParameter("control_rate", 50))
-    do(lab, c.SetParameter("K1", 2500.0), c.SetParameter("K2", 200.0))
+    do(lab, c.ChooseRobot(entry.name), c.Set("control_rate", 50))
+    do(lab, c.Set("K1", 2500.0), c.Set("K2", 200.0))
     for _ in range(40):
         run(lab, 0.25)
         if any(each.diverged for each in lab.simulation.runs.values()):
             break
     do(lab, c.ReplayBreakdown())
-    assert lab.breakdown.replaying and lab.simulation.exaggeration == 1.0
+    assert lab.breakdown.replaying and lab.simulation.settings.larger == 1.0
     assert "Its last moments, slowly." in lab.message and "bending" not in lab.message
 
 
@@ -72,7 +72,7 @@ def test_any_action_of_the_user_ends_it_and_time_runs(blown_up: Lab) -> None:
     for command, then in (
         (c.SelectPoint(None), running),
         (c.SetRunning(), not running),
-        (c.SetParameter("K1", 300.0), running),
+        (c.Set("K1", 300.0), running),
     ):
         simulation.running = running
         do(lab, c.ReplayBreakdown())
@@ -80,7 +80,7 @@ def test_any_action_of_the_user_ends_it_and_time_runs(blown_up: Lab) -> None:
         assert lab.message.startswith(said.partition(". Reset")[0])  # which robot, and why
         assert lab.message_level == "replay"
         do(lab, command)
-        assert not lab.breakdown.replaying and simulation.exaggeration == 1.0
+        assert not lab.breakdown.replaying and simulation.settings.larger == 1.0
         assert simulation.viewing is None and simulation.running is then
         assert lab.message == said and lab.message_level == "error"
     simulation.running = True
@@ -120,7 +120,7 @@ def test_looking_elsewhere_ends_it(blown_up: Lab) -> None:
     do(blown_up, c.LookAt(0.02))
     run(blown_up, 0.1)
     simulation = blown_up.simulation
-    assert not blown_up.breakdown.replaying and simulation.exaggeration == 1.0
+    assert not blown_up.breakdown.replaying and simulation.settings.larger == 1.0
     assert simulation.viewing == pytest.approx(simulation.time - 0.02)
 
 

@@ -44,7 +44,7 @@ def change(lab: Lab, side: str, law: str) -> None:
 @given(side=st.sampled_from(SIDES), law=st.sampled_from(laws_for()))
 def test_the_robot_goes_on_from_where_it_is(side: str, law: str) -> None:
     lab = new_lab(0.5)
-    do(lab, c.SetParameter("K3", 500.0), c.Hold(True))
+    do(lab, c.Set("K3", 500.0), c.Hold(True))
     run(lab, 0.3)
     before, time = states(lab.simulation)[side], lab.simulation.time
     own = lab.simulation.runs[side]

@@ -88,7 +88,7 @@ def test_a_link_does_the_same_whether_at_once_or_in_parts(
     assert whole.simulation.parameters == parts.simulation.parameters
     assert (
         whole.simulation.laws == parts.simulation.laws
-        and whole.simulation.rate == parts.simulation.rate
+        and whole.simulation.settings.rate == parts.simulation.settings.rate
     )
 
 

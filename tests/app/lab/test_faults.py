@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 import onpath
-from onpath.app.lab.commands.parameters import ChooseRobot, SetParameter
+from onpath.app.lab.commands.robots import ChooseRobot
+from onpath.app.lab.commands.settings import Set
 from onpath.app.lab.commands.time import SetRunning
 from tests.support.lab import do, new_lab, run
 
@@ -35,9 +36,9 @@ def test_the_reason_of_a_stop_names_its_cause(
 
 def test_the_lab_says_before_the_run_that_a_control_is_too_slow() -> None:
     lab = new_lab()
-    do(lab, ChooseRobot("flexible"), SetRunning(False), SetParameter("control_rate", 100))
+    do(lab, ChooseRobot("flexible"), SetRunning(False), Set("control_rate", 100))
     run(lab, 0.05)
     assert lab.message_level == "warning" and "200 Hz" in lab.message
-    do(lab, SetParameter("control_rate", 1000))
+    do(lab, Set("control_rate", 1000))
     run(lab, 0.05)
     assert "200 Hz" not in lab.message

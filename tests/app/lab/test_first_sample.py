@@ -7,7 +7,6 @@ import pytest
 
 from onpath.app.lab.lesson_record import Beginning, record_of
 from onpath.lessons.record import ROBOTS
-from onpath.models.closed_loop.start import Start
 from tests.support.lab import new_lab, run
 
 
@@ -15,7 +14,7 @@ from tests.support.lab import new_lab, run
 def test_robots_that_begin_beside_the_path_are_there_at_once(beside: float) -> None:
     """Also across it: overshoot is a share of the largest value, which is that at the start."""
     lab = new_lab()
-    lab.simulation.start = Start(beside=beside)
+    lab.simulation.set(start_beside=beside)
     lab.simulation.reset()
     run(lab, 0.1)
     record = record_of(lab.simulation, Beginning(lab.simulation.run_number, 0.0))

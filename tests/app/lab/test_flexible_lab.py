@@ -33,7 +33,7 @@ STAGE = stage_of(FLEXIBLE.make(FLEXIBLE.parameters()))
 def flexible(seconds: float = 0.0, **changes: object) -> Lab:
     """A lab with the flexible link, some of its parameters changed."""
     lab = Lab(loop_cache(), FLEXIBLE)
-    do(lab, *[c.SetParameter(name, value) for name, value in changes.items()])
+    do(lab, *[c.Set(name, value) for name, value in changes.items()])
     run(lab, seconds)
     assert lab.message == ""
     return lab
@@ -105,7 +105,7 @@ def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
     critical = critical_alpha(own, lab.simulation.runs[FOLLOWER].shown()["q"][:3])
     assert 0.5 < critical < 0.9
     calm = extras(lab, "internal_energy")[-20:].max()
-    do(lab, c.SetParameter("alpha", 0.9))
+    do(lab, c.Set("alpha", 0.9))
     run(lab, 3.0)
     assert lab.message_level == "error" and str(UNSTABLE) in lab.message
     assert extras(lab, "internal_energy").max() > 100 * calm
@@ -114,7 +114,7 @@ def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
     do(lab, c.Reset())
     run(lab, 3.0)
     assert str(UNSTABLE) in lab.message  # still too high: it says so again
-    do(lab, c.SetParameter("alpha", 0.5), c.Reset())
+    do(lab, c.Set("alpha", 0.5), c.Reset())
     assert lab.message == ""
     run(lab, 2.5)
     assert lab.message == "" and max(r.distance for r in lab.simulation.runs.values()) < 2e-3
@@ -122,13 +122,13 @@ def test_past_the_critical_alpha_the_vibration_grows_and_is_caught() -> None:
 
 def test_each_robot_keeps_its_side() -> None:
     lab = Lab(loop_cache())
-    do(lab, c.SetParameter("K1", 900), c.ChoosePath("clover"))
+    do(lab, c.Set("K1", 900), c.ChoosePath("clover"))
     do(lab, c.ChooseRobot("flexible"))
     assert (
         lab.simulation.editor.design.name == "circle"
         and lab.simulation.parameters == FLEXIBLE.parameters()
     )
-    do(lab, c.SetParameter("rho", 0.3), c.ChoosePath("ellipse"))
+    do(lab, c.Set("rho", 0.3), c.ChoosePath("ellipse"))
     run(lab, 0.2)
     do(lab, c.ChooseRobot("five_bar"))
     assert lab.simulation.editor.design.name == "clover" and lab.simulation.parameters.K1 == 900
@@ -149,7 +149,7 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     plain, drawn = flexible(0.3), flexible(0.3)
     for lab in (plain, drawn):
         do(lab, c.Hold(True))
-    do(drawn, c.SetExaggeration(10))
+    do(drawn, c.Set("larger", 10))
     run(plain, 0.3)
     run(drawn, 0.3)
     for name, state in states(plain.simulation).items():
@@ -161,14 +161,14 @@ def test_exaggeration_is_drawn_and_said_but_not_simulated() -> None:
     np.testing.assert_allclose(two.tip - rigid, 10 * (one.tip - rigid), atol=2e-3)
     assert one.deflection == two.deflection != 0.0
     np.testing.assert_array_equal(one.trace[-1], two.trace[-1])
-    do(drawn, c.SetExaggeration(float("nan")))
-    assert drawn.simulation.exaggeration == 10 and drawn.message
+    do(drawn, c.Set("larger", float("nan")))
+    assert drawn.simulation.settings.larger == 10 and drawn.message
 
 
 @pytest.mark.parametrize(("name", "value"), [("modes", 5), ("plant", "unit_modes")])
 def test_a_structural_change_starts_anew_and_fits_what_is_kept(name: str, value: object) -> None:
     lab = flexible(0.2)
-    do(lab, c.SetParameter(name, value))
+    do(lab, c.Set(name, value))
     assert lab.simulation.time == 0.0 and not len(lab.simulation.history)
     run(lab, 0.2)
     sizes = dict(lab.simulation.sample_layout.fields)

@@ -28,7 +28,7 @@ def test_both_robots_go_on_from_where_they_are() -> None:
         simulation.robot,
     )
     for payload in (0.02, 0.05, 0.0):
-        do(lab, c.SetParameter("payload", payload))
+        do(lab, c.Set("payload", payload))
         assert (simulation.run_number, simulation.time) == (runs, time)
         for side, state in states(simulation).items():
             assert np.array_equal(state, before[side])
@@ -39,7 +39,7 @@ def test_both_robots_go_on_from_where_they_are() -> None:
 def test_the_tip_sags_under_the_load_and_comes_back() -> None:
     lab, distances = flexible_lab(2.0), list[float]()
     for payload in (0.0, 0.02, 0.0):
-        do(lab, c.SetParameter("payload", payload))
+        do(lab, c.Set("payload", payload))
         run(lab, 2.0)
         distances.append(lab.simulation.runs[FOLLOWER].distance)
     assert distances[1] > 1e-3 > 5e-4 > max(distances[0], distances[2])
@@ -51,7 +51,7 @@ def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
     lab = flexible_lab(0.7)
     ends = list[dict[str, np.ndarray]]()
     for payload in (0.02, 0.04, 0.0):
-        do(lab, c.SetParameter("payload", payload))
+        do(lab, c.Set("payload", payload))
         run(lab, 0.5)
         ends.append({side: own.row.copy() for side, own in lab.simulation.runs.items()})
     for side, own in lab.simulation.runs.items():
@@ -65,13 +65,13 @@ def test_every_millisecond_of_loaded_and_unloaded_motion_is_replayed() -> None:
 @pytest.mark.thorough
 def test_going_back_to_before_the_load_goes_on_with_it() -> None:
     lab = flexible_lab(1.0)
-    do(lab, c.SetParameter("payload", 0.02))
+    do(lab, c.Set("payload", 0.02))
     run(lab, 1.0)
     do(lab, c.LookAt(1.5), c.GoOn())
     assert lab.simulation.time == pytest.approx(0.5, abs=0.05)
     run(lab, 0.5)
     assert_sound(lab)
-    do(lab, c.SetParameter("payload", 0.0), c.UndoGoOn())
+    do(lab, c.Set("payload", 0.0), c.UndoGoOn())
     assert all(own.robot is lab.simulation.robot for own in lab.simulation.runs.values())
     do(lab, c.SetRunning(True))
     run(lab, 0.5)
@@ -81,12 +81,12 @@ def test_going_back_to_before_the_load_goes_on_with_it() -> None:
 
 def test_a_typed_law_goes_on_too() -> None:
     lab = flexible_lab(0.2)
-    do(lab, c.SetParameter("output", "redefined"))
+    do(lab, c.Set("output", "redefined"))
     for side in SIDES:
         do(lab, c.TypeLaw(side, "across = -K1*xi - K2*dxi; along = -K5*(dtheta - speed)"))
     run(lab, 0.5)
     time = lab.simulation.time
-    do(lab, c.SetParameter("payload", 0.02))
+    do(lab, c.Set("payload", 0.02))
     run(lab, 0.3)
     assert lab.simulation.time == pytest.approx(time + 0.3, abs=0.02)
     assert_sound(lab)
@@ -97,13 +97,13 @@ def test_a_robot_with_other_states_begins_anew_and_the_user_is_told(
     name: str, value: int | str | float
 ) -> None:
     lab = flexible_lab(0.3)
-    do(lab, c.SetParameter(name, value))
+    do(lab, c.Set(name, value))
     assert lab.simulation.time == 0 and "restarted" in lab.message
 
 
 def test_a_load_with_another_number_of_modes_begins_anew() -> None:
     lab = flexible_lab(0.3)
-    do(lab, c.SetParameter("payload", 0.02), c.SetParameter("modes", 2))
+    do(lab, c.Set("payload", 0.02), c.Set("modes", 2))
     assert lab.simulation.time == 0
     run(lab, 0.2)
     do(lab, c.ResetParameters())

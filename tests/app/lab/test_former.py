@@ -125,7 +125,7 @@ def test_a_share_code_moves_as_it_moved(name: str) -> None:
     for side, place in case["end_points"].items():
         assert y(lab.simulation, side) == pytest.approx(place, abs=1e-9)  # of another machine
     told = opened(case["code"])
-    do(told, *(c.SetParameter(n, v) for n, v in written_out(case).items()), c.Reset())
+    do(told, *(c.Set(n, v) for n, v in written_out(case).items()), c.Reset())
     for side, state in held(told).items():
         assert np.array_equal(state, moved[side])
 
@@ -279,7 +279,12 @@ def test_a_share_code_sets_up_the_usual_laws(code: str) -> None:
         assert lab.simulation.earlier["two_link_arm"][0].K2 == 33.0
     else:
         simulation = lab.simulation
-        told = simulation.entry.name, simulation.rate, simulation.copy, simulation.exaggeration
+        told = (
+            simulation.entry.name,
+            simulation.settings.rate,
+            simulation.settings.copy,
+            simulation.settings.larger,
+        )
         assert told == ("flexible", 0.5, False, 4.0)
 
 

@@ -149,7 +149,7 @@ def test_older_stretches_are_fewer_and_as_exact() -> None:
     lab = new_lab()
     for k in range(2400):
         if k % 37 == 0:
-            do(lab, c.SetParameter("K2", 20.0 + k % 5))
+            do(lab, c.Set("K2", 20.0 + k % 5))
         lab.simulation.simulate(17)
     segments, name = lab.simulation.history.all(), FOLLOWER
     assert sum(s.ticks for s in segments) == 2400 * 17
@@ -221,7 +221,7 @@ def busy(seconds: float = 1.0) -> Lab:
     lab = new_lab(0.3)
     do(lab, c.Hold(True))
     run(lab, seconds / 3)
-    do(lab, c.Hold(False), c.SetParameter("K3", 200))
+    do(lab, c.Hold(False), c.Set("K3", 200))
     do(
         lab,
         c.Grab(TRACKER, y(lab.simulation, TRACKER) + np.array([0.02, 0.0])),
@@ -278,7 +278,7 @@ def test_looking_back_by_keys_stops_at_both_ends() -> None:
 @pytest.mark.parametrize("values", [{}, {"K3": 300, "encoder_counts": 4000}, {"control_rate": 50}])
 def test_going_on_gives_the_same_future_to_the_last_bit(values: dict[str, float]) -> None:
     lab = new_lab()
-    do(lab, *[c.SetParameter(name, value) for name, value in values.items()])
+    do(lab, *[c.Set(name, value) for name, value in values.items()])
     run(lab, 1.0)
     passed: dict[int, dict[str, np.ndarray]] = {}
     for _ in range(40):
@@ -400,7 +400,7 @@ def test_an_input_stores_its_settings_exactly(
     "change",
     [
         lambda k: c.Grab(FOLLOWER, np.array([0.01 * k, 0.15])),
-        lambda k: c.SetParameter("K1", 400.0 + k),
+        lambda k: c.Set("K1", 400.0 + k),
     ],
     ids=["pull", "slider"],
 )

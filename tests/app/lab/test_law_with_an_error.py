@@ -168,7 +168,7 @@ def test_it_is_not_chosen(loop_cache: LoopCache, laws: list[str]) -> None:
     [
         ("on_two_links", c.ChooseRobot("two_link_arm")),
         ("in_space", c.ChooseRobot("spatial_arm")),
-        ("with_encoders", c.SetParameter("encoder_counts", 2000.0)),
+        ("with_encoders", c.Set("encoder_counts", 2000.0)),
     ],
 )
 def test_where_it_fails_the_usual_law_takes_its_place(
@@ -220,7 +220,7 @@ def test_whatever_is_changed_the_lab_goes_on(
                 wanted[side] = law
         elif draw == 4:
             counts = float(rng.choice([0.0, 2000.0]))
-            do(lab, c.SetParameter("encoder_counts", counts))
+            do(lab, c.Set("encoder_counts", counts))
         else:
             do(lab, c.Reset(), c.Undo())
         frames(lab, loop_cache)

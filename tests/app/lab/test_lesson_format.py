@@ -14,7 +14,6 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.dry_runs.course_check import lab_at, play
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.setups.setup import RATES as LAB_RATES
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.lesson_view import LessonView
 from onpath.lessons.action_schema import Action, Script
@@ -27,8 +26,8 @@ from onpath.lessons.progress import Answer, Notes
 from onpath.lessons.record import Record
 from onpath.lessons.schema import Choice, NumberQuestion, Option, Quiz, Step, Text
 from onpath.lessons.task_schema import Better, Task
-from onpath.lessons.vocabulary.names import RATES
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import RATES
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.format_texts import FORMAT_LESSON, FORMAT_REFERENCE
 from tests.support.lab import FOLLOWER, FRAME, do, loop_cache, run
@@ -68,20 +67,20 @@ def test_a_step_starts_where_it_says_and_the_next_one_on_the_path(lab: Lab) -> N
 def test_slow_motion_shows_the_same_motion_more_slowly(lab: Lab) -> None:
     """Time goes at a quarter of the chosen rate from 0.2 s on, and at that rate after the end."""
     do(lab, c.GoToStep(1), c.Predict(), c.GoToStep(1))
-    lab.simulation.rate = 2.0
+    lab.simulation.set(rate=2.0)
     do(lab, c.PlayStep())
     seen = list[tuple[float, float]]()
     while lab.lessons.playing:
         before = lab.simulation.time
         lab.drain()
-        lab.advance(lab.simulation.rate * FRAME)
+        lab.advance(lab.simulation.settings.rate * FRAME)
         if lab.simulation.time > before:
             seen.append((before, lab.simulation.time - before))
         assert len(seen) < 2000
     early = [step for time, step in seen[:5]]
     late = [step for time, step in seen[-20:-1]]
     assert max(early) == pytest.approx(2 * FRAME, abs=1.1e-3)
-    assert max(late) == pytest.approx(FRAME / 2, abs=1.1e-3) and lab.simulation.rate == 2.0
+    assert max(late) == pytest.approx(FRAME / 2, abs=1.1e-3) and lab.simulation.settings.rate == 2.0
     assert lab.simulation.run_number >= 1  # it began anew at its third action
 
 
@@ -97,11 +96,7 @@ def test_what_is_measured_does_not_depend_on_the_rate(course: Course) -> None:
     np.testing.assert_allclose(ends[0], ends[1], atol=2e-3)
 
 
-def test_rates_are_those_of_the_lab() -> None:
-    assert (LAB_RATES[0], LAB_RATES[-1]) == RATES
-
-
-@given(st.lists(st.tuples(st.floats(0, 5), st.sampled_from(LAB_RATES)), max_size=6))
+@given(st.lists(st.tuples(st.floats(0, 5), st.sampled_from(RATES)), max_size=6))
 def test_a_script_takes_as_long_as_its_rates_say(changes: list[tuple[float, float]]) -> None:
     changes = sorted({at: rate for at, rate in changes}.items())
     script = Script(tuple(Action(at=at, rate=rate) for at, rate in changes), until=5.0)
@@ -213,7 +208,7 @@ def test_the_lab_compares_a_run_with_the_one_before(lab: Lab) -> None:
     lab.lessons.open_at(NAME, TASK, lab)
     do(lab, c.Hold(True))
     run(lab, 2.0)
-    do(lab, c.Hold(False), c.SetParameter("K1", 1600), c.SetParameter("K2", 80), c.Reset())
+    do(lab, c.Hold(False), c.Set("K1", 1600), c.Set("K2", 80), c.Reset())
     assert "hold" not in lab.lessons.notes.tasks
     do(lab, c.Hold(True))
     run(lab, 2.0)
@@ -230,16 +225,16 @@ def test_the_phase_plane_is_in_a_snapshot_only_when_it_is_drawn(lab: Lab) -> Non
     do(lab, c.CloseLesson())
     run(lab, 0.2)
     assert take_page_snapshot(lab, 1.0).phase.size == 0
-    do(lab, c.AskPhase(True))
+    do(lab, c.Set("phase", True))
     assert take_page_snapshot(lab, 1.0).phase.size > 0
 
 
 @pytest.mark.parametrize(
     ("there", "back", "name"),
     [
-        (c.SetParameter("stiction", 0.1), c.SetParameter("stiction", 0.0), "stiction"),
-        (c.SetWall(True), c.SetWall(False), "wall"),
-        (c.SetStart("theta", 1.0), None, "start"),
+        (c.Set("stiction", 0.1), c.Set("stiction", 0.0), "stiction"),
+        (c.Set("wall", True), c.Set("wall", False), "wall"),
+        (c.Set("start_theta", 1.0), None, "start"),
         (c.ChooseLaw("left", "waiting_clock"), c.ChooseLaw("left", "trajectory_tracking"), "left"),
         (c.ChoosePath("circle"), c.ChoosePath("ellipse"), "path"),
     ],

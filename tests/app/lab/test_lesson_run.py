@@ -52,7 +52,7 @@ def lab(course: Course) -> Lab:
 
 def test_a_scene_sets_the_lab_up_and_the_free_lab_comes_back(course: Course) -> None:
     lab = Lab(loop_cache(), FIVE_BAR, course)
-    do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"))
+    do(lab, c.Set("K2", 33), c.ChoosePath("clover"))
     do(lab, c.OpenLesson(NAME))
     assert (
         lab.simulation.parameters.K1 == 300
@@ -165,7 +165,7 @@ def test_the_marks_of_a_passed_task_stay_until_the_next_attempt(lab: Lab) -> Non
     do(lab, c.GoToStep(3), c.GoToStep(3), c.Hold(True))
     run(lab, 2.0)
     assert all(verdict.passed for verdict in lab.lessons.verdicts["hold"])
-    do(lab, c.SetParameter("K1", 20), c.SetParameter("K2", 1), c.MoveHand(0.1, 0.1))
+    do(lab, c.Set("K1", 20), c.Set("K2", 1), c.MoveHand(0.1, 0.1))
     run(lab, 2.0)  # far off
     assert all(verdict.passed for verdict in lab.lessons.verdicts["hold"])
     do(lab, c.Reset())
@@ -255,7 +255,7 @@ def test_what_is_given_up_half_way_has_not_been_seen(lab: Lab, command: object) 
 def test_progress_comes_back_from_json(lab: Lab, course: Course) -> None:
     do(lab, c.TakeStep("01-a", 6), c.ShowHint("hold"), c.TakeStep("01-a", 0))
     do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
-    do(lab, c.SetPresenting(True))
+    do(lab, c.Set("presenting", True))
     kept = msgspec.json.encode(lab.lessons.progress)
     again = LessonRun(course, read_progress(msgspec.json.decode(kept)))
     assert again.progress == lab.lessons.progress

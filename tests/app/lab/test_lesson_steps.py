@@ -121,11 +121,11 @@ def set_up_again(lab: Lab) -> Lab:
 def played(lab: Lab) -> Lab:
     """The script, from its beginning, seen at any speed."""
     do(lab, c.Predict())
-    rate = lab.simulation.rate
+    rate = lab.simulation.settings.rate
     c.PlayStep().apply(lab)  # and nothing of the script yet
     if lab.lessons.playing:
-        assert lab.simulation.rate == rate and lab.simulation.running
-        lab.simulation.rate = 1.0
+        assert lab.simulation.settings.rate == rate and lab.simulation.running
+        lab.simulation.set(rate=1.0)
         assert_at_the_beginning(lab)
     run(lab, 0.3)
     return lab
@@ -165,18 +165,18 @@ def pushed(step: tuple[str, int]) -> Callable[[Lab], Lab]:
 def pushed_setup(lab: Lab) -> Lab:
     """The teacher sends a set-up; then the student comes back."""
     name = lab.lessons.progress.lesson
-    do(lab, TakeSetup(Setup(robot="flexible", rate=2.0)), c.OpenLesson(name))
+    do(lab, TakeSetup(Setup(robot="flexible", settings={"rate": 2.0})), c.OpenLesson(name))
     return arrived(lab)
 
 
 MEDDLING = (
-    asked(c.SetParameter("K1", 77.0), c.SetParameter("K2", 7.0)),
-    asked(c.SetParameter("speed", -2.0), c.SetParameter("task", "position")),
-    asked(c.SetParameter("payload", 0.2), c.SetParameter("control_rate", 50)),
+    asked(c.Set("K1", 77.0), c.Set("K2", 7.0)),
+    asked(c.Set("speed", -2.0), c.Set("task", "position")),
+    asked(c.Set("payload", 0.2), c.Set("control_rate", 50)),
     asked(c.ChoosePath("clover")),
     asked(c.SelectPoint(2), c.NudgePoint(0.003, 0.0)),
-    asked(*(c.ChooseRobot(name) for name in ROBOTS), c.SetParameter("K1", 55.0)),
-    asked(c.SetRate(0.25), c.SetCopy(False)),
+    asked(*(c.ChooseRobot(name) for name in ROBOTS), c.Set("K1", 55.0)),
+    asked(c.Set("rate", 0.25), c.Set("copy", False)),
     asked(c.Hold(True)),
     asked(c.MoveHand(0.02, 0.01)),
     asked(c.SetRunning(True)),
@@ -184,12 +184,18 @@ MEDDLING = (
     asked(c.SetRunning(True), c.LookAt(0.05), c.GoOn()),
     asked(*(c.ChooseLaw(side, "waiting_clock") for side in SIDES)),
     asked(c.TypeLaw(RIGHT, "across = -300*xi - 30*dxi; along = -5*dtheta")),
-    asked(c.SetWall(True), c.PlaceWall(0.04, 0.01, 0.3)),
-    asked(c.SetHoldDirection("both"), c.Hold(True)),
-    asked(c.SetStart("beside", 0.01), c.SetStart("clock_offset", 0.1), c.Reset()),
-    asked(c.SetParameter("speed_profile", "sine"), c.SetParameter("ramp", 3.0)),
-    asked(c.SetParameter("tracker_integral", "on"), c.SetParameter("K3", 500.0)),
-    asked(c.SetExaggeration(5.0), c.Pulse()),
+    asked(
+        c.Set("wall", True),
+        *(
+            c.Set(f"wall_{name}", value)
+            for name, value in (("z1", 0.04), ("z2", 0.01), ("angle", 0.3))
+        ),
+    ),
+    asked(c.Set("hold_direction", "both"), c.Hold(True)),
+    asked(c.Set("start_beside", 0.01), c.Set("start_clock_offset", 0.1), c.Reset()),
+    asked(c.Set("speed_profile", "sine"), c.Set("ramp", 3.0)),
+    asked(c.Set("tracker_integral", "on"), c.Set("K3", 500.0)),
+    asked(c.Set("larger", 5.0), c.Pulse()),
 )
 meddling = st.sampled_from(MEDDLING)
 ways = st.one_of(
@@ -256,7 +262,7 @@ def test_what_a_step_keeps_is_what_the_step_before_has(
         [c.OpenLesson("01-a"), *3 * [c.GoToStep(1)], c.GoToStep(-1)],
     ):
         lab = Lab(loop_cache(), course=Course(course.lessons))
-        do(lab, *ways, c.SetParameter("K1", 50.0), c.BeginStepAnew())
+        do(lab, *ways, c.Set("K1", 50.0), c.BeginStepAnew())
         assert lab.lessons.index == 2
         assert (lab.simulation.parameters.K1, lab.simulation.parameters.K2) == (300.0, 30.0)
 

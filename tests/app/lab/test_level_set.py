@@ -33,7 +33,7 @@ def level_set(path: str = "circle") -> Lab:
     lab = new_lab()
     do(lab, c.ChoosePath(path))
     run(lab, 0.4)
-    do(lab, c.SetParameter("across", "level_set"))
+    do(lab, c.Set("across", "level_set"))
     run(lab, 0.2)
     return lab
 
@@ -103,7 +103,7 @@ def test_what_had_another_unit_is_in_no_plot_picture_or_task() -> None:
     lab = new_lab(0.5)
     begin = Beginning(lab.simulation.run_number, 0.0)
     assert "across" in record_of(lab.simulation, begin).values["follower"]
-    do(lab, c.SetParameter("across", "level_set"))
+    do(lab, c.Set("across", "level_set"))
     run(lab, 0.5)
     values = record_of(lab.simulation, begin).values["follower"]
     assert "distance" in values and not {"across", "across_rate"} & set(values)

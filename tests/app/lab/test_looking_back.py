@@ -109,7 +109,7 @@ def test_only_going_on_forgets_and_undo_brings_all_of_it_back(actions: list[str]
 def test_a_restored_lab_continues_as_if_nothing_had_happened() -> None:
     lab, twin = new_lab(), new_lab()
     for each in (lab, twin):
-        do(each, c.SetParameter("K3", 200), c.SetParameter("encoder_counts", 4000))
+        do(each, c.Set("K3", 200), c.Set("encoder_counts", 4000))
         run(each, 0.5)
         do(each, c.Hold(True))
         run(each, 0.5)
@@ -141,7 +141,7 @@ def test_a_robot_that_had_stopped_stands_still_again_after_undo() -> None:
 def test_what_was_set_meanwhile_stays_when_the_past_comes_back() -> None:
     lab = new_lab(0.6)
     end = y(lab.simulation, FOLLOWER)
-    do(lab, c.LookAt(0.4), c.GoOn(), c.ChoosePath("segment"), c.SetParameter("K1", 300))
+    do(lab, c.LookAt(0.4), c.GoOn(), c.ChoosePath("segment"), c.Set("K1", 300))
     run(lab, 0.8)
     do(lab, c.UndoGoOn())
     assert lab.simulation.time == pytest.approx(0.6, abs=0.02)

@@ -122,7 +122,7 @@ def test_the_first_sample_is_the_same_whenever_its_loop_comes(
     late, soon = Lab(loop_cache), new_lab()
     for lab in (late, soon):
         lab.simulation.running = False
-        do(lab, c.SetStart("beside", 0.01), c.Reset())
+        do(lab, c.Set("start_beside", 0.01), c.Reset())
         run(lab, FRAME)
     gate.set()
     finish(loop_cache)
@@ -132,14 +132,16 @@ def test_the_first_sample_is_the_same_whenever_its_loop_comes(
 
 def test_commands_keep_their_order_while_a_step_waits(loop_cache: LoopCache, gate: Gate) -> None:
     lab = Lab(loop_cache)
-    do(lab, c.SetRunning(False), c.StepOnce(), c.StepOnce(), c.SetRate(2.0))
+    do(lab, c.SetRunning(False), c.StepOnce(), c.StepOnce(), c.Set("rate", 2.0))
     run(lab, 0.5)
-    assert lab.simulation.time == 0.0 and lab.simulation.rate == 1.0 and lab.waits
+    assert lab.simulation.time == 0.0 and lab.simulation.settings.rate == 1.0 and lab.waits
     gate.set()
     finish(loop_cache)
     run(lab, 0.1)
     assert (
-        lab.simulation.time == pytest.approx(2e-3) and lab.simulation.rate == 2.0 and not lab.waits
+        lab.simulation.time == pytest.approx(2e-3)
+        and lab.simulation.settings.rate == 2.0
+        and not lab.waits
     )
 
 
@@ -152,7 +154,7 @@ def test_settings_that_need_another_loop_stop_time_until_it_is_made(
     do(lab, c.TypeLaw(LEFT, law(0.125)))
     wait_for(lambda: (run(lab, FRAME), lab.simulation.laws[LEFT] == law(0.125))[1], LONG)
     gate.clear()
-    do(lab, c.SetParameter("encoder_counts", 4096.0))
+    do(lab, c.Set("encoder_counts", 4096.0))
     time = lab.simulation.time
     run(lab, 0.5)
     assert lab.simulation.time == time and lab.waits
@@ -230,7 +232,7 @@ def test_nothing_is_built_on_the_thread_of_the_simulation(
     lab = Lab(loop_cache)
     asked: list[c.Command] = [c.ChooseRobot(robot)]
     asked += [c.ChooseLaw(RIGHT, each) for each in laws_for(robot)[:2]]
-    asked += [c.SetParameter("encoder_counts", 2000.0), c.Hold(on=True), c.ChoosePath("arc")]
+    asked += [c.Set("encoder_counts", 2000.0), c.Hold(on=True), c.ChoosePath("arc")]
     for command in asked:
         do(lab, command)
         run(lab, 0.4)
@@ -359,7 +361,7 @@ def test_a_lab_keeps_the_loop_that_it_uses() -> None:
     for number in range(MOST):
         loop_cache._keep(key(5000 + number), CodedError("error.law_cannot_run"))
     for each in (lab, same):
-        do(each, c.SetParameter("K1", 500.0), c.Hold(on=True))
+        do(each, c.Set("K1", 500.0), c.Hold(on=True))
         run(each, 0.3)
         do(each, c.LookAt(0.2), c.GoOn())
         run(each, 0.3)
@@ -474,7 +476,7 @@ def test_what_a_speed_limit_needs_is_made_in_the_background(
     lab.advance(FRAME)
     finish(loop_cache)
     assert speed_limit._on_path.cache_info().misses == 1
-    do(lab, c.SetParameter("torque_limit", 0.5), c.SetParameter("at_limit", "slow_down"))
+    do(lab, c.Set("torque_limit", 0.5), c.Set("at_limit", "slow_down"))
     lab.advance(FRAME)
     found = speed_limit._on_path.cache_info()
     assert found.misses == 1 and found.hits > 0

@@ -49,7 +49,7 @@ def off_the_ellipse(points: Array, b: float, d: float, centre: float) -> Array:
 
 def flexible(**plane: float) -> Lab:
     lab = new_lab()
-    do(lab, c.ChooseRobot("flexible"), *[c.SetParameter(*each) for each in plane.items()])
+    do(lab, c.ChooseRobot("flexible"), *[c.Set(*each) for each in plane.items()])
     assert lab.message_level == "info"
     return lab
 
@@ -90,7 +90,7 @@ def test_another_plane_in_the_lab_begins_a_run_there() -> None:
     run(lab, 0.3)
     runs, before = lab.simulation.run_number, take_snapshot(lab, 1.0)
     for name, value in PLANE.items():
-        do(lab, c.SetParameter(name, value))
+        do(lab, c.Set(name, value))
     assert "restarted" in lab.message and lab.simulation.run_number > runs
     assert (
         take_snapshot(lab, 1.0).key != before.key
@@ -108,7 +108,7 @@ def test_a_plane_out_of_reach_is_refused_and_changes_nothing(name: str, value: f
     lab = flexible(centre=0.15, d=0.6)
     run(lab, 0.2)
     before, robot = states(lab.simulation), lab.simulation.robot
-    do(lab, c.SetParameter(name, value))
+    do(lab, c.Set(name, value))
     assert lab.message and lab.message_level == "warning"
     assert lab.simulation.robot is robot
     for side, state in states(lab.simulation).items():

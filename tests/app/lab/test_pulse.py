@@ -36,7 +36,7 @@ def test_without_damping_it_goes_on_swinging_and_with_damping_it_does_not() -> N
     left = {}
     for k2 in (2.0, 40.0):
         lab = new_lab()
-        do(lab, c.SetParameter("K2", k2), c.SetParameter("K3", 0.0))
+        do(lab, c.Set("K2", k2), c.Set("K3", 0.0))
         run(lab, 1.0)
         do(lab, c.Pulse())
         run(lab, 1.0)
@@ -59,9 +59,9 @@ def test_a_hand_that_pulls_already_is_not_taken_away() -> None:
 def test_it_pulls_each_robot_where_it_is() -> None:
     """Two robots under the same law are moved alike, though one is at another place."""
     lab = new_lab()
-    do(lab, c.ChooseLaw("left", "path_following"), c.SetParameter("K3", 0.0))
+    do(lab, c.ChooseLaw("left", "path_following"), c.Set("K3", 0.0))
     run(lab, 0.5)
-    do(lab, c.Hold(True, "left"), c.SetCopy(False))
+    do(lab, c.Hold(True, "left"), c.Set("copy", False))
     run(lab, 0.4)
     do(lab, c.Hold(False, "left"))
     run(lab, 2.0)

@@ -22,7 +22,7 @@ ARM = ROBOTS["spatial_arm"]
 def risen(rise: float, seconds: float = 0.0) -> Lab:
     """A lab with the spatial arm on a circle that rises."""
     lab = Lab(loop_cache(), ARM)
-    do(lab, c.SetParameter("rise", rise))
+    do(lab, c.Set("rise", rise))
     run(lab, seconds)
     return lab
 
@@ -63,7 +63,7 @@ def test_it_stays_over_every_path_and_undo_does_not_flatten_it() -> None:
         run(lab, 1.5)
         assert lab.simulation.editor.rise == lab.simulation.parameters.rise == 0.02  # pyright: ignore
         assert np.ptp(take_page_snapshot(lab, 1.0).path.points[:, 2]) == pytest.approx(0.04, 0.02)
-    do(lab, c.SetParameter("rise", 0.0))
+    do(lab, c.Set("rise", 0.0))
     run(lab, 1.5)
     assert lab.simulation.editor.curve.dimension == 2
 
@@ -71,7 +71,7 @@ def test_it_stays_over_every_path_and_undo_does_not_flatten_it() -> None:
 @pytest.mark.parametrize("rise", [0.2, -1.0, float("nan")])
 def test_a_rise_out_of_range_is_refused_and_changes_nothing(rise: float) -> None:
     lab = risen(0.02)
-    do(lab, c.SetParameter("rise", rise))
+    do(lab, c.Set("rise", rise))
     assert lab.simulation.parameters.rise == lab.simulation.editor.rise == 0.02  # pyright: ignore
     assert lab.notice[1] == "warning"
 
@@ -90,6 +90,6 @@ def test_a_share_code_brings_back_the_path_with_its_rise() -> None:
 
 def test_a_robot_that_stays_in_its_plane_has_no_rise() -> None:
     lab = Lab(loop_cache(), FIVE_BAR)
-    do(lab, c.SetParameter("rise", 0.02))
+    do(lab, c.Set("rise", 0.02))
     assert lab.simulation.editor.rise == 0.0 and lab.simulation.editor.curve.dimension == 2
     assert lab.message

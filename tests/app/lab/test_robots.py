@@ -217,9 +217,9 @@ def test_what_it_did_can_be_taken_home(entry: RobotEntry) -> None:
 def test_its_share_code_brings_back_the_same_lab(entry: RobotEntry) -> None:
     lab = lab_with(entry, 0.1)
     simulation = lab.simulation
-    do(lab, c.SetParameter("K1", 350.0), c.ChoosePath("ellipse"))
+    do(lab, c.Set("K1", 350.0), c.ChoosePath("ellipse"))
     own = next(n for n, spec in specs(entry.parameters).items() if spec.group == "realism")
-    do(lab, c.SetParameter(own, specs(entry.parameters)[own].on or 100))
+    do(lab, c.Set(own, specs(entry.parameters)[own].on or 100))
     simulation.editor.advance(1.0)
     setup = capture(simulation)
     again = Simulation(loop_cache())

@@ -15,7 +15,7 @@ from onpath.app.lab.commands import (
     ChoosePath,
     ChooseRobot,
     SelectPoint,
-    SetParameter,
+    Set,
     Undo,
 )
 from onpath.app.lab.lab import Lab
@@ -65,9 +65,7 @@ def everything(lab: Lab) -> list[Any]:
     ]
     kept += [
         editor.version,
-        lab.simulation.rate,
-        lab.simulation.copy,
-        lab.simulation.exaggeration,
+        lab.simulation.settings,
         lab.simulation.time,
     ]
     kept += [id(run) for run in lab.simulation.runs.values()] + [
@@ -147,7 +145,7 @@ def test_robots_start_on_the_new_path_and_undo_brings_the_old() -> None:
 
 def test_every_side_is_kept_and_those_not_named_are_as_new() -> None:
     lab = new_lab()
-    do(lab, SetParameter("K3", 100.0), ChooseRobot(FLEXIBLE), SetParameter("alpha", 0.25))
+    do(lab, Set("K3", 100.0), ChooseRobot(FLEXIBLE), Set("alpha", 0.25))
     do(lab, ChoosePath("segment"))
     kept = capture(lab.simulation)
     assert kept.robot == FLEXIBLE and set(kept.robots) == {RIGID, FLEXIBLE}
@@ -162,8 +160,8 @@ def test_every_side_is_kept_and_those_not_named_are_as_new() -> None:
 
 def test_numbers_with_a_tail_are_rounded_within_their_range() -> None:
     lab = new_lab()
-    do(lab, SetParameter("target", math.pi), SetParameter("K1", 0.1 + 0.2))
-    do(lab, SetParameter("payload", 1e-300))
+    do(lab, Set("target", math.pi), Set("K1", 0.1 + 0.2))
+    do(lab, Set("payload", 1e-300))
     kept = capture(lab.simulation)
     assert kept.robots[RIGID].parameters == {"K1": 0.3, "target": 3.14159}
     restore(lab.simulation, kept)
@@ -186,9 +184,9 @@ BAD: dict[str, tuple[Setup, str]] = {
     "option": (Setup(robots={RIGID: RobotSetup({"control_rate": 3})}), "not one of"),
     "script": (Setup(robots={RIGID: RobotSetup({"<script>": 3})}), "matching"),
     "list": (Setup(robots={RIGID: RobotSetup({"K1": [1.0]})}), "Expected"),  # pyright: ignore[reportArgumentType]
-    "rate": (Setup(rate=9.0), "speed: 9"),
-    "no rate": (Setup(rate=math.nan), "speed: nan"),
-    "exaggeration": (Setup(exaggeration=0.0), "exaggeration: 0"),
+    "rate": (Setup(settings={"rate": 9.0}), "rate: 9"),
+    "no rate": (Setup(settings={"rate": math.nan}), "rate: nan"),
+    "exaggeration": (Setup(settings={"larger": 0.0}), "larger: 0"),
     "path": (own(name="spiral"), "unknown path"),
     "preset with numbers": (own(name="circle", numbers=(1, 2)), "no numbers"),
     "no points": (own(name="edited"), "2 to 24 points"),
@@ -211,7 +209,7 @@ BAD: dict[str, tuple[Setup, str]] = {
 def test_a_bad_setup_is_refused_in_words_and_changes_nothing(case: str) -> None:
     setup, words = BAD[case]
     if setup.robots:  # what else is in it is good, and must not be applied either
-        good = {"rate": 2.0, "copy": False, "exaggeration": 3.0, "robot": FLEXIBLE}
+        good = {"settings": {"rate": 2.0, "copy": False, "larger": 3.0}, "robot": FLEXIBLE}
         setup = msgspec.structs.replace(setup, **good)
     lab = new_lab(0.2)
     do(lab, ChooseRobot(FLEXIBLE), ChooseRobot(RIGID), SelectPoint(2), AddPoint())

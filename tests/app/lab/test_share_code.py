@@ -15,7 +15,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from onpath.app.common.access_codes import ALPHABET, as_meant, new_code, normalised, shown
-from onpath.app.lab.commands import DrawPath, SetParameter, UseShared
+from onpath.app.lab.commands import DrawPath, Set, UseShared
 from onpath.app.lab.setups import share_code
 from onpath.app.lab.setups.capture import capture, capture_path
 from onpath.app.lab.setups.setup import Setup
@@ -32,7 +32,7 @@ def drawn_lab() -> Setup:
     lab = new_lab()
     points = wave(0.7, 1.0, closed=True).curve.at(wave(0.0, 0.0, True).curve.sample(80))
     do(lab, DrawPath(points))
-    do(lab, SetParameter("K3", 150.0))
+    do(lab, Set("K3", 150.0))
     assert lab.simulation.editor.design.name == "drawn"
     return capture(lab.simulation)
 

@@ -26,7 +26,7 @@ SHAPES = ["ramp_up", "sine", "stop_and_go"]
 def lab_with(shape: str, seconds: float = 0.0, **parameters: Any) -> Lab:
     """A lab that has run from the start with a shape of period 1.3 s."""
     lab, values = new_lab(), {"speed_profile": shape, "profile_period": 1.3, **parameters}
-    do(lab, *[c.SetParameter(name, value) for name, value in values.items()], c.Reset())
+    do(lab, *[c.Set(name, value) for name, value in values.items()], c.Reset())
     run(lab, seconds)
     return lab
 
@@ -81,7 +81,7 @@ def test_the_history_replays_to_the_present_and_beyond_a_branch() -> None:
 
 def test_the_slider_scales_the_profile_at_once_while_it_runs() -> None:
     lab = lab_with("sine", 2.0, speed=4.0)
-    do(lab, c.SetParameter("speed", 8.0))
+    do(lab, c.Set("speed", 8.0))
     lab.simulation.simulate(1)
     reference = lab.simulation.runs[FOLLOWER].shown()["speed_ref"][0]
     assert reference == pytest.approx(wanted(lab, round(lab.simulation.time / 1e-3))[-1], rel=1e-9)
@@ -89,7 +89,7 @@ def test_the_slider_scales_the_profile_at_once_while_it_runs() -> None:
 
 def test_without_a_profile_the_speed_is_that_of_the_slider_again() -> None:
     lab = lab_with("stop_and_go", 1.2)
-    do(lab, c.SetParameter("speed_profile", "constant"))
+    do(lab, c.Set("speed_profile", "constant"))
     run(lab, 1.0)
     shown = lab.simulation.runs[FOLLOWER].shown()
     assert shown["speed_ref"][0] == lab.simulation.parameters.speed
@@ -101,7 +101,7 @@ def test_a_profile_needs_no_other_loop() -> None:
     kinds = {side: run.kind for side, run in lab.simulation.runs.items()}
     loops = {side: run.loop() for side, run in lab.simulation.runs.items()}
     for shape in SHAPES:
-        do(lab, c.SetParameter("speed_profile", shape))
+        do(lab, c.Set("speed_profile", shape))
         run(lab, 4 * FRAME)
         for side, own in lab.simulation.runs.items():
             assert own.kind == kinds[side] and own.loop() is loops[side]
@@ -145,7 +145,7 @@ def test_a_lesson_may_set_it_and_nothing_else_by_that_name() -> None:
 def test_an_invalid_profile_is_refused_and_changes_nothing(name: str, value: Any) -> None:
     lab = lab_with("sine", 0.1)
     before = lab.simulation.parameters
-    do(lab, c.SetParameter(name, value))
+    do(lab, c.Set(name, value))
     assert lab.simulation.parameters is before
     assert lab.message_level == "warning" and name in lab.message
     with pytest.raises(ValueError):
@@ -154,7 +154,7 @@ def test_an_invalid_profile_is_refused_and_changes_nothing(name: str, value: Any
 
 def test_whoever_chooses_to_ramp_up_in_a_run_is_told_when_it_will() -> None:
     lab = new_lab(3.0)
-    do(lab, c.SetParameter("speed_profile", "ramp_up"))
+    do(lab, c.Set("speed_profile", "ramp_up"))
     assert "start of a run" in lab.message
     do(lab, c.Reset())
     run(lab, 1.0)

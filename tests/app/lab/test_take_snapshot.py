@@ -47,7 +47,7 @@ def test_an_instant_is_the_same_object_until_something_changes() -> None:
     run(lab, 0.5)
     before = lab.simulation.instant()
     assert lab.simulation.instant() is before
-    do(lab, c.SetParameter("K1", 500.0))
+    do(lab, c.Set("K1", 500.0))
     assert lab.simulation.instant() is not before
     changed = lab.simulation.instant()
     run(lab, 0.1)

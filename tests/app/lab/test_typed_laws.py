@@ -33,6 +33,7 @@ from onpath.lessons.action_schema import Laws, StepSetup
 from onpath.lessons.sides import law_label, law_text, robot_names, side_titles
 from onpath.lessons.vocabulary.setups import scene_faults
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import settings_of_start
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.laws.expressions import LONGEST
 from onpath.models.control.laws.own import MEANINGS, PATH_FOLLOWING, SPACE_MEANINGS
@@ -53,7 +54,7 @@ def typed(left: str = "", right: str = "", seconds: float = 0.3) -> Lab:
     run(lab, 0.3)
     do(lab, *[c.TypeLaw(side, law) for side, law in ((LEFT, left), (RIGHT, right)) if law])
     run(lab, seconds)
-    assert not lab.law_refusals
+    assert not lab.refused
     return lab
 
 
@@ -64,7 +65,7 @@ def test_typed_path_following_moves_the_robot_as_path_following_does() -> None:
     run(other, 0.3)
     assert lab.simulation.laws == {**DEFAULT_LAWS, LEFT: PATH_FOLLOWING}
     for each in (lab, other):
-        do(each, c.Hold(on=True), c.SetParameter("K1", 700.0))
+        do(each, c.Hold(on=True), c.Set("K1", 700.0))
         run(each, 0.5)
     mine, known = (each.simulation.runs[LEFT].fields() for each in (lab, other))
     for name, value in known.items():
@@ -95,21 +96,21 @@ def test_a_wrong_text_is_told_and_changes_nothing(text: str, said: str) -> None:
     lab = typed(left=SLOW, seconds=0.1)
     before, time = capture(lab.simulation), lab.simulation.time
     do(lab, c.TypeLaw(LEFT, text))
-    assert said in lab.law_refusals[LEFT] and said in lab.message
+    assert said in lab.refused[LEFT] and said in lab.message
     assert len(lab.message) < 300 and lab.message_level == "warning"
-    assert take_snapshot(lab, 1.0).run.law_refusals == lab.law_refusals
+    assert take_snapshot(lab, 1.0).refused == lab.refused
     assert capture(lab.simulation) == before and lab.simulation.chosen_laws[LEFT] == SLOW
     run(lab, 0.1)
     assert lab.simulation.time > time
     do(lab, c.TypeLaw(LEFT, PATH_FOLLOWING))
-    assert lab.law_refusals == {} and lab.message == ""
+    assert lab.refused == {} and lab.message == ""
     assert lab.simulation.laws[LEFT] == PATH_FOLLOWING
 
 
 def test_an_unknown_side_is_refused() -> None:
     lab = Lab(LOOP_CACHE)
     do(lab, c.TypeLaw("middle", PATH_FOLLOWING))
-    assert "unknown side" in lab.message and lab.law_refusals == {}
+    assert "unknown side" in lab.message and lab.refused == {}
 
 
 def test_a_law_that_gives_no_number_stops_the_robot_and_says_so() -> None:
@@ -246,15 +247,15 @@ def test_it_goes_with_the_robot_if_it_suits_and_else_the_usual_law_comes() -> No
 def test_torques_for_an_output_that_takes_none() -> None:
     """Composite control takes accelerations alone; the parameter can be changed under a law."""
     lab, law = Lab(LOOP_CACHE), "u1 = -xi; u2 = 0; u3 = 0"
-    do(lab, c.ChooseRobot(FLEXIBLE.name), c.SetParameter("output", "redefined"))
+    do(lab, c.ChooseRobot(FLEXIBLE.name), c.Set("output", "redefined"))
     do(lab, c.TypeLaw(LEFT, law))
     run(lab, 0.05)
     assert lab.simulation.laws[LEFT] == law
-    do(lab, c.SetParameter("output", "composite"))
+    do(lab, c.Set("output", "composite"))
     run(lab, 0.1)
     assert lab.simulation.laws == DEFAULT_LAWS and "not possible" in lab.message
     do(lab, c.TypeLaw(LEFT, law))
-    assert "not possible" in lab.law_refusals[LEFT] and lab.simulation.chosen_laws == DEFAULT_LAWS
+    assert "not possible" in lab.refused[LEFT] and lab.simulation.chosen_laws == DEFAULT_LAWS
     assert_sound(lab)
 
 
@@ -295,7 +296,7 @@ def test_a_start_with_a_lead_of_the_clock_is_that_of_the_law() -> None:
     wanted = "across = -K1*e1 - 42*dxi; along = -9*(theta - theta_r)"
     lab, known = Lab(loop_cache), Lab(LOOP_CACHE)
     for each in (lab, known):
-        each.simulation.start = start
+        each.simulation.set(**settings_of_start(start))
         each.simulation.reset({LEFT: wanted})
     while lab.simulation.laws[LEFT] != wanted:
         run(lab, FRAME)
@@ -340,8 +341,8 @@ def test_any_text_is_a_law_or_is_refused(text: str) -> None:
     before = lab.simulation.chosen_laws
     do(lab, c.TypeLaw(LEFT, text))
     run(lab, 2 * FRAME)
-    if LEFT in lab.law_refusals:
-        assert lab.simulation.chosen_laws == before and lab.law_refusals[LEFT]
+    if LEFT in lab.refused:
+        assert lab.simulation.chosen_laws == before and lab.refused[LEFT]
     else:
         law = lab.simulation.laws[LEFT]
         assert decode(encode(capture(lab.simulation))).laws.get(LEFT, law) == law

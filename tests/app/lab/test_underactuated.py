@@ -39,7 +39,7 @@ def lab() -> Lab:
 
 def choose(lab: Lab, alpha: float) -> str:
     """What the lab says when α has been chosen, before it runs."""
-    do(lab, c.SetParameter("alpha", alpha))
+    do(lab, c.Set("alpha", alpha))
     run(lab, 0.0)
     return lab.message
 
@@ -52,7 +52,7 @@ def test_the_lab_says_before_the_run_what_will_happen(lab: Lab) -> None:
 
 
 def test_the_lab_says_it_when_the_robot_or_the_law_is_chosen(lab: Lab) -> None:
-    do(lab, c.ChooseRobot(CART.name), c.SetParameter("pendulum", "upright"))
+    do(lab, c.ChooseRobot(CART.name), c.Set("pendulum", "upright"))
     assert UNSTABLE in lab.message
     do(lab, c.ChooseRobot("five_bar"))
     run(lab, 0.05)

@@ -20,6 +20,7 @@ from onpath.app.lab.setups.setup import Setup
 from onpath.app.lab.setups.share_code import decode, encode
 from onpath.app.lab.setups.stored import from_data
 from onpath.app.lab.snapshots.obstacles import wall_then
+from onpath.models.closed_loop.lab_settings import settings_of_wall
 from onpath.models.closed_loop.obstacles import DIRECTIONS, FARTHEST, Wall
 from onpath.models.control.sides import SIDES
 from onpath.models.systems.catalogue import ROBOTS
@@ -40,8 +41,8 @@ SLACK = 1e-9
 
 def walled(seconds: float, wall: Wall, robot: str = "five_bar") -> Lab:
     lab = new_lab()
-    do(lab, c.ChooseRobot(robot), c.SetWall(True))
-    do(lab, c.PlaceWall(wall.z1, wall.z2, wall.angle))
+    do(lab, c.ChooseRobot(robot), c.Set("wall", True))
+    do(lab, *[c.Set(name, value) for name, value in settings_of_wall(wall).items()])
     assert lab.simulation.wall is not None
     run(lab, seconds)
     return lab
@@ -91,10 +92,9 @@ def test_the_follower_waits_at_a_wall_and_the_tracker_goes_round() -> None:
     ways = replayed(lab.simulation)
     theta = {name: np.unwrap(way.fields["theta"][-1500:, 0]) for name, way in ways.items()}
     assert np.ptp(theta[FOLLOWER]) < 0.05 < 2 * math.pi < np.ptp(theta[TRACKER])
-    state = take_snapshot(lab, 1.0).obstacle
-    assert state is not None
+    forces = take_snapshot(lab, 1.0).wall_forces
     last = ways[FOLLOWER].fields["force"][-1]
-    assert state.forces[FOLLOWER] == pytest.approx(np.linalg.norm(last), rel=0.02)
+    assert forces[FOLLOWER] == pytest.approx(np.linalg.norm(last), rel=0.02)
 
 
 def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None:
@@ -104,9 +104,9 @@ def test_it_stands_at_the_same_place_of_both_robots_and_is_drawn_there() -> None
     assert place == pytest.approx(robot.position(robot.frame.lift(np.array([0.01, 0.02]))))
     assert normal == pytest.approx([math.cos(0.3), 0, math.sin(0.3)])
     assert abs(along @ normal) < 1e-12 and np.linalg.norm(along) == pytest.approx(1)
-    do(lab, c.SetWall(False))
+    do(lab, c.Set("wall", False))
     assert take_snapshot(lab, 1.0).wall.shape == (0, 3)
-    assert take_snapshot(lab, 1.0).obstacle is None
+    assert take_snapshot(lab, 1.0).wall_forces == {}
 
 
 @pytest.mark.thorough
@@ -143,7 +143,7 @@ def test_hands_and_brakes_come_and_go_and_the_wall_stays() -> None:
     lab = walled(0.2, Wall(0.0, 0.04, -1.5))
     for command in (
         *(c.Hold(True), c.MoveHand(0.01, 0.0), c.Release(), c.Hold(False)),
-        *(c.SetHoldDirection("both"), c.Hold(True), c.MoveHand(0.0, 0.01), c.Hold(False)),
+        *(c.Set("hold_direction", "both"), c.Hold(True), c.MoveHand(0.0, 0.01), c.Hold(False)),
     ):
         do(lab, command)
         run(lab, 0.1)
@@ -175,14 +175,14 @@ def test_mouse_and_keys_move_and_turn_it() -> None:
 @pytest.mark.parametrize(
     "bad",
     [
-        c.PlaceWall(math.nan),
-        c.PlaceWall(angle=math.inf),
+        c.Set("wall_z1", math.nan),
+        c.Set("wall_angle", math.inf),
         c.MoveWall(np.array([math.nan, 0.0])),
         c.MoveWall(np.zeros(3)),
         c.SwingWall(1, np.array([math.inf, 0.0])),
         c.NudgeWall(right=math.nan),
-        c.SetHoldDirection("upwards"),
-        c.SetHoldDirection("x" * 10_000),
+        c.Set("hold_direction", "upwards"),
+        c.Set("hold_direction", "x" * 10_000),
     ],
     ids=repr,
 )
@@ -191,7 +191,7 @@ def test_nonsense_is_refused_and_changes_nothing(bad: c.Command) -> None:
     wall = lab.simulation.wall
     do(lab, bad)
     assert lab.message and lab.message_level == "warning"
-    assert lab.simulation.wall == wall and lab.simulation.hold_direction == "along"
+    assert lab.simulation.wall == wall and lab.simulation.settings.hold_direction == "along"
 
 
 def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_present_one() -> None:
@@ -199,7 +199,7 @@ def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_presen
     then = take_snapshot(lab, 1.0).wall
     do(lab, c.MoveWall(np.array([0.02, 0.035])))
     run(lab, 0.5)
-    do(lab, c.SetWall(False))
+    do(lab, c.Set("wall", False))
     run(lab, 0.5)
     do(lab, c.LookAt(1.2))
     np.testing.assert_allclose(take_snapshot(lab, 1.0).wall, then, atol=1e-12)
@@ -209,14 +209,14 @@ def test_looking_back_shows_the_wall_of_that_time_and_continuing_uses_the_presen
     assert lab.simulation.wall is None and not any(
         p.acts for p in lab.simulation.forces.pushes.values()
     )
-    do(lab, c.SetWall(True), c.UndoGoOn())
+    do(lab, c.Set("wall", True), c.UndoGoOn())
     assert all(push.wall is not None for push in lab.simulation.forces.pushes.values())
 
 
 def test_a_film_shows_the_wall_while_it_stands() -> None:
     lab = walled(0.3, Wall(0.0, 0.04, -1.5))
     drawn = take_snapshot(lab, 1.0).wall
-    do(lab, c.SetWall(False))
+    do(lab, c.Set("wall", False))
     run(lab, 0.3)
     history = lab.simulation.history.all()
     np.testing.assert_allclose(wall_then(lab.simulation.robot, history[0]), drawn, atol=1e-12)
@@ -235,12 +235,12 @@ def test_a_table_tells_the_force_of_the_wall() -> None:
 
 def test_set_ups_and_share_codes_carry_wall_and_direction() -> None:
     lab = walled(0.1, Wall(0.0123456, -0.04, 2.5))
-    do(lab, c.SetHoldDirection("across"), c.ChooseRobot("flexible"), c.SetWall(True))
+    do(lab, c.Set("hold_direction", "across"), c.ChooseRobot("flexible"), c.Set("wall", True))
     setup = capture(lab.simulation)
     other = new_lab()
     restore(other.simulation, decode(encode(setup)))
     assert capture(other.simulation) == setup
-    assert other.simulation.hold_direction == "across"
+    assert other.simulation.settings.hold_direction == "across"
     assert other.simulation.wall is not None and lab.simulation.wall is not None
     assert astuple(other.simulation.wall) == pytest.approx(astuple(lab.simulation.wall), rel=1e-5)
     do(other, c.ChooseRobot("five_bar"))
@@ -266,9 +266,9 @@ def test_a_wall_in_a_code_that_no_lab_has_is_refused(wall: list[Any]) -> None:
 @pytest.mark.parametrize("direction", DIRECTIONS)
 def test_a_hold_acts_in_the_directions_chosen_and_is_free_in_the_others(direction: str) -> None:
     lab = new_lab()
-    do(lab, c.SetParameter("speed", 2.0))
+    do(lab, c.Set("speed", 2.0))
     run(lab, 0.6)
-    do(lab, c.SetHoldDirection(direction), c.Hold(True))
+    do(lab, c.Set("hold_direction", direction), c.Hold(True))
     push = lab.simulation.forces.pushes[FOLLOWER]
     assert push.hold is not None
     curve, theta = lab.simulation.editor.curve, lab.simulation.runs[FOLLOWER].shown()["theta"]
@@ -292,6 +292,6 @@ def test_another_direction_is_taken_at_once_by_a_hold_that_is_on() -> None:
     lab = new_lab(0.3)
     do(lab, c.Hold(True))
     run(lab, 0.2)
-    do(lab, c.SetHoldDirection("both"))
+    do(lab, c.Set("hold_direction", "both"))
     assert lab.simulation.forces.held == set(SIDES)
     assert all(push.hold_normal is not None for push in lab.simulation.forces.pushes.values())

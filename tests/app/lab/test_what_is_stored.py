@@ -20,6 +20,7 @@ from onpath.app.storage.records import LARGEST
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.progress import read_progress
 from onpath.lessons.schema import Lesson, NumberQuestion, OpenQuestion, Quiz
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import FIVE_BAR
@@ -214,8 +215,7 @@ def values_of(command: type[Any], field: dataclasses.Field[Any]) -> st.SearchStr
         c.FollowRoute: ["x"],
         c.ChoosePath: ["circle", "clover", "x"],
         c.ChooseRobot: ["five_bar", "x"],
-        c.SetParameter: [*specs(FIVE_BAR.parameters), "x"],
-        c.SetStart: ["theta", "along", "x"],
+        c.Set: [*specs(FIVE_BAR.parameters), *SETTINGS, "x"],
     }
     if field.name == "name":
         return st.sampled_from(names[command])

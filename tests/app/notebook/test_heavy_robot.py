@@ -137,7 +137,7 @@ def test_a_comparison_says_which_law_asks_for_more_and_of_which_motor(
 
 def test_the_lab_says_so_once_in_a_run(heavy: RobotEntry) -> None:
     lab = Lab(loop_cache())
-    do(lab, c.ChooseRobot(heavy.name), c.SetParameter("speed", 10.0))
+    do(lab, c.ChooseRobot(heavy.name), c.Set("speed", 10.0))
     said = lab.messages
     run(lab, 0.5)
     assert "more than the" in lab.message and lab.message_level == "warning"

@@ -24,11 +24,11 @@ def test_a_set_up_ticks_and_clears_the_box() -> None:
         for _ in range(2):
             panel.follow(take_page_snapshot(lab, 1.0))
 
-    assert box.value and lab.simulation.copy
+    assert box.value and lab.simulation.settings.copy
     box.set(False)
     follow()
-    assert not box.value and not lab.simulation.copy
+    assert not box.value and not lab.simulation.settings.copy
     for copy in (True, False):
-        lab.post(c.TakeSetup(Setup(copy=copy)))
+        lab.post(c.TakeSetup(Setup(settings={"copy": copy})))
         follow()
-        assert box.value == lab.simulation.copy == copy
+        assert box.value == lab.simulation.settings.copy == copy

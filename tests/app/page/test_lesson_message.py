@@ -188,11 +188,11 @@ def test_options_stand_in_the_students_order_and_for_a_projector_in_the_authors(
 
     orders = {tuple(order(f"student {i}")) for i in range(20)}
     assert len(orders) > 3
-    do(lab, c.SetPresenting(True))
+    do(lab, c.Set("presenting", True))
     block = step_of(lab).blocks[place]
     assert isinstance(block, Quiz)
     assert order("student 1")[: len(block.options)] == [str(i) for i in range(len(block.options))]
-    do(lab, c.SetPresenting(False))
+    do(lab, c.Set("presenting", False))
 
 
 def test_the_concept_test_tells_nothing_and_is_handed_in(lab: Lab) -> None:

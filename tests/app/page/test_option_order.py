@@ -96,6 +96,6 @@ def test_a_letter_means_the_option_that_stands_beside_it(
         student.tell({**do, "option": order[3]})
         wait_for(lambda: chosen(lab) == order[3])
 
-        lab.post(c.SetPresenting(True))  # a projector shows what the teacher's page counts
+        lab.post(c.Set("presenting", True))  # a projector shows what the teacher's page counts
         author = [str(option.text) for option in block.options]
         student.read(lambda: shown(student) == author)

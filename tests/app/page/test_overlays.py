@@ -96,7 +96,7 @@ def shown(entry: RobotEntry, server: viser.ViserServer, monkeypatch: pytest.Monk
 @ENTRIES
 def test_off_it_sends_nothing_whatever_happens(shown: Shown) -> None:
     assert shown.follow() == []
-    do(shown.lab, c.ChoosePath("ellipse"), c.SetParameter("payload", 0.1))
+    do(shown.lab, c.ChoosePath("ellipse"), c.Set("payload", 0.1))
     run(shown.lab, 0.2)
     assert shown.follow() == []
 
@@ -132,7 +132,7 @@ def test_marks_are_at_both_robots_and_go_with_their_step(shown: Shown) -> None:
 @ENTRIES
 def test_the_arrows_lead_to_the_timetable_and_to_the_path(shown: Shown) -> None:
     """With a hand at both, so that both errors are there; d is the distance that is measured."""
-    do(shown.lab, c.SetParameter("K1", 100.0), ScriptPull((20.0, 15.0)))
+    do(shown.lab, c.Set("K1", 100.0), ScriptPull((20.0, 15.0)))
     run(shown.lab, 0.6)
     motion, snapshot = take_motion(shown.lab), take_page_snapshot(shown.lab, 1.0)
     stage = shown.overlays.stage
@@ -198,10 +198,10 @@ def test_a_path_makes_the_tube_anew_and_a_parameter_of_the_plant_the_map(shown: 
     switches.tube = switches.rank = True
     shown.follow()
     tube, rank = overlays.shape, overlays.rank_map
-    do(shown.lab, c.SetParameter("K1", 350.0))
+    do(shown.lab, c.Set("K1", 350.0))
     assert shown.follow() == []
     of_plant = "rho" if shown.lab.simulation.entry.flexible_link else "payload"
-    do(shown.lab, c.SetParameter(of_plant, 0.15))
+    do(shown.lab, c.Set(of_plant, 0.15))
     shown.follow()
     assert overlays.rank_map is not rank and overlays.shape is tube
     rank = overlays.rank_map
@@ -244,7 +244,7 @@ def test_every_preset_has_a_tube_that_can_be_drawn(name: str) -> None:
 def test_the_tube_of_a_rising_path_lies_around_it_in_space() -> None:
     entry = ROBOTS["spatial_arm"]
     lab = Lab(loop_cache(), entry)
-    do(lab, c.SetRunning(False), c.SetParameter("rise", 0.03))
+    do(lab, c.SetRunning(False), c.Set("rise", 0.03))
     lab.simulation.editor.advance(10.0)
     robot, path = lab.simulation.robot, take_page_snapshot(lab, 1.0).path
     curve = drawn_curve(robot, path)
@@ -335,7 +335,7 @@ def test_a_projector_shows_it_in_a_lesson_too(lessons: LabServer) -> None:
         student.open()
         student.read(lambda: student.code)
         lab = wait_for(lambda: lessons.registry.find(student.code), 30.0).scheduled.lab
-        for command in (c.OpenLesson("01-path-or-timetable"), c.SetPresenting(True)):
+        for command in (c.OpenLesson("01-path-or-timetable"), c.Set("presenting", True)):
             lab.post(command)
         student.read(lambda: student.sees("Step 1 of") and not student.has_widget("Undo"))
         student.read(lambda: student.has_widget("Tube"))

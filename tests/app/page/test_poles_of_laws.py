@@ -36,7 +36,7 @@ def lines(snapshot: PageSnapshot, words: Words) -> list[str]:
 @pytest.mark.parametrize("language", ["en", "de"])
 def test_each_law_has_its_own_poles_and_the_place_where_they_vary(language: str) -> None:
     words = Words(language)
-    snapshot, _ = taken_after(0.0, c.SetParameter("tracker_integral", "on"))
+    snapshot, _ = taken_after(0.0, c.Set("tracker_integral", "on"))
     contour_across, contour_along, wire_across, wire_along = lines(snapshot, words)
     for side, line in ((LEFT, contour_across), (RIGHT, wire_along)):
         degrees = np.degrees(snapshot.places.of[side].theta) % 360

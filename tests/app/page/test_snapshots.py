@@ -129,7 +129,7 @@ def filmed(lab: Lab, *commands: c.Command) -> Iterator[PageSnapshot | Motion]:
         lab.post(command)
         for _ in range(15):
             lab.drain()
-            lab.advance(lab.simulation.rate * FRAME)
+            lab.advance(lab.simulation.settings.rate * FRAME)
         yield take_motion(lab)
         yield take_page_snapshot(lab, 0.9, nickname="Ada <b>" if number else "")
 
@@ -150,11 +150,11 @@ def test_a_lab_is_drawn_from_data(robot: str, drawing: Drawing, course: Course) 
     y = lab.simulation.runs[FOLLOWER].shown()["y"].copy()
     film = filmed(
         lab,
-        *(c.Hold(True), c.SetCopy(False), c.Hold(False), c.SetParameter("K1", 90.0)),
+        *(c.Hold(True), c.Set("copy", False), c.Hold(False), c.Set("K1", 90.0)),
         *(c.Grab(FOLLOWER, y + 0.02), c.Release(), c.SelectPoint(1), c.NudgePoint(0.002, 0.001)),
         *(c.ChoosePath("figure of eight"), c.ChoosePath("ellipse"), c.Share()),
-        *(c.SetParameter("torque_limit", 0.5), c.LookAt(1.0), c.GoOn(), c.SetRate(0.5)),
-        *(c.SetExaggeration(3.0), c.SetRunning(False)),
+        *(c.Set("torque_limit", 0.5), c.LookAt(1.0), c.GoOn(), c.Set("rate", 0.5)),
+        *(c.Set("larger", 3.0), c.SetRunning(False)),
     )
     assert_draws_the_same(drawing, list(film))
 
@@ -166,7 +166,7 @@ def test_a_page_is_told_nothing_while_nothing_changes(
 ) -> None:
     lab = Lab(loop_cache(), ROBOTS[robot], course)
     lab.post(c.Hold(True))
-    *_, last = filmed(lab, c.SetExaggeration(2.0), c.SetRunning(False))
+    *_, last = filmed(lab, c.Set("larger", 2.0), c.SetRunning(False))
     told = drawing.of([last, last, take_motion(lab)])
     again = [last, take_page_snapshot(lab, 0.9, nickname="Ada <b>"), take_motion(lab)]
     assert drawing.of([last, last, take_motion(lab), *again]) == told

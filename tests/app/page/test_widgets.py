@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onpath.app.lab.commands import ChooseRobot, Command, SetParameter
+from onpath.app.lab.commands import ChooseRobot, Command, Set
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.panels.gains_panel import ADVANCED, BASIC, own_of
@@ -32,7 +32,7 @@ def test_a_snapshot_from_before_a_change_does_not_set_the_slider_back() -> None:
     ((slider,),) = gui.named.values()
     slider.set(123.0)
     widgets.follow(before)
-    assert slider.value == 123.0 and posted == [SetParameter("K1", 123.0)]
+    assert slider.value == 123.0 and posted == [Set("K1", 123.0)]
     for command in posted:
         command.apply(lab)
     widgets.follow(take_page_snapshot(lab, 1.0))

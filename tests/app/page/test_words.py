@@ -548,7 +548,7 @@ def test_a_german_lab_speaks_german() -> None:
     assert "keine Änderung rückgängig zu machen" in lab.message
     do(lab, c.RemovePoint())
     assert lab.message.startswith("Wähle erst einen Kontrollpunkt")
-    do(lab, c.SetParameter("output", "redefined"), c.SetParameter("alpha", 0.95))
+    do(lab, c.Set("output", "redefined"), c.Set("alpha", 0.95))
     run(lab, 3.0)
     assert "regelung: stehen geblieben" in lab.message and "Nulldynamik" in lab.message
     do(lab, c.SetLanguage("en"))

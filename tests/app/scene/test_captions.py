@@ -65,7 +65,7 @@ def test_a_second_hold_is_measured_anew() -> None:
 
 def test_only_the_robot_that_is_held_back_is_said_to_be() -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
-    do(lab, c.SetCopy(False), c.Hold(True, FOLLOWER))
+    do(lab, c.Set("copy", False), c.Hold(True, FOLLOWER))
     said = seen(lab, captions, 1.0)
     assert said[TRACKER] == "" and said[FOLLOWER].startswith("waits")
 
@@ -97,7 +97,7 @@ def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
     lab, captions = new_lab(1.0), Captions(ENGLISH)
     do(lab, c.ChoosePath("segment"))
     assert all("at the end" in said for said in seen(lab, captions, 6.0).values())
-    do(lab, c.ChoosePath("circle"), c.SetParameter("speed", 0.0))
+    do(lab, c.ChoosePath("circle"), c.Set("speed", 0.0))
     assert seen(lab, captions, 6.0) == {TRACKER: "", FOLLOWER: ""}
 
 
@@ -106,7 +106,7 @@ def test_the_end_of_an_open_path_is_said_and_not_that_of_a_closed_one() -> None:
 def test_a_closed_path_has_no_end_at_which_a_robot_could_rest(robot: str) -> None:
     """Its first and last points may differ by rounding."""
     lab, captions = new_lab(), Captions(ENGLISH)
-    do(lab, c.ChooseRobot(robot), c.SetParameter("speed", 0.0))
-    do(lab, c.SetStart("theta", 3.1415), c.Reset())
+    do(lab, c.ChooseRobot(robot), c.Set("speed", 0.0))
+    do(lab, c.Set("start_theta", 3.1415), c.Reset())
     assert take_page_snapshot(lab, 1.0).path.closed
     assert seen(lab, captions, 0.3) == {TRACKER: "", FOLLOWER: ""}

@@ -41,7 +41,7 @@ def test_an_end_point_that_is_held_back_slides_in_its_guide(name: str) -> None:
 
 def test_a_brake_in_both_directions_leaves_none_free() -> None:
     lab = new_lab(0.5)
-    do(lab, c.SetHoldDirection("both"), c.Hold(True))
+    do(lab, c.Set("hold_direction", "both"), c.Hold(True))
     assert not any(rows[2].any() for rows in take_snapshot(lab, 1.0).brakes.values())
 
 

@@ -63,7 +63,11 @@ def test_a_hand_is_at_each_end_point_that_is_pulled(
         show(scene, lab)
     assert not node.visible and sent == []
     for together in (True, False):
-        do(lab, c.SetCopy(together), c.Grab(LEFT, lab.simulation.runs[LEFT].shown()["y"] + 0.02))
+        do(
+            lab,
+            c.Set("copy", together),
+            c.Grab(LEFT, lab.simulation.runs[LEFT].shown()["y"] + 0.02),
+        )
         for _ in range(3):
             run(lab, 0.1)
             show(scene, lab)

@@ -178,6 +178,6 @@ def test_a_wall_and_the_start_of_a_run_with_every_index(tab: Tab) -> None:
     (feed,) = tab.server._feeds.values()
     scene: Any = feed.page._scene
     scene.show_start(True)
-    tab.lab.post(c.SetWall(True))
+    tab.lab.post(c.Set("wall", True))
     wait_for(lambda: {"/wall/body", "/wall/ends", "/start/ball"} <= set(tab.nodes()), WAIT)
     hit_every_node(tab)

@@ -143,7 +143,7 @@ def test_what_a_symbol_of_joints_means_is_told_while_it_is_asked_for(
         script.light("q_1")
         assert len(script.read_until("lit", lambda lit: lit["symbol"] == "q_1")["lines"]) == 2
         script.light("")
-        script.do("SetRate", rate=2)
+        script.do("Set", name="rate", value=2)
         script.read_until("state", lambda state: state["rate"] == 2)
         script.read("frame")
         del script.told["lit"]
@@ -188,11 +188,11 @@ def test_a_command_that_is_not_possible_is_told_in_the_pages_language(
     with Script(server, ticket_of(student)) as script:
         script.do("SetLanguage", language="de")
         script.read_until("state", lambda state: state["language"] == "de")
-        script.do("SetRate", rate=1000)
+        script.do("Set", name="rate", value=1000)
         state = script.read_until("state", lambda state: state["message"])
         assert state["level"] == "warning" and "1000" in state["message"]
         assert state["titles"] != ["Trajectory tracking", "Path following"]
-        script.do("SetRate", rate=1000)  # told again, though nothing else changes
+        script.do("Set", name="rate", value=1000)  # told again, though nothing else changes
         assert script.read_until("state", lambda new: new["messages"] != state["messages"])
 
 
@@ -216,7 +216,7 @@ def test_no_page_has_the_ticket_of_another(server: LabServer, student: Student) 
         with Script(server, ticket_of(other)) as script, Script(server, ticket_of(student)) as own:
             script.do("Hold", on=True)
             script.read_until("frame", lambda frame: frame["rows"][-1][1] == 3)
-            own.do("SetRate", rate=2)
+            own.do("Set", name="rate", value=2)
             own.read_until("state", lambda state: state["rate"] == 2)
             assert own.read("frame")["rows"][-1][1] == 0
 

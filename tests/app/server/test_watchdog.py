@@ -33,7 +33,7 @@ linux_only = pytest.mark.skipif(sys.platform != "linux", reason="tried on Linux 
 HANGING = """
 import sys, threading, onpath.app.page.panels.widgets as widgets
 from onpath.app.cli.main import run_command
-from onpath.app.lab.commands import SetParameter
+from onpath.app.lab.commands import Set
 
 def hang(value):
     if value == 401.0:
@@ -49,9 +49,9 @@ def apply(self, lab):
 
 def made(name, value):
     hang(value - 10.0 if name == "K1" else 0.0)
-    return SetParameter(name, value)
+    return Set(name, value)
 
-applied, SetParameter.apply, widgets.SetParameter = SetParameter.apply, apply, made
+applied, Set.apply, widgets.Set = Set.apply, apply, made
 sys.exit(run_command(["serve", *sys.argv[1:]]))
 """
 

@@ -249,7 +249,7 @@ def test_simulated_time_follows_the_wanted_speed() -> None:
     clock, thread = clocked(2.0)
     labs = [ScheduledLab(new_lab()) for _ in range(3)]
     for scheduled, rate in zip(labs, (0.25, 1.0, 4.0), strict=True):
-        scheduled.lab.post(c.SetRate(rate))
+        scheduled.lab.post(c.Set("rate", rate))
         scheduled.display = View(lambda _: clock.work(0.001))
         thread.add(scheduled)
     thread.run()
@@ -281,7 +281,7 @@ def test_a_lab_that_raises_does_not_stop_the_others(caplog: pytest.LogCaptureFix
 
 def test_time_waits_while_nobody_looks_and_commands_do_not() -> None:
     unseen = ScheduledLab(new_lab())
-    unseen.lab.post(c.SetParameter("K1", 123))
+    unseen.lab.post(c.Set("K1", 123))
     simulated(1.0, lambda _: 0.001, unseen)
     assert unseen.simulation.time == 0.0
     assert unseen.simulation.parameters.K1 == 123

@@ -131,20 +131,20 @@ def test_the_page_says_that_a_lab_is_not_kept_and_when_it_is_again(
     words = Words(language)
     entry = server.registry.join(1, None)
     lab = entry.scheduled.lab
-    do(lab, c.SetLanguage(language), c.SetParameter("K2", 33))
+    do(lab, c.SetLanguage(language), c.Set("K2", 33))
     assert words("keep.failed") not in page(lab)
     with fault(server):
         do(
             lab,
             c.ChoosePath("clover"),
-            c.SetParameter("K1", 444),
-            c.SetParameter("output", "nonsense"),
+            c.Set("K1", 444),
+            c.Set("output", "nonsense"),
         )
         refusal = lab.message
         until(lambda: words("keep.failed") in page(lab))
         snapshot = take_snapshot(lab, 1.0)
         assert snapshot.message_level == "warning" and refusal in snapshot.message
-        do(lab, c.SetParameter("K1", 445))  # does not hide it
+        do(lab, c.Set("K1", 445))  # does not hide it
         assert words("keep.failed") in page(lab)
     until(lambda: words("keep.failed") not in page(lab))
     assert words("keep.again") in page(lab) or words("keep.anew") in page(lab)
@@ -156,20 +156,20 @@ def test_a_lab_that_is_too_large_is_said_once_and_what_was_stored_last_stays(
 ) -> None:
     entry, words = server.registry.join(1, None), ENGLISH
     lab = entry.scheduled.lab
-    do(lab, c.SetParameter("K1", 444))
+    do(lab, c.Set("K1", 444))
     until(lambda: is_kept(server, entry.code, lab))
     stored = server.records.load(entry.code)
     monkeypatch.setattr(database, "LARGEST", 20)
     for k in range(5):
-        do(lab, c.SetParameter("K2", 50 + k), c.ChoosePath(("clover", "circle")[k % 2]))
+        do(lab, c.Set("K2", 50 + k), c.ChoosePath(("clover", "circle")[k % 2]))
         until(lambda: words("keep.too_large") in page(lab))
-    do(lab, c.SetParameter("K1", 445))
+    do(lab, c.Set("K1", 445))
     assert page(lab).count(words("keep.too_large")) == 1
     assert not server.keeper.unsaved("other")
     assert server.records.load(entry.code) == stored
     assert caplog.text.count("cannot be stored") == 1 and "Traceback" not in caplog.text
     monkeypatch.undo()
-    do(lab, c.SetParameter("K1", 446))
+    do(lab, c.Set("K1", 446))
     until(lambda: words("keep.too_large") not in page(lab))
     assert words("keep.again") in page(lab) and is_kept(server, entry.code, lab)
 
@@ -259,11 +259,11 @@ def test_a_file_that_is_deleted_or_replaced_is_noticed_and_labs_in_use_are_kept_
 ) -> None:
     entries = [server.registry.join(client, None) for client in (1, 2)]
     for entry in entries:
-        do(entry.scheduled.lab, c.SetParameter("K2", 33))
+        do(entry.scheduled.lab, c.Set("K2", 33))
         run(entry.scheduled.lab, 1.0)
         until(lambda code=entry.code: server.kept(code))
     lose(server.file)
-    do(entries[0].scheduled.lab, c.SetParameter("K2", 34))  # the other does nothing
+    do(entries[0].scheduled.lab, c.Set("K2", 34))  # the other does nothing
     for entry in entries:
         until(lambda entry=entry: ENGLISH("keep.anew") in page(entry.scheduled.lab))
         until(lambda code=entry.code: server.kept(code))

@@ -64,9 +64,9 @@ def test_path_gains_and_lesson_survive_a_restart(
 ) -> None:
     entry = servers[0].registry.join(1, None)
     lab = entry.scheduled.lab
-    do(lab, c.SetParameter("K2", 33), c.ChoosePath("clover"), c.OpenLesson("01-a"))
+    do(lab, c.Set("K2", 33), c.ChoosePath("clover"), c.OpenLesson("01-a"))
     do(lab, c.GoToStep(1), c.Predict(times=(0.0, 1.0), values=(1.0, 2.0)), c.GoToStep(1))
-    do(lab, c.SetParameter("K1", 444))
+    do(lab, c.Set("K1", 444))
     run(lab, 2.5)
     again = restart(servers, tmp_path, course).registry.join(1, entry.code)
     other = again.scheduled.lab

@@ -55,7 +55,7 @@ class Process:
         """Change a lab, and wait until it asks to be stored."""
         entry = self.registry.find(code)
         assert entry is not None
-        do(entry.scheduled.lab, c.SetParameter("K2", gain))
+        do(entry.scheduled.lab, c.Set("K2", gain))
         run(entry.scheduled.lab, 1.1)
 
 

@@ -172,9 +172,9 @@ def test_it_uses_no_more_terms_than_the_data_need(rig: Rig) -> None:
 def made_lab(seconds: float = 5.0, **parameters: Any) -> Lab:
     """A lab that has run with some parameters and changed its speed on the way."""
     lab = new_lab()
-    do(lab, *[c.SetParameter(name, value) for name, value in parameters.items()])
+    do(lab, *[c.Set(name, value) for name, value in parameters.items()])
     run(lab, seconds * 0.6)
-    do(lab, c.SetParameter("speed", 9.0))
+    do(lab, c.Set("speed", 9.0))
     run(lab, seconds * 0.4)
     return lab
 
@@ -185,11 +185,11 @@ def errors(lab: Lab) -> Array:
 
 def worst(lab: Lab) -> float:
     """Largest distance of the follower from the same start, held back and sent back, [m]."""
-    do(lab, c.Reset(), c.SetParameter("speed", 6.0))
+    do(lab, c.Reset(), c.Set("speed", 6.0))
     run(lab, 2)
     do(lab, c.Hold(True))
     run(lab, 0.5)
-    do(lab, c.Hold(False), c.SetParameter("speed", -6.0))
+    do(lab, c.Hold(False), c.Set("speed", -6.0))
     run(lab, 2)
     return lab.simulation.runs[FOLLOWER].max_distance
 
@@ -202,13 +202,13 @@ def test_lab_finds_its_robot_and_follows_better(encoder: int) -> None:
     assert lab.message_level == "info" and "M11 = 0.0226" in lab.message
     assert np.abs(errors(lab)).max() < 1.0
     after = worst(lab)
-    do(lab, c.SetParameter("error_M11", 30), c.SetParameter("error_b1", -50))
+    do(lab, c.Set("error_M11", 30), c.Set("error_b1", -50))
     assert after < 0.8 * worst(lab)
 
 
 def test_lab_takes_what_was_pushed_into_account() -> None:
     lab = new_lab()
-    do(lab, c.SetParameter("error_M22", 40))
+    do(lab, c.Set("error_M22", 40))
     run(lab, 1)
     do(lab, c.Hold(True))
     run(lab, 0.7)
@@ -240,7 +240,7 @@ def test_lab_says_what_the_model_has_no_place_for() -> None:
 
 def test_lab_learns_from_the_robot_as_it_is_now() -> None:
     lab = made_lab(error_M11=30)
-    do(lab, c.SetParameter("payload", 0.05), c.SetParameter("speed", 5.0))
+    do(lab, c.Set("payload", 0.05), c.Set("speed", 5.0))
     run(lab, 0.5)
     before = errors(lab)
     do(lab, c.Identify())

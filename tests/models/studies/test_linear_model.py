@@ -267,7 +267,7 @@ def test_the_file_of_a_lab_is_read_with_its_sides_and_typed_laws(
 ) -> None:
     typed = "across = -K1*min(xi, 1) - K2*dxi; along = -9*(theta - theta_r) - 6*(dtheta - speed)"
     lab, path = Lab(LoopCache(at_once=True)), tmp_path / "lab.csv"
-    do(lab, c.SetParameter("speed", 9.0), c.ChoosePath("clover"))
+    do(lab, c.Set("speed", 9.0), c.ChoosePath("clover"))
     run_lab(lab, 3.0)
     do(lab, c.TypeLaw(LEFT, typed), c.TypeLaw(RIGHT, typed), c.Hold(on=True))
     run_lab(lab, 1.0)

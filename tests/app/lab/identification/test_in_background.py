@@ -59,7 +59,7 @@ def loop_cache() -> Iterator[LoopCache]:
 def lab(loop_cache: LoopCache) -> Lab:
     lab = Lab(loop_cache)
     lab.identification = Identification()
-    do(lab, c.SetParameter("error_M11", 30), c.SetParameter("speed", 6.0))
+    do(lab, c.Set("error_M11", 30), c.Set("speed", 6.0))
     run(lab, SECONDS)
     return lab
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from msgspec import structs
 
 from onpath.app.classroom.classroom import Classroom, Display
-from onpath.app.lab.commands import ChoosePath, CloseLesson, SetParameter, TakeSetup, TakeStep
+from onpath.app.lab.commands import ChoosePath, CloseLesson, Set, TakeSetup, TakeStep
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.setup import Setup
@@ -107,7 +107,7 @@ def test_every_demonstration_is_played_in_the_teacher_s_lab_which_is_then_put_ba
     name: str,
 ) -> None:
     lab = Lab(loop_cache(), course=COURSE)
-    do(lab, ChoosePath("clover"), SetParameter("K1", 77.0))
+    do(lab, ChoosePath("clover"), Set("K1", 77.0))
     before = capture(lab.simulation)
     steps, played = COURSE.lesson(name, "en").steps, set[int]()
     for index in range(len(steps)):
