@@ -23,7 +23,7 @@ class LessonView(LessonState):
         student: code of the lab; decides the order of options.
 
     Attributes:
-        playing, verdicts, truth, pace: see `LessonSnapshot`.
+        playing, verdicts, truth, pace, presenting: see `LessonSnapshot`.
     """
 
     def __init__(
@@ -33,7 +33,7 @@ class LessonView(LessonState):
         self._student = student
         self.version, self.playing = shown.version, shown.playing
         self.verdicts, self.truth = shown.verdicts, shown.truth
-        self.pace = shown.pace
+        self.pace, self.presenting = shown.pace, shown.presenting
 
     @property
     def laws_shown(self) -> dict[str, str]:
@@ -82,5 +82,5 @@ class LessonView(LessonState):
         if not key:
             found = self.prediction()
             key = "" if found is None else found[0]
-        student = "" if self.progress.presenting else self._student
+        student = "" if self.presenting else self._student
         return option_order(len(block.options), f"{self.progress.lesson} {key}", student)

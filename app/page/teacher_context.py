@@ -35,6 +35,7 @@ class TeacherContext:
         address: where students join the class.
         is_local: whether only this machine can open it.
         progress: the teacher's own progress through the lessons.
+        presents: whether the teacher presents, with large type for a projector.
         why_still: why the displayed lab is missing or stopped; empty if it runs.
         send_setup: sends the set-up of the teacher's own lab to all students.
         delete: deletes the student of a lab code, with everything that is stored of them.
@@ -47,6 +48,7 @@ class TeacherContext:
     address: str
     is_local: bool
     progress: Callable[[], Progress]
+    presents: Callable[[], bool]
     why_still: Callable[[Words], str]
     send_setup: Callable[[], None]
     delete: Callable[[str], None]

@@ -40,7 +40,7 @@ class TeacherPage(Page):
     def _key(self, snapshot: PageSnapshot | Motion) -> tuple[object, ...]:
         key = snapshot.key
         own = self._teaching.progress()
-        return key.student, key.robot, key.fields, key.plane, own.language, own.presenting
+        return key.student, key.robot, key.fields, key.plane, own.language, self._presents
 
     @override
     def _words_for(self, snapshot: PageSnapshot) -> Words:
@@ -65,7 +65,7 @@ class TeacherPage(Page):
     @property
     def _presents(self) -> bool:
         """Whether the teacher presents, whoever's lab is shown."""
-        return self._teaching.progress().presenting
+        return self._teaching.presents()
 
     @override
     def _build_panels(self, first: PageSnapshot, words: Words, post: Post) -> None:

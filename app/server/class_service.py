@@ -181,6 +181,7 @@ class ClassService:
             address=f"{site}{class_address(self._class.code)}",
             is_local=is_local(site),
             progress=lambda: lab.lessons.progress,
+            presents=lambda: lab.simulation.settings.presenting,
             why_still=followed.why_still,
             send_setup=send_setup,
             delete=self._delete,

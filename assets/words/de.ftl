@@ -1036,6 +1036,54 @@ machine-spatial_arm-text = Drei Motoren, einer dreht den Arm um die Senkrechte: 
 machine-two_link_arm-label = Zweigelenkarm
 machine-two_link_arm-text = Zwei Motoren, einer an der Schulter und einer am Ellbogen, gegen die Schwerkraft.
 
+parameter-rate-label = Tempo der Zeit
+parameter-rate-help = simulierte Sekunden je Sekunde: unter 1 bewegen sich beide Roboter in Zeitlupe
+
+parameter-copy-label = Für beide
+parameter-copy-help = Hand und Bremse wirken auf beide Roboter gleich; man sieht, was die Gesetze daraus machen
+
+parameter-hold_direction-label = Halten wirkt
+parameter-hold_direction-help = welche Bewegung das Halten verhindert: längs der Bahn, quer zu ihr oder beide
+parameter-hold_direction-option-along = längs
+parameter-hold_direction-option-across = quer
+parameter-hold_direction-option-both = beide
+
+parameter-larger-label = Vergrößert
+parameter-larger-help = so viel größer wird die Biegung gezeichnet; die Bewegung bleibt dieselbe
+
+parameter-start_theta-label = Start: Ort
+parameter-start_theta-help = der Punkt der Bahn, bei dem beide Roboter den nächsten Lauf beginnen
+
+parameter-start_beside-label = Start: neben der Bahn
+parameter-start_beside-help = so weit neben der Bahn beginnen beide, nach links positiv
+
+parameter-start_along-label = Start: Tempo längs
+parameter-start_along-help = die Geschwindigkeit längs der Bahn, mit der beide beginnen
+
+parameter-start_across-label = Start: Tempo quer
+parameter-start_across-help = die Geschwindigkeit quer zur Bahn, mit der beide beginnen, nach links positiv
+
+parameter-start_clock_offset-label = Start: Vorsprung der Uhr
+parameter-start_clock_offset-help = so weit voraus beginnt der Punkt eines Gesetzes mit Uhr
+
+parameter-wall-label = Wand
+parameter-wall-help = eine Wand im Weg beider Roboter, die ein wenig nachgibt
+
+parameter-wall_z1-label = Wand: nach rechts
+parameter-wall_z1-help = wo die Mitte der Wand ist, nach rechts
+
+parameter-wall_z2-label = Wand: nach oben
+parameter-wall_z2-help = wo die Mitte der Wand ist, nach oben
+
+parameter-wall_angle-label = Wand: Winkel
+parameter-wall_angle-help = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus; 90° ist oben
+
+parameter-phase-label = Phasenebene
+parameter-phase-help = ξ₁ und ξ₂ der letzten Sekunden als Kurve: Ein Gesetz, das wirkt, endet in der Mitte
+
+parameter-presenting-label = Große Schrift
+parameter-presenting-help = die Texte sind größer, wie für einen Beamer
+
 parameter-K1-label = K1 quer
 parameter-K1-help = Feder, die auf die Bahn zurückzieht
 
@@ -1391,7 +1439,8 @@ error-cannot_follow = { $robot } kann dieser Bahn nicht folgen: { $reasons }
 
 error-start_out_of_reach = dort kann der Roboter nicht starten: Der Ort ist außer Reichweite oder zu nah an einer singulären Stellung
 error-start_not_possible = so kann der Roboter nicht starten: { $reason }
-error-half_a_wall = eine Wand hat einen Ort und einen Winkel: drei Zahlen
+error-set_by_teacher = das kann nur die Lehrkraft ändern
+error-set_by_process = das kann nur ändern, wer diesen Server betreibt
 error-not_a_number = das ist keine Zahl
 error-not_a_point = das ist kein Punkt
 error-value_out_of_range = { $name }: { $value } liegt nicht zwischen { $low } und { $high }

@@ -1037,7 +1037,8 @@ error-cannot_follow = { $robot } cannot follow this path: { $reasons }
 
 error-start_out_of_reach = the robot cannot start there: the place is out of its reach, or too near to where it is singular
 error-start_not_possible = the robot cannot start like this: { $reason }
-error-half_a_wall = a wall has a place and an angle: three numbers
+error-set_by_teacher = only the teacher can change this
+error-set_by_process = only those who run this server can change this
 error-not_a_number = that is not a number
 error-not_a_point = that is not a point
 error-value_out_of_range = { $name }: { $value } is not between { $low } and { $high }

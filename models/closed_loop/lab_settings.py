@@ -95,7 +95,7 @@ class LabSettings:
     rate: float = own(
         number(
             1.0,
-            "",
+            "×",
             (RATES[0], RATES[-1], 0.125),
             "simulated seconds per second: below 1, both robots move in slow motion",
             group="time",
@@ -106,9 +106,9 @@ class LabSettings:
     copy: bool = own(
         switch(
             True,
-            "a pull or hold acts on both robots alike, so that one sees what the laws make of it",
+            "a pull or hold acts on both robots alike; one sees what their laws make of it",
             group="touch",
-            label="Same on both",
+            label="Copy to both",
         )
     )
     hold_direction: str = own(
@@ -117,17 +117,17 @@ class LabSettings:
             DIRECTIONS,
             "the motion that Hold stops: along the path, across it, or both",
             group="touch",
-            label="Hold stops motion",
+            label="Hold direction",
         )
     )
     larger: float = own(
         number(
             1.0,
-            "",
+            "×",
             (1.0, LARGEST, 1.0),
             "how many times larger the bending is drawn; the motion stays the same",
             group="view",
-            label="Bending drawn larger",
+            label="Drawn larger",
             needs=(Need("modes"),),
         )
     )
@@ -176,11 +176,13 @@ class LabSettings:
     )
     wall: bool = own(
         switch(
-            False, "a wall in the way of both robots, which gives way a little", group="wall",
+            False,
+            "a wall in the way of both robots, which gives way a little",
+            group="wall",
             label="Wall",
         ),
         of_robot=True,
-    )  # fmt: skip
+    )
     wall_z1: float = _wall(
         FARTHEST, "m", 1e-3, "where the wall's middle is, to the right", "Wall: right", shown_in=MM
     )
@@ -191,7 +193,7 @@ class LabSettings:
         math.pi,
         "rad",
         math.radians(5.0),
-        "direction of the wall's free side, counter-clockwise from the right",
+        "direction of the wall's free side, counter-clockwise from the right; 90° is up",
         "Wall: angle",
         shown_in=DEGREES,
     )

@@ -60,7 +60,8 @@ class Set(Command):
     def _set_own(self, lab: Lab) -> None:
         setting, simulation = SETTINGS[self.name], lab.simulation
         if not setting.allows(self.role):
-            raise CodedError(f"error.set_by_{setting.by}")
+            teacher = setting.by == "teacher"
+            raise CodedError("error.set_by_teacher" if teacher else "error.set_by_process")
         before = simulation.settings
         wanted = changed_setting(before, self.name, self.value)
         if wanted.obstacle == UNPLACED and not before.wall:

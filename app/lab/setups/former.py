@@ -103,8 +103,9 @@ def _robot_of_today(robot: Any) -> Any:
 def own_of_today(state: Mapping[str, Any]) -> Any:
     """The lab's own settings of a stored state, some of which stood in the progress."""
     lessons = state.get("lessons")
-    formerly = isinstance(lessons, dict) and "presenting" in lessons
-    return {"presenting": lessons["presenting"]} if formerly else state.get("settings", {})
+    if isinstance(lessons, dict) and "presenting" in lessons:
+        return {"presenting": lessons["presenting"]}
+    return state.get("settings", {})
 
 
 def former_defaults(robot: str, version: int) -> dict[str, Any]:

@@ -86,6 +86,7 @@ class LessonSnapshot:
         verdicts: on the checks of the open step's tasks, by task.
         truth: actual curves of the quantity that the open step predicts, or None.
         pace: the steps within which the teacher lets the student go; None if anywhere.
+        presenting: whether it is shown to a class, with large type.
     """
 
     version: int
@@ -94,6 +95,7 @@ class LessonSnapshot:
     verdicts: dict[str, list[Verdict]]
     truth: Truth | None
     pace: Pace | None = None
+    presenting: bool = False
 
 
 @dataclass(frozen=True, slots=True)

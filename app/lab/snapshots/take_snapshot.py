@@ -305,6 +305,7 @@ def _lesson(lab: Lab) -> LessonSnapshot:
         verdicts=dict(run.verdicts),
         truth=_truth(lab),
         pace=run.pace,
+        presenting=lab.simulation.settings.presenting,
     )
 
 

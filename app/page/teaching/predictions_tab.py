@@ -84,7 +84,7 @@ class PredictionsTab:
         push = gui.add_button(words("class.push_step"), color="gray", icon=icons.SEND)
         self._sketches = SketchChoice(gui, words, teaching.chosen, look_again)
         RouteSender(gui, words, course, self._class)
-        large = gui.add_checkbox(words("lesson.presenting"), teaching.progress().presenting)
+        large = gui.add_checkbox(words("lesson.presenting"), teaching.presents())
 
         on_press(self._back, lambda: self._lead(-1))
         on_press(self._next, lambda: self._lead(1))

@@ -54,7 +54,7 @@ class TeacherPanel:
         self._next, self._busy = 0.0, False
         self._lessons = lesson_titles(course, words)
         self._codes: list[viser.GuiHtmlHandle] = []
-        self._large = teaching.progress().presenting
+        self._large = teaching.presents()
         self._for_lessons: list[PredictionsTab | PaceTab] = []
         panel = self._gui.add_panel(order=0)
         opened = [self._add_class, self._add_predictions]

@@ -7,7 +7,7 @@ import dataclasses
 import pickle
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
@@ -34,6 +34,7 @@ from onpath.lessons.record import PLOTS
 from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
@@ -48,6 +49,7 @@ from onpath.models.systems.chain_robot import RedundantSpatialParameters
 from onpath.models.systems.five_bar_parameters import FiveBarParameters
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from onpath.models.systems.flexible_robot import BENT, BENT_OR_UNSTABLE, UNSTABLE
+from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import declared
 from onpath.models.systems.robots import AT_A_LIMIT, RobotEntry
 from tests.support.catalogues import COMPLETE, arguments, counts, messages
@@ -259,9 +261,14 @@ def test_what_the_program_names_has_words(words: Words) -> None:
 def keys_of(entry: RobotEntry) -> Iterator[str]:
     """What a language that knows the robot has words for, besides units."""
     yield from (f"machine.{entry.name}.{part}" for part in ("label", "text"))
-    for name, spec in declared(entry.parameters).items():
+    yield from keys_of_settings(declared(entry.parameters))
+
+
+def keys_of_settings(settings: Mapping[str, Spec]) -> Iterator[str]:
+    """What a language has words for, besides units."""
+    for name, spec in settings.items():
         yield from (f"parameter.{name}.{part}" for part in ("label", "help"))
-        if spec.options and not isinstance(spec.options[0], int):
+        if spec.kind == "choice" and not isinstance(spec.options[0], int):
             yield from (f"parameter.{name}.option.{option}" for option in spec.options)
 
 
@@ -285,6 +292,8 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
     assert {FIVE_BAR.name, FLEXIBLE.name} <= {entry.name for entry in told}
     for entry in told:
         assert [key for key in keys_of(entry) if key not in known] == []
+    own = keys_of_settings({name: setting.spec for name, setting in SETTINGS.items()})
+    assert [key for key in own if key not in known] == []
 
 
 @pytest.mark.parametrize("words", [Words(language) for language in languages()])
@@ -344,8 +353,10 @@ def test_no_language_translates_anything_that_does_not_exist(language: str) -> N
     there_are = {f"language.{language}", *(f"path.{name}" for name in presets())}
     for entry in ROBOTS.values():
         there_are |= {f"machine.{entry.name}.{part}" for part in ("label", "text")}
-    for kind in (*(entry.parameters for entry in ROBOTS.values()), RedundantSpatialParameters):
-        for name, spec in specs(kind).items():
+    kinds = (*(entry.parameters for entry in ROBOTS.values()), RedundantSpatialParameters)
+    lab = {name: setting.spec for name, setting in SETTINGS.items()}
+    for known in (lab, *map(specs, kinds)):
+        for name, spec in known.items():
             parts = ("label", "help", "unit", *(f"option.{option}" for option in spec.options))
             there_are |= {f"parameter.{name}.{part}" for part in parts}
     parts = ("label", "text", "good", "limits", "objection")
