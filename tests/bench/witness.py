@@ -90,7 +90,7 @@ class Witness(Browser):
             if self._asked is None:
                 self._together = not self._together
                 self._asked = time.monotonic()
-                command = {"do": "SetCopy", "on": self._together}
+                command = {"do": "Set", "name": "copy", "value": self._together}
                 await socket.send(msgspec.json.encode(command), text=True)
 
     def _note(self, message: dict[str, object]) -> None:

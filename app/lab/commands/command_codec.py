@@ -31,7 +31,7 @@ _CHECKED: dict[Any, Any] = {
     float: Number,
     int: Whole,
     str: Text,
-    Any: bool | Whole | Number | Text | None,
+    Any: Union[bool, Whole, Number, Text, None],  # noqa: UP007
 }
 
 

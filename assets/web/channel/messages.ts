@@ -104,7 +104,6 @@ export type Command =
     | { do: "AnswerInWords"; block: number; typed: string }
     | { do: "AnswerNumber"; block: number; given: number }
     | { do: "AnswerQuiz"; block: number; option: number }
-    | { do: "AskPhase"; on: boolean }
     | { do: "BeginStepAnew" }
     | { do: "ChooseLaw"; side: string; law: string }
     | { do: "ChoosePath"; name: string }
@@ -130,7 +129,6 @@ export type Command =
     | { do: "NudgeWall"; right?: number; up?: number; turn?: number }
     | { do: "OpenLesson"; name: string }
     | { do: "PlacePoint"; first?: number | null; second?: number | null }
-    | { do: "PlaceWall"; first?: number | null; second?: number | null; angle?: number | null }
     | { do: "PlayStep" }
     | { do: "Predict"; option?: number | null; times?: number[]; values?: number[]; sure?: "" | "certain" | "fairly" | "guessing"; reason?: number | null; why?: string }
     | { do: "Pulse" }
@@ -142,16 +140,9 @@ export type Command =
     | { do: "ResetParameters" }
     | { do: "SelectNext" }
     | { do: "SelectPoint"; index: number | null }
-    | { do: "SetCopy"; on: boolean }
-    | { do: "SetExaggeration"; factor: number }
-    | { do: "SetHoldDirection"; direction: string }
+    | { do: "Set"; name: string; value?: boolean | number | string | null }
     | { do: "SetLanguage"; language: string }
-    | { do: "SetParameter"; name: string; value: number | string }
-    | { do: "SetPresenting"; on: boolean }
-    | { do: "SetRate"; rate: number }
     | { do: "SetRunning"; running?: boolean | null }
-    | { do: "SetStart"; name: string; value: number }
-    | { do: "SetWall"; on?: boolean | null }
     | { do: "Share" }
     | { do: "ShowHint"; task: string }
     | { do: "StartOnPath" }
