@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from datetime import datetime
-from typing import Any
+from typing import Any, Protocol
 
 import viser
 
@@ -26,14 +26,63 @@ _queue = ThreadPoolExecutor(1, "exports")
 """Passes one file at a time to the process, on behalf of all tabs."""
 
 
+class Delivery(Protocol):
+    """Tells a page of its files, and brings them to it. Called in any thread."""
+
+    def making(self, name: str, words: Words) -> None:
+        """A file is being made."""
+
+    def ready(self, name: str, content: bytes, words: Words) -> None:
+        """The file has been made."""
+
+    def failed(self, name: str, words: Words) -> None:
+        """The file, or what is called so, could not be made."""
+
+
+class ViserDelivery:
+    """viser's notifications and downloads."""
+
+    def __init__(self, client: viser.ClientHandle) -> None:
+        self._client = client
+        self._note: Any = None
+
+    def making(self, name: str, words: Words) -> None:
+        """Show that a file is being made."""
+        self._note = self._client.add_notification(
+            words("export.title"),
+            words("export.making", name=name),
+            loading=True,
+            with_close_button=False,
+        )
+
+    def ready(self, name: str, content: bytes, words: Words) -> None:
+        """Download a file."""
+        self._client.send_file_download(name, content, save_immediately=True)
+        note = self._note
+        note.body, note.loading = words("export.ready", name=name), False
+        note.auto_close_seconds = 3.0
+        note.with_close_button = True
+
+    def failed(self, name: str, words: Words) -> None:
+        """Say that a file could not be made."""
+        note, text = self._note, words("export.failed", name=name)
+        if note is None:
+            self._client.add_notification(words("export.title"), text)
+        else:
+            note.body, note.loading, note.with_close_button = text, False, True
+
+
 class Exporter:
     """Creates files in another process from copies made by the simulation thread.
 
     A tab makes one file at a time; further requests are refused with a message.
+
+    Args:
+        delivery: brings them to the tab.
     """
 
-    def __init__(self, client: viser.ClientHandle) -> None:
-        self._client = client
+    def __init__(self, delivery: Delivery) -> None:
+        self._delivery = delivery
         self._wanted: list[Callable[[Lab], None]] = []
         self._under_way = self._refuses = False
         self._latest: Future[None] | None = None
@@ -111,9 +160,7 @@ class Exporter:
         except Exception as error:  # reported to the user; the lab continues
             log_error(error)
             words = Words(language)
-            self._client.add_notification(
-                words("compare.title"), words("export.failed", name=words("compare.title"))
-            )
+            self._delivery.failed(words("compare.title"), words)
         self._under_way = False
 
     def report(self, code: str = "") -> None:
@@ -179,25 +226,17 @@ class Exporter:
 
     def _submit(self, name: str, words: Words, make: Callable[..., bytes], *arguments: Any) -> None:
         deadline = time.monotonic() + PATIENCE
-        note = self._client.add_notification(
-            words("export.title"),
-            words("export.making", name=name),
-            loading=True,
-            with_close_button=False,
-        )
+        self._delivery.making(name, words)
 
         def work() -> None:
             try:
                 content = process.call(deadline - time.monotonic(), make, *arguments)
-                self._client.send_file_download(name, content, save_immediately=True)
-                note.body, note.loading = words("export.ready", name=name), False
-                note.auto_close_seconds = 3.0
+                self._delivery.ready(name, content, words)
             except ExportStopped:
                 return  # the server is stopping
             except Exception as error:  # reported to the user; the lab continues
                 log_error(error)
-                note.body, note.loading = words("export.failed", name=name), False
-            note.with_close_button = True
+                self._delivery.failed(name, words)
             self._under_way = False
 
         with suppress(RuntimeError):  # the interpreter is shutting down

@@ -7,7 +7,7 @@ import viser
 from onpath.app.channel.messages import StateMessage
 from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
-from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.exporter import Exporter, ViserDelivery
 from onpath.app.exports.path_upload import PathReader
 from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
@@ -73,7 +73,7 @@ class Page:
         self._client = client
         self._context = context
         self._channel = FrameChannel(client)
-        self.exporter, self._files = Exporter(client), PathReader()
+        self.exporter, self._files = Exporter(ViserDelivery(client)), PathReader()
         self._rebuilds, self._keys = RebuildThread(client), Keys(client.gui)
         self._framed, self._settling = 0.0, SETTLING
         self._switches, self._switched = Switches(), set[str]()

@@ -13,7 +13,7 @@ Sent = dict[str, Any]
 NEXT: Sent = {"do": "GoToStep", "by": 1}
 BACK: Sent = {"do": "GoToStep", "by": -1}
 FINISH: Sent = {"do": "FinishLesson"}
-RECORD: Sent = {"is": "record"}
+RECORD: Sent = {"is": "make", "file": "report"}
 """Asks for the record of all lessons, which is no command of the lab."""
 
 

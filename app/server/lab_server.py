@@ -285,7 +285,7 @@ class LabServer:
         site = site_for_students(self._seen.get(number, ""), self.site)
         teaching = service.teaching(client, lab, reopen, site) if service else None
         keeps = self._options.records is not None and not self._options.records.warning
-        data = PageData(self._channel, lab)
+        data = PageData(self._channel, lab, code if keeps else "")
         dark, plain = self._looks.get(number, (False, False))
         context = PageContext(
             code=code,

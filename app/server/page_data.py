@@ -13,13 +13,16 @@ from msgspec import Struct
 from onpath.app.channel.data_frame import LENGTH, FrameSource, frame_message, path_message
 from onpath.app.channel.messages import (
     Alive,
-    AskRecord,
+    DropFile,
     Hello,
     Light,
     LitMessage,
+    MakeFile,
     Plot,
     Refused,
     Resized,
+    SendFile,
+    SendPart,
     Skip,
     StateMessage,
     changes,
@@ -32,6 +35,7 @@ from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
 from onpath.app.page.page import Page
 from onpath.app.scene.symbol_geometry import has_meaning, symbol_lines
+from onpath.app.server.page_files import PageFiles
 from onpath.app.viser_adapter.data_channel import DataChannel, Message
 from onpath.models.systems.robots import Robot
 
@@ -46,16 +50,18 @@ class PageData:
 
     Args:
         own: the lab of the page, which gets its commands.
+        code: of the lab, for the record of lessons; empty for none.
     """
 
-    def __init__(self, channel: DataChannel, own: Lab) -> None:
+    def __init__(self, channel: DataChannel, own: Lab, code: str) -> None:
         self._channel, self._own, self._is_own = channel, own, True
         self._stream = channel.open(self._receive)
         self._source, self._opened = FrameSource(), 0
         self._path: PathSnapshot | None = None
         self._robot: object = None
         self._state: StateMessage | None = None
-        self._is_resized = self._wants_record = self._skips = False
+        self._files = PageFiles(own.post, code)
+        self._is_resized = self._skips = False
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
         self._plotted: tuple[str, ...] = ()  # fields that are asked for
@@ -70,6 +76,7 @@ class PageData:
     def close(self) -> None:
         """End the ticket. Thread-safe."""
         self._stream.close()
+        self._files.close()
 
     def follow(
         self,
@@ -89,6 +96,7 @@ class PageData:
             return
         if stream.opened != self._opened:
             self._opened = stream.opened
+            self._files.restart()
             self._source.forget()
             self._path = self._state = None
             self._lesson = self._measured = b""
@@ -99,6 +107,7 @@ class PageData:
             self._is_resized = False
             on_resize()
         self._source.note(lab.simulation)
+        self._files.serve(lab)
         if not is_turn or stream.is_busy:
             return
         messages = list[Message]()
@@ -110,6 +119,7 @@ class PageData:
             messages.append(_text_of(frame_message, frame))
         if self._symbol:
             messages += self._light(robot, drawn)
+        messages += [partial(encoded, each) for each in self._files.take()]
         if not messages and time.monotonic() > self._told + BEAT:
             messages.append(_text_of(Alive))
         if messages:
@@ -118,9 +128,6 @@ class PageData:
 
     def tell(self, snapshot: PageSnapshot, page: Page) -> None:
         """Hand over what has changed of the state and of what the lessons show."""
-        if self._wants_record:
-            self._wants_record = False
-            page.exporter.report()
         if self._skips:
             self._skips = False
             page.end_introduction()
@@ -172,8 +179,11 @@ class PageData:
                 self._is_resized = True
             case Skip():
                 self._skips = True
-            case AskRecord():
-                self._wants_record = True
+            case SendFile() if not self._is_own:
+                return encoded(Refused("this lab is only shown"))
+            case SendFile() | SendPart() | DropFile() | MakeFile():
+                answer = self._files.hear(message)
+                return b"" if answer is None else encoded(answer)
             case Light(symbol=symbol):
                 self._symbol = symbol
             case Plot(fields=fields):

@@ -2,6 +2,7 @@
 
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
+import { Files } from "./files"
 import { PROTOCOL, type Command, type FrameMessage, type LabMessage, type LessonMessage, type Light, type MeasuredMessage, type PageMessage, type PathMessage, type StateMessage } from "./messages"
 
 const SECONDS = 60 // of samples that are kept
@@ -114,6 +115,7 @@ export class RemoteEngine implements Engine {
     refused = { ticket: "", at: 0, times: 0 }
     /** Whether the lab is of another version. */
     outdated = false
+    readonly files = new Files(message => this.send(message))
     /** The open step of a lesson, and what is measured in it; null until they are known. */
     lesson: LessonMessage | null = null
     measured: MeasuredMessage | null = null
@@ -248,6 +250,7 @@ export class RemoteEngine implements Engine {
             this.tries = this.refused.times = 0
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
+            this.files.restart()
             this.tell("state")
         }
         if (message.is === "frame") this.frame(message)
@@ -267,7 +270,8 @@ export class RemoteEngine implements Engine {
         } else if (message.is === "measured") {
             this.measured = message
             this.tell("measured")
-        } else if (message.is === "refused") console.warn(`refused: ${message.why}`)
+        } else if (message.is === "file" || message.is === "download" || message.is === "part") this.files.hear(message)
+        else if (message.is === "refused") console.warn(`refused: ${message.why}`)
     }
 
     private frame({ rows, running, past, anew, fields, straight }: FrameMessage): void {

@@ -78,11 +78,6 @@ export interface Skip {
     is: "skip"
 }
 
-/** The student wants the record of all lessons, which comes as a file. */
-export interface AskRecord {
-    is: "record"
-}
-
 /** Tell where a symbol is found on the robots, until another one is asked for. */
 export interface Light {
     is: "light"
@@ -95,6 +90,57 @@ export interface Plot {
     is: "plots"
     /** that the page plots; see `ASKED` in app/lab/plot_rows.py. */
     fields: string[]
+}
+
+/** A file with a path that the robots are to follow. */
+export interface PathFile {
+    kind: "path"
+    /** of the path, [mm]; 0: as the file states it. */
+    size?: number
+    /** with which its corners are rounded, [mm]; 0: it is smoothed. */
+    radius?: number
+    /** whether it is open, although its ends meet. */
+    opened?: boolean
+}
+
+/** A file will come in parts: the first after the answer to this, `FileMessage`, and each further one after the answer to
+ * the one before. */
+export interface SendFile {
+    is: "send"
+    /** names the file in what follows. */
+    number: number
+    /** of the file. */
+    name: string
+    /** [B]. */
+    size: number
+    /** what is done with it. */
+    use: PathFile
+}
+
+/** The next part of a file. */
+export interface SendPart {
+    is: "part"
+    /** of the file. */
+    number: number
+    /** at most 180 kB, in base64. */
+    content: string
+}
+
+/** No more of a file will come. */
+export interface DropFile {
+    is: "drop"
+    /** of the file. */
+    number: number
+}
+
+/** Make a file for a download; one at a time. Answered by `DownloadMessage`. */
+export interface MakeFile {
+    is: "make"
+    /** a table of the last minute (CSV), a picture of its plots (PNG), a page with the scene of its last seconds, or a page
+     * with the record of all lessons. */
+    file: "film" | "picture" | "report" | "table"
+    /** whether the record shows the lab's code, which then opens the lab. */
+    with_code?: boolean
 }
 
 /** What changes the lab; see app/lab/commands. */
@@ -159,9 +205,12 @@ export type PageMessage =
     | Hello
     | Resized
     | Skip
-    | AskRecord
     | Light
     | Plot
+    | SendFile
+    | SendPart
+    | DropFile
+    | MakeFile
 
 /** The samples since the last frame; 20 times a second while anything in it changes, less often under load or if the page
  * reads slowly.
@@ -421,6 +470,43 @@ export interface ValuesMessage {
     refused?: Record<string, string>
 }
 
+/** How far the server is with a file of the page. */
+export interface FileMessage {
+    is: "file"
+    /** of the file. */
+    number: number
+    /** more of it is awaited, it is being read, it has been used, or it is refused. */
+    state: "awaited" | "reading" | "refused" | "used"
+    /** how much has come, [B]. */
+    received: number
+    /** it is refused: a sentence in the page's language; else empty. */
+    why: string
+}
+
+/** How far the server is with a file for the page. */
+export interface DownloadMessage {
+    is: "download"
+    /** names the file in what follows. */
+    number: number
+    /** of the file. */
+    name: string
+    /** it is being made, its parts come now, or it cannot be made. */
+    state: "coming" | "failed" | "making"
+    /** the same in the page's language. */
+    text: string
+    /** of a file whose parts come now, [B]; else 0. */
+    size: number
+}
+
+/** The next part of a file for the page. */
+export interface DownloadPart {
+    is: "part"
+    /** of the file. */
+    number: number
+    /** in base64. */
+    content: string
+}
+
 /** Comes whenever nothing else has been told for a second. */
 export interface Alive {
     is: "alive"
@@ -448,5 +534,8 @@ export type LabMessage =
     | MeasuredMessage
     | FormMessage
     | ValuesMessage
+    | FileMessage
+    | DownloadMessage
+    | DownloadPart
     | Alive
     | Refused

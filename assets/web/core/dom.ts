@@ -16,6 +16,15 @@ export function tell(element: HTMLElement, text: string): void {
     if (element.textContent !== text) element.textContent = text
 }
 
+/** Let the browser save a file. */
+export function save(name: string, content: Blob): void {
+    const link = made("a", "")
+    link.href = URL.createObjectURL(content)
+    link.download = name
+    link.click()
+    setTimeout(() => URL.revokeObjectURL(link.href), 60_000) // some browsers read it later
+}
+
 /** Whether a key belongs to the browser or to the focused field. */
 export function isTyped({ ctrlKey, metaKey, altKey, target }: KeyboardEvent): boolean {
     const field = (target as Partial<HTMLElement>).closest?.("textarea, select, input:not([type=range])")

@@ -8,6 +8,7 @@ import { said, significant, written, type Texts } from "../core/words"
 import { RemoteEngine } from "../channel/channel"
 import { Connection } from "../channel/connection"
 import { Column } from "../parts/column"
+import { Downloads } from "../parts/downloads"
 import { Lens } from "../parts/lens"
 import { Strip } from "../parts/strip"
 import { SymbolOverlay } from "../parts/symbol_overlay"
@@ -73,7 +74,7 @@ class Face {
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
         head.prepend(this.voice.invitation)
         // Before viser's panel, so that Tab and screen readers come to them first.
-        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element)
+        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element, new Downloads(engine.files, texts, signal).element)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.hear()

@@ -1,5 +1,6 @@
 // The start page: the free lab, and the student's progress.
 
+import { save } from "../core/dom"
 import type { PageData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
 import { said } from "../core/words"
@@ -52,11 +53,7 @@ export class StartPage {
     }
 
     private save(): void {
-        const link = document.createElement("a")
-        link.href = URL.createObjectURL(new Blob([exported(this.progress, this.page)], { type: "application/json" }))
-        link.download = "onpath-progress.json"
-        link.click()
-        URL.revokeObjectURL(link.href)
+        save("onpath-progress.json", new Blob([exported(this.progress, this.page)], { type: "application/json" }))
     }
 
     private async read(input: HTMLInputElement): Promise<void> {

@@ -13,7 +13,7 @@ import pytest
 from viser.infra import WebsockServer
 
 from onpath.app.exports import exporter as exports
-from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.exporter import Exporter, ViserDelivery
 from onpath.app.exports.files import film_file
 from onpath.app.exports.recording import record_scene
 from onpath.app.lab.lab import Lab
@@ -60,7 +60,7 @@ class Client:
 @contextmanager
 def tab() -> Iterator[tuple[Client, Exporter]]:
     client = Client()
-    exporter = Exporter(client)  # type: ignore[arg-type]
+    exporter = Exporter(ViserDelivery(client))  # type: ignore[arg-type]
     yield client, exporter
     exporter.close()
 
@@ -106,7 +106,7 @@ def test_twelve_simultaneous_requests_make_twelve_films_and_leave_nothing_behind
     threads, sockets = threading.active_count(), open_sockets()
     clients, exporters = [Client() for _ in range(CROWD)], list[Exporter]()
     for each in clients:
-        exporters.append(Exporter(each))  # type: ignore[arg-type]
+        exporters.append(Exporter(ViserDelivery(each)))  # type: ignore[arg-type]
     press_at_once(lab, exporters)
     wait_for(lambda: all(client.answered for client in clients))
     for exporter in exporters:

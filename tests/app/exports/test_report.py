@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from onpath.app.common.palette import AZURE, SELECTED, VERMILLION
-from onpath.app.exports.exporter import Exporter
+from onpath.app.exports.exporter import Exporter, ViserDelivery
 from onpath.app.exports.report import report
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
@@ -279,7 +279,7 @@ def test_it_is_sent_as_it_was_when_it_was_requested(course: Course) -> None:
     do(lab, c.OpenLesson(NAME), c.GoToStep(1))
     do(lab, c.Predict(times=(0.0, 2.0), values=(5.0, 30.0)), c.GoToStep(1), c.PlayStep())
     run(lab, 2.3)
-    exporter = Exporter(client)  # type: ignore[arg-type]
+    exporter = Exporter(ViserDelivery(client))  # type: ignore[arg-type]
     exporter.report(CODE)
     exporter.serve(lab)
     wait_for(lambda: client.sent, 240.0)

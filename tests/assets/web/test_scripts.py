@@ -52,7 +52,14 @@ def built() -> Path:
 @pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(HERE)))
 def test_script(built: Path, file: Path) -> None:
     script = built / file.relative_to(HERE).with_suffix(".mjs")
-    command = [NODE or "", "--enable-source-maps", "--test", "--test-reporter=spec", script]
+    command = [
+        NODE or "",
+        "--enable-source-maps",
+        "--test",
+        "--test-reporter=spec",
+        "--test-force-exit",
+        script,
+    ]
     run = subprocess.run(command, check=False, capture_output=True, text=True, encoding="utf-8")
     assert run.returncode == 0, run.stdout + run.stderr
     assert "tests 0" not in run.stdout

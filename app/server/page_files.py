@@ -1,0 +1,219 @@
+"""The files that a page sends, and those that it gets, through its data channel."""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from msgspec import Struct
+from typing_extensions import override
+
+from onpath.app.channel.file_inbox import FileInbox
+from onpath.app.channel.messages import (
+    DownloadMessage,
+    DownloadPart,
+    DropFile,
+    FileMessage,
+    MakeFile,
+    PathFile,
+    SendFile,
+    SendPart,
+)
+from onpath.app.exports.exporter import Delivery, Exporter
+from onpath.app.exports.path_upload import MOST_BYTES, PathReader, Upload
+from onpath.app.lab.lab import Command, Lab
+from onpath.app.viser_adapter.file_uploads import SECONDS
+from onpath.lessons.words import Words
+from onpath.models.errors import CodedError, Message
+from onpath.models.path_files.placing import RADIUS, ROUND, SMOOTH, Placing
+
+PART = 65_536  # [B], of a file for the page; one with each frame of data
+
+FileRequest = SendFile | SendPart | DropFile | MakeFile
+"""What a page says of files."""
+
+
+@dataclass(slots=True)
+class _Coming:
+    """A file for the page.
+
+    Attributes:
+        begin: its first message.
+        sent: how much has been sent, [B]; None before the first message.
+    """
+
+    begin: DownloadMessage
+    content: bytes
+    sent: int | None = None
+
+
+class ChannelDelivery(Delivery):
+    """Brings files to a page in parts, with the frames of data."""
+
+    def __init__(self) -> None:
+        self._news, self._coming = deque[DownloadMessage](), deque[_Coming]()
+        self._number = 0
+
+    @override
+    def making(self, name: str, words: Words) -> None:
+        self._number += 1
+        self._news.append(self._message(name, "making", words))
+
+    @override
+    def ready(self, name: str, content: bytes, words: Words) -> None:
+        begin = self._message(name, "coming", words, len(content))
+        self._coming.append(_Coming(begin, content))
+
+    @override
+    def failed(self, name: str, words: Words) -> None:
+        self._news.append(self._message(name, "failed", words))
+
+    def _message(self, name: str, state: str, words: Words, size: int = 0) -> DownloadMessage:
+        key = {"making": "making", "coming": "ready", "failed": "failed"}[state]
+        text = words(f"export.{key}", name=name)
+        return DownloadMessage(self._number, name, state, text, size)  # type: ignore[arg-type]
+
+    def take(self) -> list[Struct]:
+        """The messages that the page is told next."""
+        told = list[Struct]()
+        while self._news:
+            told.append(self._news.popleft())
+        if self._coming:
+            file = self._coming[0]
+            if file.sent is None:
+                told.append(file.begin)
+                file.sent = 0
+            part = file.content[file.sent : file.sent + PART]
+            told.append(DownloadPart(file.begin.number, part))
+            file.sent += len(part)
+            if file.sent == len(file.content):
+                self._coming.popleft()
+        return told
+
+    def restart(self) -> None:
+        """The page has connected again: it has none of the file that was coming."""
+        for file in self._coming:
+            file.sent = None
+
+
+class PageFiles:
+    """The files of one page.
+
+    Args:
+        post: takes the command that follows the path in a file.
+        code: the lab's code, for the record of lessons; empty for none.
+
+    Attributes:
+        delivery: brings files to the page.
+    """
+
+    def __init__(self, post: Callable[[Command], object], code: str = "") -> None:
+        self._post, self._code = post, code
+        self.delivery = ChannelDelivery()
+        self._exporter = Exporter(self.delivery)
+        self._inbox, self._reader = FileInbox(MOST_BYTES), PathReader()
+        self._wanted = deque[MakeFile]()
+        self._arrived = deque[tuple[SendFile, bytes]]()
+        self._news = deque[FileMessage]()
+        self._language = "en"
+
+    def hear(self, message: FileRequest) -> FileMessage | None:
+        """Take a message of the page; returns the answer. On the event loop."""
+        match message:
+            case MakeFile():
+                self._wanted.append(message)
+                return None
+            case DropFile():
+                self._inbox.drop(message)
+                return None
+            case SendFile() | SendPart():
+                return self._taken(message)
+
+    def _taken(self, message: SendFile | SendPart) -> FileMessage:
+        inbox = self._inbox
+        file = message if isinstance(message, SendFile) else inbox.file
+        try:
+            if isinstance(message, SendFile):
+                content = inbox.begin(message)
+                asyncio.get_running_loop().call_later(SECONDS, self._expire, message.number)
+            else:
+                content = inbox.take(message)
+        except CodedError as error:
+            return self._refusal(message.number, error)
+        if content is None:
+            return FileMessage(message.number, "awaited", inbox.received)
+        assert file is not None
+        self._arrived.append((file, content))
+        return FileMessage(message.number, "reading", len(content))
+
+    def _expire(self, number: int) -> None:
+        file = self._inbox.file
+        if file is not None and file.number == number and self._inbox.expire():
+            self._news.append(self._refusal(number, CodedError("error.file_late")))
+
+    def _refusal(self, number: int, reason: Exception | Message) -> FileMessage:
+        return FileMessage(number, "refused", why=Words(self._language).sentence(reason))
+
+    def serve(self, lab: Lab) -> None:
+        """Begin with what the page has asked for. In the simulation thread."""
+        self._language = lab.words.language
+        exporter = self._exporter
+        while self._wanted:
+            wanted = self._wanted.popleft()
+            if wanted.file == "report":
+                exporter.report(self._code if wanted.with_code else "")
+            else:
+                make = {
+                    "table": exporter.csv,
+                    "picture": exporter.picture,
+                    "film": exporter.recording,
+                }
+                make[wanted.file]()
+        exporter.serve(lab)
+        while self._arrived:
+            self._read(*self._arrived.popleft(), lab)
+
+    def _read(self, file: SendFile, content: bytes, lab: Lab) -> None:
+        simulation, use = lab.simulation, file.use
+        upload = Upload(
+            name=file.name,
+            content=content,
+            placing=_placing(use),
+            robot=simulation.entry.name,
+            parameters=simulation.parameters,
+        )
+
+        def follow(command: Command) -> None:
+            self._post(command)
+            self._news.append(FileMessage(file.number, "used", len(content)))
+
+        def refuse(reason: Exception | Message) -> None:
+            self._news.append(self._refusal(file.number, reason))
+
+        self._reader.read(upload, self._language, follow, refuse)
+
+    def take(self) -> list[Struct]:
+        """The messages that the page is told next. In the simulation thread."""
+        told = list[Struct]()
+        while self._news:
+            told.append(self._news.popleft())
+        return told + self.delivery.take()
+
+    def restart(self) -> None:
+        """The page has connected again."""
+        self.delivery.restart()
+
+    def close(self) -> None:
+        """Make no further files. Thread-safe."""
+        self._exporter.close()
+
+
+def _placing(use: PathFile) -> Placing:
+    return Placing(
+        fit=use.size / 1e3 or None,
+        corners=ROUND if use.radius else SMOOTH,
+        radius=use.radius / 1e3 or RADIUS,
+        closed=False if use.opened else None,
+    )
