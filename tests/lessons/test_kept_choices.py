@@ -27,7 +27,7 @@ from onpath.app.page.lesson_view import LessonView
 from onpath.app.storage.lab_state import keep, put_back
 from onpath.lessons.course import Course, read_course
 from onpath.lessons.kept.known_choices import of_today
-from onpath.lessons.progress import Answer, Notes, Progress
+from onpath.lessons.progress import Answer, Notes, Progress, read_progress
 from onpath.lessons.words import ENGLISH, Words
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.built_in import built_in_course
@@ -84,7 +84,8 @@ def shown(lab: Lab) -> tuple[str, dict[str, Any]]:
     """The HTML of the open step, and the answers that the page is told."""
     run, lesson = lab.lessons, take_page_snapshot(lab, 1.0).lesson
     message = lesson_message(LessonView(run.course, run.words, lesson), lab.simulation.robot)
-    return "".join(message["sections"].values()), message["notes"]["answers"]
+    assert message.notes is not msgspec.UNSET
+    return "".join(message.sections.values()), message.notes["answers"]
 
 
 # Stored by an older version.
@@ -206,7 +207,7 @@ def test_nothing_changes_while_the_lessons_do_not(tmp_path: Path) -> None:
     course = course_of(tmp_path)
     lab = returned(course, chosen(course))
     assert of_today(course, lab.lessons.progress) is lab.lessons.progress
-    once = of_today(course, msgspec.json.decode(OLDER, type=Progress))
+    once = of_today(course, read_progress(msgspec.json.decode(OLDER)))
     assert of_today(course, once) is once
 
 
