@@ -7,7 +7,7 @@ from typing import Literal
 import msgspec
 
 RobotName = Literal["follower", "tracker"]
-Value = float | int | str
+Value = bool | float | int | str
 
 
 class Data(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -78,8 +78,8 @@ class StepSetup(Data, frozen=True):
         robot: name of the robot; empty: that of the lesson.
         path: name of a preset; empty: the circle.
         laws: control laws of the sides.
-        set: parameters that differ from the lab's defaults; all others are reset to them.
-        controls: the controls that are shown: names of parameters, or members of CONTROLS.
+        set: parameters and settings of the lab that differ from a new lab's; all others are reset.
+        controls: the controls that are shown: names of settings, or members of CONTROLS.
         plot: what is plotted besides the distance: one of PLOTS, a list of two, or empty for none.
         start: where and how both robots start.
         show: what is drawn besides the robots: members of DRAWINGS.
@@ -124,7 +124,7 @@ class Action(Data, frozen=True):
         hold: put the brake on, or off.
         pull: pull the end-points from where they are by (right, up), [mm], in the path's plane.
         release: end a pull.
-        set: parameters.
+        set: parameters and settings of the lab.
         path: name of a preset.
         move: move a control point (index, right, up), by [mm].
         robot: change the robot.

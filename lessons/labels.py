@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from onpath.lessons.sides import law_label
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import lab_specs
 from onpath.models.control.laws.own import OWN
-from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.efforts import stated
@@ -69,7 +69,7 @@ def robot_text(entry: RobotEntry, words: Words) -> str:
 
 
 def setting_label(name: str, parameters: Parameters, words: Words) -> str:
-    """Displayed name of a setting: a parameter, one of `OTHERS`, or the law of a side.
+    """Displayed name of a parameter, one of the lab's own settings or `OTHERS`, or a side's law.
 
     Args:
         parameters: of the robot; a lesson may name a parameter that only another robot has.
@@ -78,12 +78,14 @@ def setting_label(name: str, parameters: Parameters, words: Words) -> str:
         return words(f"side.{name}")
     if name in OTHERS:
         return words(OTHERS[name])
-    declared = (specs(each) for each in (parameters, *(e.parameters for e in ROBOTS.values())))
+    declared = (lab_specs(each) for each in (parameters, *(e.parameters for e in ROBOTS.values())))
     return parameter_label(name, next(each[name] for each in declared if name in each), words)
 
 
 def value_label(name: str, value: object, words: Words) -> str:
     """Displayed value of a setting; see `setting_label` for its name."""
+    if isinstance(value, bool):
+        return words("form.is_on" if value else "form.off")
     if isinstance(value, int | float):
         return words.written(f"{value:.4g}") if isinstance(value, float) else str(value)
     text = str(value)

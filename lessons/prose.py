@@ -20,7 +20,7 @@ from onpath.lessons.problems import near
 from onpath.lessons.schema import LabLink, Text
 from onpath.lessons.vocabulary.fences import fence_faults
 from onpath.lessons.vocabulary.setups import action_faults
-from onpath.models.control.settable import specs
+from onpath.models.closed_loop.lab_settings import step_specs
 from onpath.models.control.sides import SIDES
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -190,7 +190,7 @@ def _links(children: list[Token], robot: str, faults: list[str]) -> Iterator[Lab
 
 def _unknown_names(action: Action, robot: str) -> list[str]:
     """The faults of names in a link that are neither actions nor parameters."""
-    known = specs(ROBOTS[robot].parameters) if robot in ROBOTS else action.set or {}
+    known = step_specs(ROBOTS[robot].parameters) if robot in ROBOTS else action.set or {}
     names = [*SIMPLE, "path", "robot", *SIDES, *known]
     return [
         f"{SCHEME}{name}: neither an action nor a parameter{near(name, names)}"

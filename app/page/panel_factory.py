@@ -16,11 +16,9 @@ from onpath.app.page.build_queue import one_at_a_time
 from onpath.app.page.overlays import Overlays
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.panels.compare_panel import ComparePanel
-from onpath.app.page.panels.copy_box import CopyBox
 from onpath.app.page.panels.export_folder import add_exports
-from onpath.app.page.panels.flexible_panel import Exaggeration, FlexiblePanel
+from onpath.app.page.panels.flexible_panel import FlexiblePanel
 from onpath.app.page.panels.gains_panel import GainsPanel, add_identify
-from onpath.app.page.panels.hold_direction import HoldDirection
 from onpath.app.page.panels.keep_panel import KeepPanel
 from onpath.app.page.panels.law_panel import LawPanel
 from onpath.app.page.panels.path_panel import PathChoice, PathPanel
@@ -38,7 +36,7 @@ from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS
 
 FREE = (
-    "direction",
+    "hold_direction",
     "robot",
     "laws",
     "path",
@@ -110,10 +108,11 @@ class PanelFactory:
         return sliders + plots + self._add_others(scene, first)
 
     def _add_sliders(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        names = _sliders(scene, first)
-        if not names:
-            return []
-        return [ParameterWidgets(self._gui, self._words, self._post, names=names, first=first)]
+        names = [name for name in scene.controls if name in first.values and name not in CONTROLS]
+        return [self._settings(names, first)] if names else []
+
+    def _settings(self, names: list[str], first: PageSnapshot) -> Part:
+        return ParameterWidgets(self._gui, self._words, self._post, names=names, first=first)
 
     def _add_others(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         self._scene.mouse.path_first = "editor" in scene.controls
@@ -147,7 +146,6 @@ class PanelFactory:
         """
         gui, words, post, exporter = self._gui, self._words, self._post, self._exporter
         make: dict[str, Callable[[], Part | None]] = {
-            "direction": lambda: HoldDirection(gui, words, post, first),
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first, expanded),
             "gains": lambda: GainsPanel(gui, words, post, first),
@@ -163,15 +161,13 @@ class PanelFactory:
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),
             "robot": lambda: _silent(RobotPanel(gui, words, post, first.key.robot)),
             "laws": lambda: LawPanel(gui, words, post, first),
-            "copy": lambda: CopyBox(gui, words, post, first),
             "flexible": lambda: self._flexible(first),
-            "larger": lambda: Exaggeration(gui, words, post, first),
             "show": lambda: ShowPanel(gui, words, self._overlays),
             "wall": lambda: WallPanel(gui, words, post, first),
             "start": lambda: StartPanel(gui, words, post, first=first, show=self._scene.show_start),
             "identify": lambda: _silent(add_identify(gui, words, post)),
         }
-        part = make[name]()
+        part = make[name]() if name in make else self._settings([name], first)
         one_at_a_time.rest()
         return [] if part is None else [part]
 
@@ -218,11 +214,6 @@ class PanelFactory:
             choose_pull=choose,
             submit=self._submit,
         )
-
-
-def _sliders(scene: StepSetup, first: PageSnapshot) -> list[str]:
-    """The parameters among the controls of a lesson's step."""
-    return [name for name in scene.controls if name in first.parameters]
 
 
 def _silent(_: object) -> None:

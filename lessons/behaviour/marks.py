@@ -16,7 +16,7 @@ from onpath.lessons.measures.stated import Measure, read_measure
 from onpath.lessons.problems import near
 from onpath.lessons.record import PLOTS
 from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS
-from onpath.models.control.settable import specs
+from onpath.models.closed_loop.lab_settings import step_specs
 from onpath.models.systems.catalogue import ROBOTS as MACHINES
 
 MARK = re.compile(r"\{\{\s*([^{}=]+?)\s*=([^{}]*)\}\}")
@@ -140,4 +140,4 @@ def _faults(verb: Verb, name: str, after: str, absent: bool) -> Iterator[str]:
 
 
 def _parameters() -> set[str]:
-    return {name for entry in MACHINES.values() for name in specs(entry.parameters)}
+    return {name for entry in MACHINES.values() for name in step_specs(entry.parameters)}

@@ -11,8 +11,9 @@ from onpath.lessons.symbols import SYMBOLS
 from onpath.lessons.task_schema import During, Stat
 from onpath.lessons.vocabulary.names import CONTROLS, DRAWINGS, EVENTS
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import SETTINGS, step_specs
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.control.settable import specs, value_of
+from onpath.models.control.settable import value_of
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
@@ -48,8 +49,9 @@ def _parameter_rows() -> Iterator[str]:
     """A row for each parameter, or several if it differs between robots."""
     found = defaultdict[tuple[str, ...], list[str]](list)
     for robot, entry in ROBOTS.items():
-        for name, spec in specs(entry.parameters).items():
-            default = _value(value_of(entry.parameters(), name))
+        for name, spec in step_specs(entry.parameters).items():
+            own, parameters = SETTINGS.get(name), entry.parameters()
+            default = _value(own.default if own else value_of(parameters, name))
             found[name, spec.label, spec.unit, _values(spec), default].append(robot)
     for (name, label, unit, values, default), robots in found.items():
         where = "" if len(robots) == len(ROBOTS) else f" ({', '.join(robots)})"

@@ -9,8 +9,8 @@ from onpath.lessons.task_schema import EventName
 from onpath.models.systems.parameter_specs import unknown_name
 
 CONTROLS = (
-    *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "copy", "flexible"),
-    *("identify", "show", "direction", "wall", "start", "larger"),
+    *("hold", "path", "editor", "gains", "plots", "past", "robot", "laws", "flexible"),
+    *("identify", "show", "wall", "start"),
 )
 DRAWINGS = ("labels", "tube", "grid", "rank", "errors", "mass")
 """What a scene can draw besides the robots."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import pairwise
 
 from onpath.lessons.action_schema import (
@@ -26,15 +25,16 @@ from onpath.lessons.vocabulary.names import (
     REACH,
     one_of,
 )
-from onpath.models.closed_loop.lab_settings import RATES
+from onpath.models.closed_loop.lab_settings import RATES, SETTINGS, step_specs
 from onpath.models.closed_loop.simulation import check_level_set, raised
 from onpath.models.closed_loop.start import Start, check_start
-from onpath.models.control.settable import changed, specs, with_values
+from onpath.models.control.settable import with_values
 from onpath.models.control.sides import checked_laws
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import ROBOTS, RobotEntry
+from onpath.models.systems.parameter_specs import checked, unknown_name
 from onpath.models.systems.parameters import Parameters
 
 
@@ -51,7 +51,7 @@ def scene_faults(scene: StepSetup, robot: str) -> Iterator[str]:
         faults = list(_setting_faults(scene.set, entry))
         yield from faults or _path_faults(scene, entry)
         for name in scene.controls:
-            yield from one_of(name, [*CONTROLS, *specs(entry.parameters)], "control")
+            yield from one_of(name, [*CONTROLS, *step_specs(entry.parameters)], "control")
 
 
 def _drawing_faults(scene: StepSetup) -> Iterator[str]:
@@ -131,7 +131,7 @@ def _path_faults(scene: StepSetup, entry: RobotEntry) -> Iterator[str]:
     design = presets().get(name)
     if design is None:
         return
-    parameters = with_values(parameters, scene.set)
+    parameters = with_values(parameters, {n: v for n, v in scene.set.items() if n not in SETTINGS})
     try:
         check_level_set(parameters, design.curve)
     except ValueError as error:
@@ -169,10 +169,12 @@ def _law_faults(laws: Laws, entry: RobotEntry) -> Iterator[str]:
 
 
 def _setting_faults(values: dict[str, Value], entry: RobotEntry) -> Iterator[str]:
-    known = specs(entry.parameters)
+    known = step_specs(entry.parameters)
     for name, value in values.items():
         try:
-            changed(replace(entry.parameters()), name, value)
+            if name not in known:
+                raise unknown_name(name, list(known))
+            checked(known[name], name, value)
         except ValueError as error:
             yield str(error)
         else:

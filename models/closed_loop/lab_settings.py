@@ -16,6 +16,7 @@ from typing import Any, Literal
 
 from onpath.models.closed_loop.obstacles import ALONG, DIRECTIONS, FARTHEST, Wall
 from onpath.models.closed_loop.start import BOUNDS, Start
+from onpath.models.control.settable import specs
 from onpath.models.systems.parameter_specs import (
     DEGREES,
     MM,
@@ -27,6 +28,7 @@ from onpath.models.systems.parameter_specs import (
     switch,
     unknown_name,
 )
+from onpath.models.systems.parameters import Parameters
 
 RATES = (0.125, 0.25, 0.5, 1.0, 2.0, 4.0)
 """Rates that are offered, simulated seconds per second."""
@@ -212,6 +214,11 @@ class LabSettings:
     )
 
     @property
+    def values(self) -> dict[str, Any]:
+        """The values by name."""
+        return {name: getattr(self, name) for name in SETTINGS}
+
+    @property
     def start(self) -> Start:
         """The start of the next run."""
         return Start(**{name: getattr(self, f"start_{name}") for name in BOUNDS})
@@ -245,6 +252,17 @@ def settings_kept(where: Kept, of_robot: bool = False) -> dict[str, Setting]:
         of_robot: whether those that each robot has for itself are meant, or the others.
     """
     return {n: s for n, s in SETTINGS.items() if (s.kept, s.of_robot) == (where, of_robot)}
+
+
+def lab_specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
+    """Name -> declaration of everything that can be set in a lab with a robot."""
+    return {**specs(kind), **{name: setting.spec for name, setting in SETTINGS.items()}}
+
+
+def step_specs(kind: type[Parameters] | Parameters) -> Mapping[str, Spec]:
+    """Like `lab_specs`, but without settings that no set-up has, and so no lesson's step."""
+    known = lab_specs(kind)
+    return {n: s for n, s in known.items() if n not in SETTINGS or SETTINGS[n].kept == "code"}
 
 
 def changed_setting(settings: LabSettings, name: str, value: Any) -> LabSettings:

@@ -18,8 +18,8 @@ MM, DEGREES = ("mm", 1e3), ("°", 180 / math.pi)
 """`Spec.shown_in` of lengths and angles."""
 _SWITCHED = {"true": True, "on": True, "false": False, "off": False}
 NOTHING = 1e-9  # smaller values of any parameter are set to 0, so that inverses are finite
-FORMER_NAMES = {"law": "output"}
-"""Former name of a parameter -> its present one, which is suggested and read in stored set-ups."""
+FORMER_NAMES = {"law": "output", "direction": "hold_direction", "exaggeration": "larger"}
+"""Former name of a setting -> its present one, which is suggested and read in stored set-ups."""
 
 
 Scale = Literal["linear", "log"]

@@ -11,6 +11,7 @@ import pytest
 
 import onpath
 from onpath.lessons.words import ENGLISH
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.own import LABEL
 from onpath.models.control.settable import specs
 from onpath.models.systems.parameters import Parameters
@@ -66,7 +67,7 @@ PARTS = ("run.hold_both", "run.pause", "run.step", "run.reset")
 ROWS = {
     "robots, laws, paths, parameters": Row((".robot canvas", ".title")),
     "hold back along the path, pull, pause, step, reset": Row(said=PARTS),
-    "hold across the path": Row(said=("run.direction_across",)),
+    "hold across the path": Row(names=(SETTINGS["hold_direction"].spec.label,)),
     "speed, gains, and other numbers of the loop's settings": Row(
         (".slider input",), names=_labels("K1", "K2")
     ),

@@ -12,6 +12,7 @@ from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.lab.external_forces import displaced
 from onpath.lessons.action_schema import Action, RobotName, Script
 from onpath.lessons.record import ROBOTS
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.closed_loop.page_functions import page_functions
 
 Act = dict[str, Any]
@@ -57,8 +58,8 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
     if what == "pull":
         assert action.pull is not None
         return {"pull": _in_picture(figure, action.pull), **side}
-    if what == "set":
-        values = action.set or {}
+    values = action.set or {}
+    if what == "set" and not SETTINGS.keys() & values.keys():
         return {"set": values, "write": writes(figure, values, parameters)}
     if what == "path" and action.path and action.path in figure.paths:
         return {"path": list(figure.paths).index(action.path)}

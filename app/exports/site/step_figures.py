@@ -17,6 +17,7 @@ from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.sides import ROLES, law_titles, robot_names
 from onpath.lessons.task_schema import Better, Once, Reference, Task
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
@@ -111,7 +112,9 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     controls = (*ALWAYS, "hold") if "hold" in scene.controls else ALWAYS
     if step.kind == "predict":
         controls = ()
-    bare = chosen(robot, laws, curves, scene.set, sliders=(), controls=controls)
+    own = [name for name in scene.set if name in SETTINGS]
+    parameters = {name: value for name, value in scene.set.items() if name not in SETTINGS}
+    bare = chosen(robot, laws, curves, parameters, sliders=(), controls=controls)
     bare = replace(bare, paths={**curves, **_possible(bare, others)})
     known = specs(type(bare.parameters))
     sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
@@ -120,6 +123,7 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
         lacking.pop("show", None)
     elif scene.marks:
         lacking["show"] = None
+    lacking |= dict.fromkeys(own)
     if scene.start.numbers:
         lacking["start"] = None
     figure = replace(bare, sliders=sliders)
@@ -130,7 +134,7 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
         lacking=tuple(lacking),
         drawings=scene.show,
         plots=scene.plots,
-        faithful=not scene.start.numbers,
+        faithful=not scene.start.numbers and not own,
         changing=changing,
     )
 
@@ -188,7 +192,7 @@ def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
 
 def lacking_words(figure: StepFigure, words: Words) -> str:
     """What a step has only in the lab, in words; empty if nothing."""
-    known = specs(type(figure.choice.parameters))
+    known = lab_specs(type(figure.choice.parameters))
     named = [
         setting_label(name, figure.choice.parameters, words)
         if name in known

@@ -25,8 +25,8 @@ from onpath.lessons.record import Record
 from onpath.lessons.schema import Lesson
 from onpath.lessons.sides import ROLES, law_label
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import step_specs
 from onpath.models.control.laws.registry import LAWS
-from onpath.models.control.settable import specs
 from onpath.models.errors import Coded, Message
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameter_specs import Spec
@@ -40,10 +40,7 @@ CONTROLS = {
     "gains": "gains.title",
     "show": "show.title",
     "flexible": "flexible.title",
-    "larger": "flexible.larger",
     "identify": "gains.identify",
-    "copy": "controls.copy",
-    "direction": "run.direction",
     "start": "start.title",
     "wall": "wall.title",
     "plots": "plots.more",
@@ -252,4 +249,4 @@ def _names() -> set[str]:
 
 
 def _specs(robot: str) -> Mapping[str, Spec]:
-    return specs(ROBOTS[robot].parameters)
+    return step_specs(ROBOTS[robot].parameters)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -148,7 +148,7 @@ class PageSnapshot(Snapshot):
     @property
     def values(self) -> dict[str, Any]:
         """The values of all settings, by name: parameters, gains, and the lab's own."""
-        return {**self.parameters, **asdict(self.settings)}
+        return {**self.parameters, **self.settings.values}
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:

@@ -13,16 +13,13 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, parameters_of
 from onpath.app.page.background import Background, Submit
 from onpath.app.page.panels.widgets import (
-    LabValue,
     ParameterWidgets,
     Post,
     add_menu,
-    on_user_update,
     put,
 )
 from onpath.lessons.sides import side_titles
 from onpath.lessons.words import Words
-from onpath.models.closed_loop.lab_settings import LARGEST
 from onpath.models.systems.robots import FlexibleLink
 
 LEAST, MOST = -1.0, 1.0  # range of alpha on its bar
@@ -69,27 +66,6 @@ def alpha_bar(
     )
 
 
-class Exaggeration:
-    """A slider for the magnification of the drawn deflection."""
-
-    def __init__(self, gui: viser.GuiApi, words: Words, post: Post, first: PageSnapshot) -> None:
-        self._slider = gui.add_slider(
-            words("flexible.larger"),
-            min=1.0,
-            max=LARGEST,
-            step=1.0,
-            initial_value=first.settings.larger,
-            hint=words("flexible.larger_hint"),
-        )
-        self._factor = LabValue(post)
-        on_user_update(self._slider, lambda x: self._factor.change(c.Set("larger", x)))
-
-    def follow(self, snapshot: PageSnapshot) -> None:
-        """Show the lab's value."""
-        if self._factor.is_new(snapshot.settings.larger):
-            put(self._slider, value=snapshot.settings.larger)
-
-
 class FlexiblePanel:
     """Controlled output, alpha with its limit, the beam, and how it is drawn and pulled.
 
@@ -124,7 +100,7 @@ class FlexiblePanel:
             planes = {words(f"pull.{plane}"): plane for plane in pulls}
             hint = words("flexible.pull_hint")
             add_menu(gui, words("flexible.pull"), planes, choose_pull, hint=hint)
-            self._larger = Exaggeration(gui, words, post, first)
+            self._larger = ParameterWidgets(gui, words, post, names=["larger"], first=first)
             with gui.add_folder(words("flexible.beam"), expand_by_default=False):
                 gui.add_markdown(words("flexible.anew"))
                 names = list(link.beam)

@@ -12,9 +12,10 @@ from typing_extensions import override
 
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import Command, Set
-from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, ParameterValues
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.lessons.labels import option_label, parameter_heading, parameter_help, parameter_label
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import lab_specs
 from onpath.models.control.laws.registry import OWN_GAINS, law_named
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
@@ -123,12 +124,12 @@ class LabValue:
 
 
 class ParameterWidgets:
-    """Widgets for parameters that post changes and follow the lab's values.
+    """Widgets for settings that post changes and follow the lab's values.
 
     Args:
         gui: parent of the widgets.
         post: receives the commands.
-        names: fields of the robot's parameters, in order.
+        names: of parameters, gains and the lab's own settings, in order.
     """
 
     def __init__(
@@ -137,17 +138,18 @@ class ParameterWidgets:
         self._handles: dict[str, Any] = {}
         self._values = {name: LabValue(post) for name in names}
         self._post, self._words = post, words
-        self._specs = specs(ROBOTS[first.key.robot].parameters)
+        self._specs, values = lab_specs(ROBOTS[first.key.robot].parameters), first.values
+        make = {"number": self._add_slider, "choice": self._add_choice, "switch": self._add_switch}
         for name in names:
-            shown = self._shown(name, first.parameters)
-            make = self._add_choice if self._specs[name].options else self._add_slider
-            self._handles[name] = make(gui, name, shown)
+            add = make[self._specs[name].kind]
+            self._handles[name] = add(gui, name, self._shown(name, values))
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the lab's values where they differ."""
+        values = snapshot.values
         for name, handle in self._handles.items():
-            if self._values[name].is_new(snapshot.parameters[name]):
-                put(handle, value=self._shown(name, snapshot.parameters))
+            if self._values[name].is_new(values[name]):
+                put(handle, value=self._shown(name, values))
 
     def _change(self, name: str, value: Any) -> None:
         self._values[name].change(Set(name, value))
@@ -159,6 +161,13 @@ class ParameterWidgets:
         return add_menu(
             gui, label, options, lambda new: self._change(name, new), shown=shown, hint=hint
         )
+
+    def _add_switch(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
+        spec, words = self._specs[name], self._words
+        label, hint = parameter_label(name, spec, words), parameter_help(name, spec, words)
+        handle = gui.add_checkbox(label, shown, hint=hint)
+        on_user_update(handle, lambda new: self._change(name, new))
+        return handle
 
     def _add_slider(self, gui: viser.GuiApi, name: str, shown: Any) -> Any:
         spec, words = self._specs[name], self._words
@@ -174,9 +183,11 @@ class ParameterWidgets:
         on_user_update(handle, lambda new: self._change(name, new))
         return handle
 
-    def _shown(self, name: str, parameters: ParameterValues) -> Any:
+    def _shown(self, name: str, values: Mapping[str, Any]) -> Any:
         """Value for the widget: the option's name, or a number rounded to the step or finer."""
-        spec, value = self._specs[name], parameters[name]
+        spec, value = self._specs[name], values[name]
+        if spec.kind == "switch":
+            return value
         if spec.options:
             return option_label(name, value, self._words)
         low, high = _ends(spec)

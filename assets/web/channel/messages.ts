@@ -37,8 +37,8 @@ export interface Action {
     pull?: [number, number] | null
     /** end a pull. */
     release?: boolean | null
-    /** parameters. */
-    set?: Record<string, number | string> | null
+    /** parameters and settings of the lab. */
+    set?: Record<string, boolean | number | string> | null
     /** name of a preset. */
     path?: string | null
     /** move a control point (index, right, up), by [mm]. */

@@ -66,7 +66,7 @@ PAGE = sorted(
     ]
 )
 KEYS_MADE = (
-    *("start.", "run.direction"),
+    "start.",
     *(
         "quantity.",
         "stat.",
