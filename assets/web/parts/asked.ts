@@ -1,6 +1,7 @@
 // Questions that are answered at once: quizzes, numbers, and open questions.
 
 import { made } from "../core/dom"
+import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData } from "../core/lesson_data"
 import { localized, said } from "../core/words"
 import { accepted } from "../lessons/own"
@@ -54,6 +55,14 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
         else input.value = block.kind === "number" ? localized(String(own), page) : String(own)
         show()
     }
+    const name = `${page.lesson} ${key}`
+    const typed = () => (block.kind === "quiz" ? element.querySelector<HTMLInputElement>("input:checked")?.value ?? "" : input.value)
+    const draft = own === undefined ? draftOf<{ typed: string }>(name) : null
+    if (typeof draft?.typed === "string") {
+        if (block.kind !== "quiz") input.value = draft.typed
+        else element.querySelectorAll("input").forEach(each => (each.checked = each.value === draft.typed))
+    }
+    element.addEventListener("input", () => keepDraft(name, { typed: typed() }))
     input.addEventListener("keydown", event => {
         if (block.kind === "number" && (event as KeyboardEvent).key === "Enter") button.click()
     })
@@ -71,6 +80,7 @@ export function ask(page: PageData, element: HTMLElement, block: BlockData, key:
             student.gives(key, given)
         } else if (input.value.trim()) student.writes(key, input.value.trim().slice(0, 1000))
         else return
+        keepDraft(name, null)
         show()
     })
 }

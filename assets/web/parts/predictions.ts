@@ -1,6 +1,7 @@
 // Predictions: a choice or a curve, to which a student commits before the run.
 
 import { made, tell } from "../core/dom"
+import { draftOf, keepDraft } from "../core/drafts"
 import type { BlockData, PageData, Script, SketchData, StepData, Answer, Curves } from "../core/lesson_data"
 import { said, significant, type Texts } from "../core/words"
 import { given, type Notes } from "../lessons/notes"
@@ -62,6 +63,10 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     }
     let board: HTMLElement | null = null
     let committed = (_: Answer) => {}
+    const name = `${page.lesson} ${prediction.step}`
+    const draft = answerKept() ? null : draftOf<Answer>(name)
+    const keep = () => !given(answerKept() ?? {}) && keepDraft(name, { ...answer, ...beside(element) })
+    for (const event of ["input", "change"]) element.addEventListener(event, keep)
     commit.disabled = true
     if (data.kind === "sketch") {
         const chart = chartOf(page, prediction, data, () => {
@@ -80,7 +85,14 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             told.textContent = said(page, times ? "lesson.drawn" : "site.draw_first")
             hint()
             chart.draw()
+            keep()
         })
+        if (draft && isCurve(draft)) {
+            chart.ghost = curveOf(draft)
+            hint()
+            drawing.show()
+            answer = { times: draft.times!, values: draft.values! }
+        }
         board = chart.element
         told.textContent = said(page, "site.draw_first")
         committed = kept => {
@@ -96,6 +108,19 @@ export function predict(page: PageData, prediction: Prediction, student: Student
             answer = { option: Number(input.value) }
             answers()
         })
+    if (draft) {
+        const chosen = element.querySelector<HTMLInputElement>(`input[type=radio][value="${Number(draft.option)}"]`)
+        if (chosen) {
+            chosen.checked = true
+            answer = { option: Number(draft.option) }
+        }
+        for (const [field, value] of [[".sure", draft.sure], [".reason", draft.reason], [".why", draft.why]] as const) {
+            const found = element.querySelector<HTMLSelectElement | HTMLTextAreaElement>(field)
+            if (found && value !== undefined) found.value = String(value)
+        }
+        if (answer.times) told.textContent = said(page, "lesson.drawn")
+        answers()
+    }
     const show = () => {
         const kept = answerKept()
         if (!kept) return
@@ -108,6 +133,7 @@ export function predict(page: PageData, prediction: Prediction, student: Student
     }
     const finish = (own: Answer) => {
         student.predicts(prediction.step, own)
+        keepDraft(name, null)
         show()
     }
     commit.addEventListener("click", () => finish({ ...answer, ...beside(element) }))
@@ -203,6 +229,12 @@ function acting(script: Script | null): Span[] {
 
 function curveOf(answer: Answer | undefined): { times: number[]; values: number[] } | null {
     return answer?.times && answer.values ? { times: answer.times, values: answer.values } : null
+}
+
+/** Whether a draft has a curve that can be drawn. */
+function isCurve({ times, values }: Answer): boolean {
+    const areNumbers = (list: unknown) => Array.isArray(list) && list.every(Number.isFinite)
+    return areNumbers(times) && areNumbers(values) && times!.length > 1 && times!.length === values!.length
 }
 
 /** How sure the student is, and why, if stated. */
