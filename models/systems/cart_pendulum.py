@@ -139,7 +139,7 @@ ROBOT = RobotEntry(
     name="cart_pendulum",
     label="Cart with a pendulum",
     text="Two motors move a pen on a cart, and none the pendulum, which hangs or stands on it.",
-    picture="cart_pendulum.png",
+    picture="cart_pendulum.webp",
     parameters=CartParameters,
     make=cart_for,
 )

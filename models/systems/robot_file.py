@@ -93,7 +93,7 @@ def packaged_robot(name: str, label: str, text: str, pose: Mapping[str, float]) 
     home = tuple(pose[joint.name] for joint in chain.joints)
     axes = output_axes(chain)
     source = ChainSource(name=name, label=label, text=text, chain=chain, home=home, axes=axes)
-    return replace(chain_entry(source), picture=f"{name}.png")
+    return replace(chain_entry(source), picture=f"{name}.webp")
 
 
 def _limits_of(chain: Chain) -> list[str]:

@@ -141,7 +141,7 @@ ROBOT = RobotEntry(
     name="rod_gantry",
     label="Gantry with a rod",
     text="Two motors move a carriage, and none the rod that hangs from it with the pen.",
-    picture="rod_gantry.png",
+    picture="rod_gantry.webp",
     parameters=RodGantryParameters,
     make=lambda _: ROD_GANTRY,
 )

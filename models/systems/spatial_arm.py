@@ -208,7 +208,7 @@ ROBOT = RobotEntry(
     name="spatial_arm",
     label="Spatial arm",
     text="Three motors, a turning base: its path may leave the plane.",
-    picture="spatial_arm.png",
+    picture="spatial_arm.webp",
     parameters=SpatialParameters,
     make=lambda _: SPATIAL_ARM,
 )

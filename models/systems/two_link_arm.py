@@ -175,7 +175,7 @@ ROBOT = RobotEntry(
     name="two_link_arm",
     label="Two-link arm",
     text="Two motors, one at the shoulder and one at the elbow, against gravity.",
-    picture="two_link_arm.png",
+    picture="two_link_arm.webp",
     parameters=TwoLinkParameters,
     make=lambda _: TWO_LINK_ARM,
 )
