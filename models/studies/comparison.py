@@ -46,6 +46,7 @@ from onpath.models.systems.parameters import Parameters, time_step
 from onpath.models.systems.robots import Robot, RobotEntry
 
 BEFORE, AFTER = 0.5, 2.0  # [s]
+CURVE_STEP = 0.02  # [s] between the points of an outcome's curve
 RIGHT_ANGLE = np.array([[0.0, 1.0], [-1.0, 0.0]])  # turns a tangent to the right, outwards
 
 
@@ -117,6 +118,7 @@ class Outcome:
         stopped_at_s: time at which the run was stopped as diverged, or None; all measures are then
             infinity, which ranks last.
         largest_torques: of each motor, until the run was stopped, if it was, [N m] or [N].
+        distances_m: to the path, every `CURVE_STEP` from the start, until the run was stopped.
     """
 
     law: str
@@ -132,9 +134,10 @@ class Outcome:
     rms_torque_Nm: float
     stopped_at_s: float | None
     largest_torques: tuple[float, ...]
+    distances_m: tuple[float, ...]
 
 
-MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-2]
+MEASURES = tuple(f.name for f in dataclasses.fields(Outcome))[3:-3]
 """The numbers of an outcome for which larger is worse."""
 
 
@@ -229,7 +232,7 @@ def by_law(results: Mapping[tuple[str, str], Sequence[Outcome]]) -> dict[str, li
 def row_of(outcome: Outcome) -> dict[str, Any]:
     """A run as a row of a table: its conditions and measures."""
     row = dataclasses.asdict(outcome)
-    del row["largest_torques"]
+    del row["largest_torques"], row["distances_m"]
     return row
 
 
@@ -245,6 +248,9 @@ def _outcome(
     log, fault = run
     dt, speed = time_step(contest.parameters), contest.parameters.speed
     torques = np.abs(log["u"][:fault]).max(axis=0, initial=0.0)
+    seen = log["y"][:fault][::5]
+    distance = path_distance(contest.robot.frame, contest.curve, seen) if len(seen) else np.zeros(0)
+    curve = tuple(distance[:: round(CURVE_STEP / dt / 5)].tolist())
     if fault is not None:
         measures = dict.fromkeys(MEASURES, np.inf)
         return Outcome(
@@ -254,9 +260,9 @@ def _outcome(
             **measures,
             stopped_at_s=fault * dt,
             largest_torques=tuple(torques.tolist()),
+            distances_m=curve,
         )
     seconds = len(log["theta"]) * dt
-    distance = path_distance(contest.robot.frame, contest.curve, log["y"][::5])
     force = np.linalg.norm(log["force"], axis=1)
     steps = np.diff(log["y"], axis=0, append=log["y"][-1:])
     given = -np.cumsum((log["force"] * steps).sum(1))
@@ -277,6 +283,7 @@ def _outcome(
         rms_torque_Nm=float(np.sqrt((log["u"] ** 2).mean())),
         stopped_at_s=None,
         largest_torques=tuple(torques.tolist()),
+        distances_m=curve,
     )
 
 
