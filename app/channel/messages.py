@@ -13,6 +13,19 @@ from typing import Annotated, Any, Literal
 import msgspec
 from msgspec import UNSET, Meta, Struct, UnsetType
 
+from onpath.app.channel.sheet_messages import (
+    Compared,
+    CompareSheet,
+    DisplaySheet,
+    HelpSheet,
+    Index,
+    KeepSheet,
+    LawSheet,
+    LessonSheet,
+    Request,
+    RobotSheet,
+    Told,
+)
 from onpath.app.viser_adapter.data_channel import Hello
 from onpath.app.viser_adapter.file_uploads import LONGEST_NAME
 from onpath.lessons.checks import Verdict
@@ -117,7 +130,9 @@ class MakeFile(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", 
     with_code: bool = False
 
 
-PageMessage = Hello | Resized | Skip | Light | Plot | SendFile | SendPart | DropFile | MakeFile
+PageMessage = (
+    Hello | Resized | Skip | Light | Plot | SendFile | SendPart | DropFile | MakeFile | Request
+)
 """What a page sends besides commands; `Hello` comes first, and only once."""
 
 
@@ -248,6 +263,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         frozen: why the lab takes no commands, if the teacher has stopped it; else empty.
         own: whether commands are taken: not if a teacher looks at the lab of a student.
         rows: what can be plotted of these robots.
+        laws: names of the robots' control laws; a typed one is its own name.
+        shared: the share code that was made last; may be empty.
     """
 
     v: int
@@ -275,6 +292,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     frozen: str
     own: bool
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
+    laws: list[str]
+    shared: str
 
 
 class LessonMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="lesson"):
@@ -514,6 +533,16 @@ LabMessage = (
     | DownloadPart
     | Alive
     | Refused
+    | RobotSheet
+    | LawSheet
+    | CompareSheet
+    | KeepSheet
+    | LessonSheet
+    | HelpSheet
+    | DisplaySheet
+    | Index
+    | Compared
+    | Told
 )
 """What the server sends."""
 

@@ -13,6 +13,14 @@ from onpath.models.systems.parameters import Parameters
 Results = dict[tuple[str, str], list[Outcome]]
 
 
+def outcomes_of(
+    robot: str, parameters: Parameters, curve: Curve, law: str, obstruction: str
+) -> list[Outcome]:
+    """The outcomes of one law under one obstruction, at all places; see `compared`."""
+    (found,) = compare(Contest(ROBOTS[robot], parameters, curve), [law], [obstruction])
+    return found
+
+
 def compared(
     robot: str,
     parameters: Parameters,

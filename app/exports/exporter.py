@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from datetime import datetime
@@ -12,12 +12,13 @@ from typing import Any, Protocol
 import viser
 
 from onpath.app.common.error_log import log_error
-from onpath.app.exports.comparison import Results, compared
+from onpath.app.exports.comparison import Results, compared, outcomes_of
 from onpath.app.exports.export_process import ExportProcess, ExportStopped
 from onpath.app.exports.files import csv_file, film_file, picture_file, report_file
 from onpath.app.lab.lab import Lab
 from onpath.lessons.words import Words
 from onpath.models.paths.curves import Curve
+from onpath.models.studies.comparison import Outcome
 from onpath.models.systems.parameters import Parameters
 
 PATIENCE = 120.0  # [s], of a file, including the files queued before it
@@ -98,6 +99,50 @@ class Exporter:
     def recording(self) -> None:
         """Request a standalone page with the scene of the last seconds."""
         self._ask("onpath.html", film_file, in_words=True, names_path=True)
+
+    def outcomes(
+        self,
+        laws: Sequence[str],
+        obstruction: str,
+        show: Callable[[Mapping[str, list[Outcome]]], None],
+        refuse: Callable[[str], None],
+    ) -> None:
+        """Request a comparison of laws, with the lab's robot, parameters and path.
+
+        Args:
+            show: called with the outcomes so far, by law, after each law.
+            refuse: called with the reason if there is no comparison.
+        """
+
+        def start(lab: Lab) -> None:
+            simulation, words = lab.simulation, lab.words
+            parameters, curve = simulation.parameters, simulation.editor.curve
+            if not curve.closed or parameters.task != "speed" or parameters.speed == 0:
+                self._under_way = False
+                refuse(words("compare.path"))
+                return
+
+            def work() -> None:
+                found = dict[str, list[Outcome]]()
+                try:
+                    for law in laws:
+                        what = simulation.entry.name, parameters, curve, law, obstruction
+                        found[law] = process.call(PATIENCE, outcomes_of, *what)
+                        show(dict(found))
+                except ExportStopped:
+                    return  # the server is stopping
+                except Exception as error:  # reported to the user; the lab continues
+                    log_error(error)
+                    refuse(words("export.failed", name=words("compare.title")))
+                self._under_way = False
+
+            with suppress(RuntimeError):  # the interpreter is shutting down
+                self._latest = _queue.submit(work)
+
+        if self._under_way:
+            self._wanted.append(lambda lab: refuse(lab.words("export.busy")))
+        else:
+            self._want(start)
 
     def compare(
         self, laws: Sequence[str], obstruction: str, show: Callable[[Results, bytes], None]

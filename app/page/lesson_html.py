@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from onpath.app.common.templates import render
 from onpath.app.lab.lesson_state import LessonState
-from onpath.lessons.concept_test.titles import titles_of_tests
+from onpath.app.view.lessons import route_stops
 from onpath.lessons.minutes import lesson_minutes
 from onpath.lessons.routes import Route
 from onpath.lessons.schema import (
@@ -14,24 +14,7 @@ from onpath.lessons.schema import (
 
 def route_entry(route: Route, run: LessonState) -> str:
     """A route in the lesson overview, with its stops and their times."""
-    words, numbers = run.words, run.course.numbers()
-    stops = list[str]()
-    for stop in route.stop:
-        lesson = run.course.lesson(stop.lesson, words.language).front.title
-        first, last = stop.steps
-        stops.append(
-            words(
-                "route.stop",
-                lesson=f"{numbers[stop.lesson]}. {lesson}",
-                first=first,
-                last=last,
-                minutes=f"{stop.minutes:g}",
-            )
-        )
-    if route.test and run.course.tests:
-        before, after = titles_of_tests(run.course, words).items()
-        tests = [_test_stop(name, title, run) for name, title in (before, after)]
-        stops = [tests[0], *stops, tests[1]]
+    words = run.words
     title = route.text(route.title, words.language)
     return render(
         "lesson/route.html",
@@ -39,13 +22,8 @@ def route_entry(route: Route, run: LessonState) -> str:
         name=words("route.follow_name", title=title),
         summary=route.text(route.summary, words.language),
         minutes=words("lesson.minutes", minutes=f"{route.minutes:g}"),
-        stops=stops,
+        stops=route_stops(route, run),
     )
-
-
-def _test_stop(name: str, title: str, run: LessonState) -> str:
-    minutes, _ = lesson_minutes(run.course.lesson(name, run.words.language))
-    return f"{title}, {run.words('lesson.minutes', minutes=minutes)}"
 
 
 def route_line(run: LessonState) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import viser
 
 from onpath.app.channel.messages import StateMessage
+from onpath.app.channel.sheet_messages import Request
 from onpath.app.common.palette import AZURE
 from onpath.app.common.templates import render
 from onpath.app.exports.exporter import Exporter, ViserDelivery
@@ -20,6 +21,7 @@ from onpath.app.page.narration import Narration
 from onpath.app.page.overlays import Overlays, Switches
 from onpath.app.page.page_context import PageContext
 from onpath.app.page.page_menus import PageMenus
+from onpath.app.page.page_requests import PageRequests, Tell
 from onpath.app.page.panel_factory import PanelFactory, Part
 from onpath.app.page.panels.class_panel import ClassPanel
 from onpath.app.page.panels.keys import Keys
@@ -79,6 +81,14 @@ class Page:
         self._switches, self._switched = Switches(), set[str]()
         self._building, self.is_outdated = True, False
         self._preferences = Preferences(client)
+        self._requests = PageRequests(
+            context=context,
+            exporter=self.exporter,
+            preferences=self._preferences,
+            submit=self._rebuilds.submit,
+            reset_view=self.reset_view,
+            ask_summary=lambda: self._narration.ask_summary(),
+        )
         client.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=AZURE.rgb)
         client.gui.set_panel_label("OnPath")
         self._narrow: bool | None = None  # not laid out yet
@@ -130,6 +140,10 @@ class Page:
             said=self._narration.said,
             seen=seen_by(self._client.camera, self._scene.stage, self._robot),
         )
+
+    def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
+        """Serve a request of the page's script. Called on the simulation thread."""
+        self._requests.serve(request, snapshot, self._words_for(snapshot), tell)
 
     def settle(self) -> None:
         """Refit the camera now and for a while, because the canvas has changed its size."""

@@ -58,4 +58,6 @@ def state_message(
         frozen=words("class.frozen") if run.frozen else "",
         own=not snapshot.key.student,
         rows=row_data(snapshot.key.fields, is_level_set, words),
+        laws=list(run.laws.values()),
+        shared=snapshot.shared,
     )

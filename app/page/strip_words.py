@@ -6,6 +6,7 @@ import json
 
 from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.page.first_minute import INVITATIONS
+from onpath.app.page.shell_words import FILLED, SHELL
 from onpath.app.steps.player_words import player_words
 from onpath.lessons.words import Words
 
@@ -21,12 +22,14 @@ _PLAIN = (
     *("breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
     *(f"invite.{invitation.name}" for invitation in INVITATIONS),
     *("invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
+    *SHELL,
 )
 _FILLED = {
     "chart.at": ("time", "values"),
     "lens.name": ("law",),
     "readout.running": ("time", "speed"),
     "readout.paused": ("time", "speed"),
+    **FILLED,
 }
 """Messages whose values the page fills in."""
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -30,6 +31,7 @@ from onpath.app.channel.messages import (
     encoded_changes,
 )
 from onpath.app.channel.reading import NoPageMessage, read_message
+from onpath.app.channel.sheet_messages import Request
 from onpath.app.lab.lab import Command, Lab
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.lab.snapshots.snapshot import Motion, PathSnapshot
@@ -40,6 +42,7 @@ from onpath.app.viser_adapter.data_channel import DataChannel, Message
 from onpath.models.systems.robots import Robot
 
 EVERY = 3.0  # frames of simulation per frame of data: 20 Hz
+MOST_REQUESTS = 16  # of a page that wait to be served, and answers that wait to be sent
 BEAT = 1.0  # [s]; a page to which nothing else is told for so long is told that the lab lives
 
 
@@ -62,6 +65,7 @@ class PageData:
         self._state: StateMessage | None = None
         self._files = PageFiles(own.post, code)
         self._is_resized = self._skips = False
+        self._requests, self._answers = deque[Request](), deque[Struct](maxlen=MOST_REQUESTS)
         self._lesson = self._measured = b""
         self._symbol = ""  # that is asked for
         self._plotted: tuple[str, ...] = ()  # fields that are asked for
@@ -131,6 +135,8 @@ class PageData:
         if self._skips:
             self._skips = False
             page.end_introduction()
+        while self._requests:
+            page.serve(self._requests.popleft(), snapshot, self._answer)
         if not self._stream.is_open or self._stream.is_busy:
             return
         page.has_script = True
@@ -146,8 +152,14 @@ class PageData:
             if column.measured != self._measured:
                 self._measured = column.measured
                 messages.append(partial(bytes, column.measured))
+        while self._answers:
+            messages.append(partial(encoded, self._answers.popleft()))
         if messages:
             self._stream.hand_over(*messages)
+
+    def _answer(self, answer: Struct) -> None:
+        """Send an answer with the next messages. Thread-safe."""
+        self._answers.append(answer)
 
     def _light(self, robot: Robot, drawn: Motion | PageSnapshot) -> list[Message]:
         """What the symbol means that is asked for, unless the page knows it already."""
@@ -190,6 +202,10 @@ class PageData:
                 self._plotted = fields
             case Hello():
                 return encoded(Refused("the channel is open"))
+            case _ if len(self._requests) < MOST_REQUESTS:
+                self._requests.append(message)
+            case _:
+                return encoded(Refused("too many requests at once"))
         return b""
 
 

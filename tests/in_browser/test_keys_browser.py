@@ -14,8 +14,8 @@ from playwright.sync_api import Browser
 from viser import _messages
 
 from onpath.app.lab import commands as c
-from onpath.app.page.panels.keys import KEYS
 from onpath.app.server.lab_server import LabServer
+from onpath.app.view.keys import KEYS
 from onpath.models.control.settable import specs
 from tests.support.browser import Tab, wait_for
 

@@ -114,7 +114,7 @@ def figure_data(
 
 PLOTTED = ("speed", "theta_rate", "xi", "xi_rate", "u", "force")
 """Fields of a log row that are plotted, besides those that are drawn."""
-NUDGE = 0.001  # [m], as app/page/panels/keys.py has it
+NUDGE = 0.001  # [m], as app/view/keys.py has it
 _EDIT = {
     "piece": PIECE,
     "fine": FINE,

@@ -75,6 +75,20 @@ def command_from(message: str) -> Command:
     return _COMMANDS[type(fields).__name__](**given)
 
 
+def message_of(command: Command) -> dict[str, Any]:
+    """The message from which `command_from` makes a command: its name, and fields without defaults.
+
+    Its fields are numbers, texts, switches or nothing; no key, for instance, sends a stroke.
+    """
+    assert dataclasses.is_dataclass(command)
+    given = {
+        field.name: getattr(command, field.name)
+        for field in dataclasses.fields(command)
+        if getattr(command, field.name) != field.default
+    }
+    return {"do": type(command).__name__, **given}
+
+
 def _checked(hint: Any) -> Any:
     """The type of a field with bounded numbers and texts."""
     if hint in _CHECKED:

@@ -9,9 +9,9 @@ import viser
 from onpath.app.common.templates import render
 from onpath.app.lab.commands import ChooseRobot
 from onpath.app.page.panels.dialog import dialog
-from onpath.app.page.panels.robot_picture import picture_of
 from onpath.app.page.panels.slow_presses import on_menu_press
 from onpath.app.page.panels.widgets import Post, on_press
+from onpath.app.view.robots import picture_of
 from onpath.lessons.labels import robot_label, robot_text
 from onpath.lessons.words import Words
 from onpath.models.systems.catalogue import ROBOTS

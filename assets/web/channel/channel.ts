@@ -3,7 +3,11 @@
 import { sampleAt, type Act, type Change, type Engine, type PathShape, type RowData, type Sample, type SideSample, type SideText, type State, type Vector } from "../core/engine"
 import { AT_JOINTS } from "../core/symbols"
 import { Files } from "./files"
-import { PROTOCOL, type Command, type FrameMessage, type LabMessage, type LessonMessage, type Light, type MeasuredMessage, type PageMessage, type PathMessage, type StateMessage } from "./messages"
+import {
+    PROTOCOL, type Ask, type Command, type Compared, type CompareSheet, type DisplaySheet, type FrameMessage, type HelpSheet, type Index, type KeepSheet,
+    type LabMessage, type LawSheet, type LessonMessage, type LessonSheet, type Light, type MeasuredMessage, type PageMessage, type PathMessage,
+    type RobotSheet, type StateMessage, type Told,
+} from "./messages"
 
 const SECONDS = 60 // of samples that are kept
 const [TIME, LENGTH, ANGLE, FORCE] = [1e4, 1e5, 1e4, 1e2] // units per second, metre, radian, newton
@@ -16,6 +20,8 @@ const SETTLES = 400 // [ms], until what the server shows counts again
 
 /** Where the numbers of a field are among those that a row has besides for each robot. */
 type Fields = Map<string, { first: number; size: number; unit: number }>
+type SheetName = Ask["what"]
+type Answer = RobotSheet | LawSheet | CompareSheet | KeepSheet | LessonSheet | HelpSheet | DisplaySheet | Index
 
 /** A path through points at evenly spaced θ from -π to π. */
 class SampledPath implements PathShape {
@@ -132,6 +138,8 @@ export class RemoteEngine implements Engine {
     private ticket = ""
     private tries = 0
     private again = 0 // [ms], when it may be tried again
+    private asked: { what: SheetName; resolve: (answer: Answer) => void }[] = [] // not answered yet
+    private readonly news = new Set<(news: Compared | Told) => void>()
     private readonly listeners = new Set<(change: Change) => void>()
 
     /** Whether there is something to show. */
@@ -224,6 +232,20 @@ export class RemoteEngine implements Engine {
         if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message))
     }
 
+    /** What the lab says now for a sheet of the page. */
+    ask<Name extends SheetName>(what: Name): Promise<Extract<Answer, { is: Name }>> {
+        return new Promise(resolve => {
+            this.asked.push({ what, resolve: resolve as (answer: Answer) => void })
+            this.send({ is: "ask", what })
+        })
+    }
+
+    /** Hear what an open sheet is told later. */
+    onNews(listener: (news: Compared | Told) => void, ended: AbortSignal): void {
+        this.news.add(listener)
+        ended.addEventListener("abort", () => this.news.delete(listener))
+    }
+
     private get flags(): { held: boolean; pulled: boolean } {
         const sides = this.samples.length ? this.present.sides : []
         return { held: sides.some(each => each.held), pulled: sides.some(each => each.pulled) }
@@ -251,6 +273,7 @@ export class RemoteEngine implements Engine {
             if (this.symbol) this.send({ is: "light", symbol: this.symbol })
             if (this.plotted.length) this.send({ is: "plots", fields: [...this.plotted] })
             this.files.restart()
+            for (const { what } of this.asked) this.send({ is: "ask", what })
             this.tell("state")
         }
         if (message.is === "frame") this.frame(message)
@@ -271,7 +294,16 @@ export class RemoteEngine implements Engine {
             this.measured = message
             this.tell("measured")
         } else if (message.is === "file" || message.is === "download" || message.is === "part") this.files.hear(message)
+        else if (message.is === "compared" || message.is === "told") for (const listener of this.news) listener(message)
         else if (message.is === "refused") console.warn(`refused: ${message.why}`)
+        else if (message.is !== "alive" && message.is !== "form" && message.is !== "values") this.answered(message)
+    }
+
+    private answered(answer: Answer): void {
+        const [due, left] = [[], []] as [typeof this.asked, typeof this.asked]
+        for (const each of this.asked) (each.what === answer.is ? due : left).push(each)
+        this.asked = left
+        for (const { resolve } of due) resolve(answer)
     }
 
     private frame({ rows, running, past, anew, fields, straight }: FrameMessage): void {

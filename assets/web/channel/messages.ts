@@ -143,6 +143,42 @@ export interface MakeFile {
     with_code?: boolean
 }
 
+/** Tell what a sheet shows; the answer's `is` is its name. */
+export interface Ask {
+    is: "ask"
+    what: "compare" | "display" | "help" | "index" | "keep" | "laws" | "lessons" | "robots"
+}
+
+/** Keep a switch in the browser; see `app.page.preferences`. */
+export interface Prefer {
+    is: "prefer"
+    name: "sounds" | "speaks"
+    on: boolean
+}
+
+/** Show the robots as at the beginning. */
+export interface ResetView {
+    is: "view"
+}
+
+/** Describe what is on the screen. */
+export interface AskSummary {
+    is: "summary"
+}
+
+/** Go to the lab of a code; if that is refused, `Told` says why. */
+export interface EnterLab {
+    is: "enter"
+    code: string
+}
+
+/** Compare laws under an obstruction; `Compared` tells the results, and `Told` why not. */
+export interface CompareLaws {
+    is: "compare_laws"
+    laws: string[]
+    obstruction: string
+}
+
 /** What changes the lab; see app/lab/commands. */
 export type Command =
     | { do: "Act"; actions: Action[] }
@@ -211,6 +247,12 @@ export type PageMessage =
     | SendPart
     | DropFile
     | MakeFile
+    | Ask
+    | Prefer
+    | ResetView
+    | AskSummary
+    | EnterLab
+    | CompareLaws
 
 /** The samples since the last frame; 20 times a second while anything in it changes, less often under load or if the page
  * reads slowly.
@@ -339,6 +381,10 @@ export interface StateMessage {
     own: boolean
     /** what can be plotted of these robots. */
     rows: RowData[]
+    /** names of the robots' control laws; a typed one is its own name. */
+    laws: string[]
+    /** the share code that was made last; may be empty. */
+    shared: string
 }
 
 /** The open step of a lesson, or its end; when another one is open, or anything is noted in it. A teacher's page has none.
@@ -521,6 +567,211 @@ export interface Refused {
     why: string
 }
 
+/** A robot to choose. */
+export interface RobotCard {
+    name: string
+    label: string
+    /** what is special about it, in a few words. */
+    differs: string
+    /** what it is, in a sentence or two. */
+    text: string
+    /** a data URI. */
+    picture: string
+}
+
+/** All robots. */
+export interface RobotSheet {
+    is: "robots"
+    robots: RobotCard[]
+}
+
+/** A law in four sentences, and its source. */
+export interface LawDescription {
+    name: string
+    label: string
+    does: string
+    good: string
+    limits: string
+    objection: string
+    source: string
+}
+
+/** Names that a typed law may use, which mean the same in several spellings. */
+export interface NameMeaning {
+    names: string
+    means: string
+    unit: string
+}
+
+/** The laws that suit the robot; what bounds all of them; how to type one. */
+export interface LawSheet {
+    is: "laws"
+    laws: LawDescription[]
+    bounds: string
+    own: string[]
+    names: NameMeaning[]
+}
+
+/** A law that can be compared; a typed one is its own name. `chosen`: at first. */
+export interface LawChoice {
+    name: string
+    label: string
+    text: string
+    chosen: boolean
+}
+
+/** An obstruction. */
+export interface ObstructionChoice {
+    name: string
+    label: string
+}
+
+/** What can be compared, and at most how many laws at once. */
+export interface CompareSheet {
+    is: "compare"
+    laws: LawChoice[]
+    obstructions: ObstructionChoice[]
+    most: number
+}
+
+/** The code of the lab, and a sentence for how long it is kept; both empty if it is not. */
+export interface KeepSheet {
+    is: "keep"
+    code: string
+    until: string
+}
+
+/** A lesson or a test to open. */
+export interface LessonCard {
+    name: string
+    /** empty for a test. */
+    number: string
+    title: string
+    summary: string
+    /** how long it takes, and the like. */
+    facts: string[]
+    /** share of what is required that is done. */
+    done: number
+    /** how far the student is. */
+    begun: boolean
+    /** how far the student is. */
+    finished: boolean
+}
+
+/** A route to follow. */
+export interface RouteCard {
+    name: string
+    title: string
+    summary: string
+    minutes: string
+    stops: string[]
+}
+
+/** The course, in its order; `open` is the name of the open lesson, or empty. */
+export interface LessonSheet {
+    is: "lessons"
+    open: string
+    lessons: LessonCard[]
+    routes: RouteCard[]
+}
+
+/** One idea in the lessons' words and in the field's. */
+export interface GlossaryEntry {
+    plain: string
+    term: string
+    means: string
+    lesson: string
+}
+
+/** The glossary in the lessons' order. */
+export interface HelpSheet {
+    is: "help"
+    glossary: GlossaryEntry[]
+}
+
+/** A language and its name in it. */
+export interface LanguageName {
+    code: string
+    name: string
+}
+
+/** The languages, and the browser's switches. */
+export interface DisplaySheet {
+    is: "display"
+    languages: LanguageName[]
+    speaks: boolean
+    sounds: boolean
+}
+
+/** Something that the search finds besides settings. */
+export interface Found {
+    /** "robot", "law", "path", "lesson" or "key". */
+    kind: string
+    /** its name. */
+    label: string
+    /** a sentence. */
+    text: string
+    /** the messages that it sends when it is chosen. */
+    send: (Command | PageMessage)[]
+}
+
+/** A keyboard shortcut. */
+export interface ShownKey {
+    name: string
+    /** as a browser names it, in small letters. */
+    key: string
+    /** whether the control or command key is held down with it. */
+    control: boolean
+    /** the name of the shortcut on a keyboard. */
+    shown: string
+    /** what it does, in a sentence. */
+    does: string
+    /** the message to send. */
+    send: Command | PageMessage
+}
+
+/** Everything that the search finds besides settings, and the keys. */
+export interface Index {
+    is: "index"
+    found: Found[]
+    keys: ShownKey[]
+}
+
+/** A law under an obstruction, at its worst place each. */
+export interface ComparedLaw {
+    law: string
+    label: string
+    /** the largest, [mm], [s] and [N]; 0 if it was stopped. */
+    distance: number
+    /** the largest, [mm], [s] and [N]; 0 if it was stopped. */
+    delay: number
+    /** the largest, [mm], [s] and [N]; 0 if it was stopped. */
+    force: number
+    /** whether its motion diverged. */
+    stopped: boolean
+    /** what it asks of the motors beyond the limits of the robot's file; may be empty. */
+    beyond: string
+    /** between the points of its curve, [s]. */
+    step: number
+    /** distance to the path over time, where it becomes largest, [mm]. */
+    curve: number[]
+}
+
+/** The results so far, of `all` laws; `acts`: from when until when the obstruction acts, [s]. */
+export interface Compared {
+    is: "compared"
+    rows: ComparedLaw[]
+    all: number
+    acts: [number, number]
+}
+
+/** Says something in an open sheet, whose name is `of`. */
+export interface Told {
+    is: "told"
+    of: "compare" | "keep"
+    text: string
+}
+
 /** A message with only the fields that have changed. */
 export type Changes<Message extends { is: string }> = Pick<Message, "is"> & Partial<Message>
 
@@ -539,3 +790,13 @@ export type LabMessage =
     | DownloadPart
     | Alive
     | Refused
+    | RobotSheet
+    | LawSheet
+    | CompareSheet
+    | KeepSheet
+    | LessonSheet
+    | HelpSheet
+    | DisplaySheet
+    | Index
+    | Compared
+    | Told

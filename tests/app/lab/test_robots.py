@@ -27,9 +27,10 @@ from onpath.app.lab.simulation import Simulation
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, robot_snapshots
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot as take_snapshot
 from onpath.app.page import panel_factory
-from onpath.app.page.panels.robot_picture import picture_of, robot_sketch
 from onpath.app.scene.poses import poses_of
 from onpath.app.scene.stage_catalogue import stage_of
+from onpath.app.view.robot_sketch import robot_sketch
+from onpath.app.view.robots import picture_of
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, SIDES
 from onpath.models.paths.curve_faults import curve_faults

@@ -19,10 +19,11 @@ from jinja2 import Environment, nodes
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
-from onpath.app.page.panels.keys import KEYS, help_text
+from onpath.app.page.panels.keys import help_text
 from onpath.app.page.plots import MORE
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
+from onpath.app.view.keys import KEYS
 from onpath.assets.messages import catalogue, identifier, languages
 from onpath.lessons.labels import (
     option_label,
@@ -83,6 +84,7 @@ KEYS_MADE = (
     *("check.above", "check.below", "gains.across", "gains.along"),
     *("lesson.back", "lesson.again", "lesson.close", "site.control.", "symbol.", "show."),
     *("standalone.recorded_", "arena."),
+    *("search.kind_", "search.of_", "aid.", "robots.differs_"),
     *("readout.distance", "readout.now", "readout.most"),
     *ELSEWHERE,
 )

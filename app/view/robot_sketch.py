@@ -1,31 +1,15 @@
-"""A picture of a robot for the menu: an asset, or otherwise a sketch of its bars and joints."""
+"""A sketch of a robot's bars and joints, for robots without a picture."""
 
 from __future__ import annotations
-
-import base64
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
 from onpath.app.common.templates import render
-from onpath.assets import asset_path
-from onpath.models.systems.robots import AXES, Robot, RobotEntry
+from onpath.models.systems.robots import AXES, Robot
 
 SIZE = (640, 360)  # [px]
 MARGIN = 50  # [px]
-
-
-@lru_cache(maxsize=32)
-def picture_of(entry: RobotEntry) -> str:
-    """A data URI."""
-    if entry.picture:
-        return _data("image/png", asset_path(entry.picture).read_bytes())
-    return _data("image/svg+xml", robot_sketch(entry.make(entry.parameters())).encode())
-
-
-def _data(kind: str, content: bytes) -> str:
-    return f"data:{kind};base64,{base64.b64encode(content).decode()}"
 
 
 def robot_sketch(robot: Robot) -> str:

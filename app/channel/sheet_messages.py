@@ -1,0 +1,288 @@
+"""What opens over a page: what it asks for, and what the sheets show."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from msgspec import Meta, Struct
+
+# From the page
+
+SheetName = Literal["robots", "laws", "compare", "keep", "lessons", "help", "display", "index"]
+"""What a page can open, and the index of its search."""
+
+
+class Ask(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="ask"):
+    """Tell what a sheet shows; the answer's `is` is its name."""
+
+    what: SheetName
+
+
+class Prefer(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="prefer"):
+    """Keep a switch in the browser; see `app.page.preferences`."""
+
+    name: Literal["speaks", "sounds"]
+    on: bool
+
+
+class ResetView(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="view"):
+    """Show the robots as at the beginning."""
+
+
+class AskSummary(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="summary"):
+    """Describe what is on the screen."""
+
+
+class EnterLab(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="enter"):
+    """Go to the lab of a code; if that is refused, `Told` says why."""
+
+    code: Annotated[str, Meta(max_length=200)]
+
+
+class CompareLaws(
+    Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="compare_laws"
+):
+    """Compare laws under an obstruction; `Compared` tells the results, and `Told` why not."""
+
+    laws: Annotated[list[Annotated[str, Meta(max_length=2000)]], Meta(min_length=1, max_length=6)]
+    obstruction: Annotated[str, Meta(max_length=80)]
+
+
+Request = Ask | Prefer | ResetView | AskSummary | EnterLab | CompareLaws
+"""What the page asks of its server, without a change of the lab."""
+
+
+# To the page
+
+Sent = Annotated[Mapping[str, Any], Meta(extra={"typescript": "Command | PageMessage"})]
+"""A command or another message that a button of the page sends."""
+
+
+class RobotCard(Struct, frozen=True, kw_only=True):
+    """A robot to choose.
+
+    Attributes:
+        differs: what is special about it, in a few words.
+        text: what it is, in a sentence or two.
+        picture: a data URI.
+    """
+
+    name: str
+    label: str
+    differs: str
+    text: str
+    picture: str
+
+
+class RobotSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="robots"):
+    """All robots."""
+
+    robots: list[RobotCard]
+
+
+class LawDescription(Struct, frozen=True, kw_only=True):
+    """A law in four sentences, and its source."""
+
+    name: str
+    label: str
+    does: str
+    good: str
+    limits: str
+    objection: str
+    source: str
+
+
+class NameMeaning(Struct, frozen=True, kw_only=True):
+    """Names that a typed law may use, which mean the same in several spellings."""
+
+    names: str
+    means: str
+    unit: str
+
+
+class LawSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="laws"):
+    """The laws that suit the robot; what bounds all of them; how to type one."""
+
+    laws: list[LawDescription]
+    bounds: str
+    own: list[str]
+    names: list[NameMeaning]
+
+
+class ShownKey(Struct, frozen=True, kw_only=True):
+    """A keyboard shortcut.
+
+    Attributes:
+        key: as a browser names it, in small letters.
+        control: whether the control or command key is held down with it.
+        shown: the name of the shortcut on a keyboard.
+        does: what it does, in a sentence.
+        send: the message to send.
+    """
+
+    name: str
+    key: str
+    control: bool
+    shown: str
+    does: str
+    send: Sent
+
+
+class GlossaryEntry(Struct, frozen=True, kw_only=True):
+    """One idea in the lessons' words and in the field's."""
+
+    plain: str
+    term: str
+    means: str
+    lesson: str
+
+
+class HelpSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="help"):
+    """The glossary in the lessons' order."""
+
+    glossary: list[GlossaryEntry]
+
+
+class LessonCard(Struct, frozen=True, kw_only=True):
+    """A lesson or a test to open.
+
+    Attributes:
+        number: empty for a test.
+        facts: how long it takes, and the like.
+        done: share of what is required that is done.
+        begun, finished: how far the student is.
+    """
+
+    name: str
+    number: str
+    title: str
+    summary: str
+    facts: list[str]
+    done: float
+    begun: bool
+    finished: bool
+
+
+class RouteCard(Struct, frozen=True, kw_only=True):
+    """A route to follow."""
+
+    name: str
+    title: str
+    summary: str
+    minutes: str
+    stops: list[str]
+
+
+class LessonSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="lessons"):
+    """The course, in its order; `open` is the name of the open lesson, or empty."""
+
+    open: str
+    lessons: list[LessonCard]
+    routes: list[RouteCard]
+
+
+class KeepSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="keep"):
+    """The code of the lab, and a sentence for how long it is kept; both empty if it is not."""
+
+    code: str
+    until: str
+
+
+class LanguageName(Struct, frozen=True, kw_only=True):
+    """A language and its name in it."""
+
+    code: str
+    name: str
+
+
+class DisplaySheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="display"):
+    """The languages, and the browser's switches."""
+
+    languages: list[LanguageName]
+    speaks: bool
+    sounds: bool
+
+
+class Found(Struct, frozen=True, kw_only=True):
+    """Something that the search finds besides settings.
+
+    Attributes:
+        kind: "robot", "law", "path", "lesson" or "key".
+        label: its name.
+        text: a sentence.
+        send: the messages that it sends when it is chosen.
+    """
+
+    kind: str
+    label: str
+    text: str
+    send: list[Sent]
+
+
+class Index(Struct, frozen=True, kw_only=True, tag_field="is", tag="index"):
+    """Everything that the search finds besides settings, and the keys."""
+
+    found: list[Found]
+    keys: list[ShownKey]
+
+
+class LawChoice(Struct, frozen=True, kw_only=True):
+    """A law that can be compared; a typed one is its own name. `chosen`: at first."""
+
+    name: str
+    label: str
+    text: str
+    chosen: bool
+
+
+class ObstructionChoice(Struct, frozen=True, kw_only=True):
+    """An obstruction."""
+
+    name: str
+    label: str
+
+
+class CompareSheet(Struct, frozen=True, kw_only=True, tag_field="is", tag="compare"):
+    """What can be compared, and at most how many laws at once."""
+
+    laws: list[LawChoice]
+    obstructions: list[ObstructionChoice]
+    most: int
+
+
+class ComparedLaw(Struct, frozen=True, kw_only=True):
+    """A law under an obstruction, at its worst place each.
+
+    Attributes:
+        distance, delay, force: the largest, [mm], [s] and [N]; 0 if it was stopped.
+        stopped: whether its motion diverged.
+        beyond: what it asks of the motors beyond the limits of the robot's file; may be empty.
+        step: between the points of its curve, [s].
+        curve: distance to the path over time, where it becomes largest, [mm].
+    """
+
+    law: str
+    label: str
+    distance: float
+    delay: float
+    force: float
+    stopped: bool
+    beyond: str
+    step: float
+    curve: list[float]
+
+
+class Compared(Struct, frozen=True, kw_only=True, tag_field="is", tag="compared"):
+    """The results so far, of `all` laws; `acts`: from when until when the obstruction acts, [s]."""
+
+    rows: list[ComparedLaw]
+    all: int
+    acts: tuple[float, float]
+
+
+class Told(Struct, frozen=True, kw_only=True, tag_field="is", tag="told"):
+    """Says something in an open sheet, whose name is `of`."""
+
+    of: Literal["keep", "compare"]
+    text: str

@@ -1,0 +1,106 @@
+"""What a page asks of its server besides commands: what sheets show, files, another lab."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from msgspec import Struct
+
+from onpath.app.channel.sheet_messages import (
+    Ask,
+    AskSummary,
+    CompareLaws,
+    EnterLab,
+    Prefer,
+    Request,
+    ResetView,
+    Told,
+)
+from onpath.app.common.access_codes import shown
+from onpath.app.exports.exporter import Exporter
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.page.background import Submit
+from onpath.app.page.page_context import PageContext
+from onpath.app.page.preferences import Preferences
+from onpath.app.view.comparing import compare_sheet, compared
+from onpath.app.view.sheets import SheetContext, sheet_of
+from onpath.lessons.words import Words
+from onpath.models.studies.comparison import OBSTRUCTIONS
+
+Tell = Callable[[Struct], None]
+"""Sends an answer, from any thread."""
+
+
+class PageRequests:
+    """Serves one page's requests. Call it in the simulation thread.
+
+    Args:
+        submit: runs a function in another thread.
+        reset_view: resets the camera.
+        ask_summary: announces a description of the screen.
+    """
+
+    def __init__(
+        self,
+        context: PageContext,
+        exporter: Exporter,
+        preferences: Preferences,
+        submit: Submit,
+        reset_view: Callable[[], None],
+        ask_summary: Callable[[], None],
+    ) -> None:
+        self._context, self._exporter, self._preferences = context, exporter, preferences
+        self._submit, self._reset_view, self._ask_summary = submit, reset_view, ask_summary
+        self._sheets = SheetContext(
+            course=context.course,
+            code=shown(context.code),
+            days=context.keep_days,
+            preferences=preferences,
+        )
+
+    def serve(self, request: Request, snapshot: PageSnapshot, words: Words, tell: Tell) -> None:
+        """Serve a request; what takes long is answered later.
+
+        Args:
+            words: of the page.
+        """
+        match request:
+            case Ask(what=what):
+                self._submit(lambda: tell(sheet_of(what, snapshot, words, self._sheets)))
+            case Prefer(name=name, on=on):
+                self._preferences.set(name, on)
+            case ResetView():
+                self._reset_view()
+            case AskSummary():
+                self._ask_summary()
+            case EnterLab(code=code):
+                self._submit(lambda: self._enter(code, words, tell))
+            case CompareLaws(laws=laws, obstruction=obstruction):
+                self._compare(laws, obstruction, snapshot, words, tell)
+
+    def _enter(self, code: str, words: Words, tell: Tell) -> None:
+        try:
+            self._context.enter(code)  # shows another page
+        except (ValueError, OSError) as error:
+            tell(Told(of="keep", text=words.sentence(error)))
+
+    def _compare(
+        self,
+        laws: list[str],
+        obstruction: str,
+        snapshot: PageSnapshot,
+        words: Words,
+        tell: Tell,
+    ) -> None:
+        robot, laws = robot_of(snapshot), list(dict.fromkeys(laws))
+        offered = compare_sheet(robot, snapshot.run.laws, words)
+        known = {law.name for law in offered.laws}
+        if not known.issuperset(laws) or obstruction not in OBSTRUCTIONS:
+            tell(Told(of="compare", text=words("compare.count", most=offered.most)))
+            return
+        self._exporter.outcomes(
+            laws,
+            obstruction,
+            show=lambda results: tell(compared(results, laws, obstruction, robot, words)),
+            refuse=lambda why: tell(Told(of="compare", text=why)),
+        )

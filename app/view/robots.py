@@ -1,0 +1,43 @@
+"""The robots to choose from, each with a picture and what is special about it."""
+
+from __future__ import annotations
+
+import base64
+from functools import lru_cache
+
+from onpath.app.channel.sheet_messages import RobotCard, RobotSheet
+from onpath.app.view.robot_sketch import robot_sketch
+from onpath.assets import asset_path
+from onpath.lessons.labels import robot_label, robot_text
+from onpath.lessons.words import Words
+from onpath.models.systems.catalogue import ROBOTS
+from onpath.models.systems.robots import RobotEntry
+
+
+def robot_sheet(words: Words) -> RobotSheet:
+    """All robots of the catalogue, in its order."""
+    return RobotSheet(robots=[robot_card(entry, words) for entry in ROBOTS.values()])
+
+
+def robot_card(entry: RobotEntry, words: Words) -> RobotCard:
+    """A robot, and what is special about it; one from a file has only its text."""
+    text = robot_text(entry, words)
+    return RobotCard(
+        name=entry.name,
+        label=robot_label(entry.name, words),
+        differs=words.get(f"robots.differs_{entry.name}", text),
+        text=text,
+        picture=picture_of(entry),
+    )
+
+
+@lru_cache(maxsize=32)
+def picture_of(entry: RobotEntry) -> str:
+    """A data URI: an asset, or else a sketch of the robot's bars and joints."""
+    if entry.picture:
+        return _data("image/webp", asset_path(entry.picture).read_bytes())
+    return _data("image/svg+xml", robot_sketch(entry.make(entry.parameters())).encode())
+
+
+def _data(kind: str, content: bytes) -> str:
+    return f"data:{kind};base64,{base64.b64encode(content).decode()}"

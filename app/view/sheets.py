@@ -1,0 +1,71 @@
+"""What opens over the page, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from msgspec import Struct
+
+from onpath.app.channel.sheet_messages import DisplaySheet, KeepSheet, LanguageName, SheetName
+from onpath.app.lab.lesson_state import LessonState
+from onpath.app.lab.snapshots.page_snapshot import PageSnapshot, robot_of
+from onpath.app.view.comparing import compare_sheet
+from onpath.app.view.help import help_sheet
+from onpath.app.view.laws import law_sheet
+from onpath.app.view.lessons import lesson_sheet
+from onpath.app.view.robots import robot_sheet
+from onpath.app.view.search import index
+from onpath.lessons.course import Course
+from onpath.lessons.words import Words, language_name, languages
+
+
+@dataclass(frozen=True, slots=True)
+class SheetContext:
+    """What sheets show besides the lab.
+
+    Attributes:
+        course: all lessons.
+        code: of the lab, as it is shown.
+        days: without use, after which the lab is deleted; 0 if it is not kept.
+        preferences: the browser's switches, by name.
+    """
+
+    course: Course
+    code: str
+    days: int
+    preferences: Mapping[str, bool]
+
+
+def sheet_of(
+    what: SheetName, snapshot: PageSnapshot, words: Words, context: SheetContext
+) -> Struct:
+    """What a sheet shows now."""
+    robot, course = robot_of(snapshot), context.course
+    make: dict[SheetName, Callable[[], Struct]] = {
+        "robots": lambda: robot_sheet(words),
+        "laws": lambda: law_sheet(robot, words),
+        "compare": lambda: compare_sheet(robot, snapshot.run.laws, words),
+        "keep": lambda: keep_sheet(context, words),
+        "lessons": lambda: lesson_sheet(LessonState(course, snapshot.lesson.progress, words)),
+        "help": lambda: help_sheet(words),
+        "display": lambda: display_sheet(context.preferences),
+        "index": lambda: index(robot, course, words),
+    }
+    return make[what]()
+
+
+def keep_sheet(context: SheetContext, words: Words) -> KeepSheet:
+    """The code of the lab, if it is kept."""
+    if not context.days:
+        return KeepSheet(code="", until="")
+    return KeepSheet(code=context.code, until=words("keep.until", days=context.days))
+
+
+def display_sheet(preferences: Mapping[str, bool]) -> DisplaySheet:
+    """The languages, and what the browser wants to hear."""
+    return DisplaySheet(
+        languages=[LanguageName(code=code, name=language_name(code)) for code in languages()],
+        speaks=preferences["speaks"],
+        sounds=preferences["sounds"],
+    )
