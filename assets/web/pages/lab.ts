@@ -14,6 +14,7 @@ import { Strip } from "../parts/strip"
 import { SymbolOverlay } from "../parts/symbol_overlay"
 import { Transport } from "../parts/transport"
 import { Voice } from "../parts/voice"
+import { Shell } from "./shell"
 
 const LOOK = 250 // [ms] between looks for what viser has put into the page
 const RATES = [0.125, 0.25, 0.5, 1, 2, 4]
@@ -21,6 +22,7 @@ const RESTS = 300 // [ms] for which the canvas keeps its size, until the lab is 
 const NUMBERS = 100 // [ms] between changes of the large numbers
 const LARGER = 1.7 // how much larger charts and lenses are drawn for a projector
 const UPRIGHT = matchMedia("(width <= 36em), (aspect-ratio <= 4/5)")
+const OURS = new URLSearchParams(location.search).get("panel") === "ours" // controls of our own in place of viser's
 const PHONE = matchMedia("(width <= 36em)") // spelt unlike viser's query, which portrait.js rewrites
 
 /** Our part of the page, in one language. */
@@ -41,6 +43,7 @@ class Face {
     private readonly clock = made("span", "clock")
     private readonly column: Column
     private readonly voice: Voice
+    private readonly shell: Shell | null
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
@@ -48,7 +51,8 @@ class Face {
     private resizing = 0
     private read = 0
 
-    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts) {
+    /** `reopen`: what was open before the page got these texts. */
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, reopen = "") {
         const { signal } = this.ended
         const indices = engine.texts.map((_, i) => i)
         this.strip = new Strip(texts, engine, signal, "onpath-rows")
@@ -74,7 +78,10 @@ class Face {
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
         head.prepend(this.voice.invitation)
         // Before viser's panel, so that Tab and screen readers come to them first.
-        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element, new Downloads(engine.files, texts, signal).element)
+        this.shell = OURS ? new Shell(engine, texts, signal, reopen) : null
+        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],
+            new Downloads(engine.files, texts, signal).element)
+        document.documentElement.classList.toggle("op-ours", OURS)
         document.documentElement.classList.add("op-stripped")
         engine.on(change => {
             if (change === "lesson") this.hear()
@@ -99,12 +106,15 @@ class Face {
         this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
     }
 
-    end(): void {
+    /** Remove it; returns what was open. */
+    end(): string {
+        const open = this.shell?.end() ?? ""
         this.ended.abort()
         this.column.element.remove()
         this.stage.remove()
         this.element.remove()
         document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
+        return open
     }
 
     /** Follow viser's canvas, which changes its size, or is replaced. Not to be called by a ResizeObserver, or a lens misses its own new size. */
@@ -215,7 +225,7 @@ function sliderOf(gain: string): Element | null {
 export function showLab(): void {
     const engine = new RemoteEngine(), root = document.documentElement, connection = new Connection(engine)
     let face: Face | null = null
-    let words = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
+    let words = "", reopen = "", calmed = !matchMedia("(prefers-reduced-motion: reduce)").matches
     root.classList.add("op-loading")
     let source: DOMStringMap | undefined
     const follow = () => {
@@ -225,12 +235,12 @@ export function showLab(): void {
         root.lang = source["language"]!
         connection.page(source["ticket"] ?? "")
         if (source["parts"] !== words) {
-            face?.end()
+            reopen = face?.end() ?? ""
             face = null
             words = source["parts"]!
         }
         if (!engine.ready) return
-        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> })
+        face ??= new Face(engine, { words: JSON.parse(words) as Record<string, string> }, reopen)
         face.place()
         if (calmed) return
         calmed = true // users who ask for less motion begin with a lab at rest

@@ -1,0 +1,133 @@
+// What stands around the stage of the lab's page: the head, the controls, the search, the keys, and all that opens.
+
+import type { RemoteEngine } from "../channel/channel"
+import type { Command, Compared, Index, PageMessage, Told } from "../channel/messages"
+import { keptLook, keepLook } from "../core/look"
+import { said, type Texts } from "../core/words"
+import { Compare } from "../parts/compare_sheet"
+import { display } from "../parts/display_sheet"
+import { Header } from "../parts/header"
+import { help } from "../parts/help_sheet"
+import { Keep } from "../parts/keep_sheet"
+import { Keys } from "../parts/keys"
+import { aboutLaws } from "../parts/law_sheet"
+import { chooseLesson } from "../parts/lesson_sheet"
+import { Panel } from "../parts/panel"
+import { pointAtStage } from "../parts/pointing"
+import { chooseRobot } from "../parts/robot_sheet"
+import { Search, type Entry } from "../parts/search"
+import type { SheetDialog } from "../parts/sheet"
+
+/** What can be opened, with the title under which the search finds it. */
+const TITLES = {
+    robots: "robots.choose", laws: "laws.about", compare: "compare.title", keep: "keep.title", lessons: "lesson.choose",
+    help: "help.title", display: "display.title",
+} as const
+type Opens = keyof typeof TITLES
+
+/** What the shell needs of the settings. */
+export interface Settings {
+    entries(): Entry[]
+}
+
+type Message = Command | PageMessage
+
+export class Shell {
+    readonly header: Header
+    readonly panel: Panel
+    /** The settings that are shown, for the search. */
+    settings: Settings | null = null
+    private readonly search: Search
+    private readonly keys: Keys
+    private index: Index | null = null
+    private known = "" // language and robot of the index
+    private opened: { name: Opens; dialog: SheetDialog } | null = null
+    private keep: Keep | null = null
+    private compare: Compare | null = null
+
+    /** `reopen`: what was open before the page got its present words. */
+    constructor(private readonly engine: RemoteEngine, private readonly texts: Texts, signal: AbortSignal, reopen: string) {
+        this.header = new Header(texts, place => this.go(place))
+        this.panel = new Panel(texts, this.header.controls, signal)
+        this.search = new Search(texts, () => this.entries())
+        this.keys = new Keys(message => engine.send(message), () => this.search.open(), signal)
+        engine.on(change => {
+            if (change === "state") this.follow()
+        }, signal)
+        engine.onNews(news => this.hear(news), signal)
+        this.follow()
+        if (reopen in TITLES) void this.open(reopen as Opens)
+    }
+
+    get elements(): HTMLElement[] { return [this.header.element, this.panel.element] }
+
+    /** Remove everything; returns the name of what was open, or an empty text. */
+    end(): string {
+        const name = this.opened?.dialog.isOpen ? this.opened.name : ""
+        this.opened?.dialog.close()
+        for (const element of this.elements) element.remove()
+        return name
+    }
+
+
+    /** Open one of the sheets with what the lab says now. */
+    async open(name: Opens): Promise<void> {
+        const { engine, texts } = this, lab = engine.lab!
+        const send = (message: Message) => engine.send(message)
+        const opens: Record<Opens, () => Promise<SheetDialog>> = {
+            robots: async () => chooseRobot(texts, await engine.ask("robots"), lab.robot, robot => send({ do: "ChooseRobot", name: robot })),
+            laws: async () => aboutLaws(texts, await engine.ask("laws"), lab.laws),
+            lessons: async () => chooseLesson(texts, await engine.ask("lessons"), send),
+            help: async () => help(texts, await engine.ask("help"), this.keys.known, () => pointAtStage(texts, engine)),
+            display: async () => display(texts, await engine.ask("display"), {
+                language: lab.language, large: lab.presenting, look: keptLook(), send, setLook: keepLook,
+            }),
+            keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
+            compare: async () => {
+                const data = await engine.ask("compare")
+                return (this.compare ??= new Compare(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
+            },
+        }
+        this.opened?.dialog.close()
+        this.opened = { name, dialog: await opens[name]() }
+    }
+
+    private go(place: string): void {
+        if (place === "controls") this.panel.show(!this.panel.isOpen)
+        else if (place === "search") this.search.open()
+        else void this.open(place as Opens)
+    }
+
+    private follow(): void {
+        const { engine } = this, lab = engine.lab!
+        this.keep?.show(lab.shared)
+        this.compare?.follow()
+        this.panel.freeze(lab.frozen)
+        const known = `${lab.language} ${lab.robot}`
+        if (known === this.known) return
+        this.known = known
+        void engine.ask("index").then(index => {
+            this.index = index
+            this.keys.known = index.keys
+            this.search.renew()
+        })
+    }
+
+    private hear(told: Compared | Told): void {
+        if (told.is === "compared") this.compare?.show(told)
+        else if (told.of === "compare") this.compare?.refuse(told.text)
+        else this.keep?.tell(told.text)
+    }
+
+    /** Everything that the search finds. */
+    private entries(): Entry[] {
+        const { texts, index, settings } = this
+        const sheets = Object.entries(TITLES).map(([name, key]) => ({
+            kind: said(texts, "search.kind_open"), label: said(texts, key), text: said(texts, `search.of_${name}`), go: () => void this.open(name as Opens),
+        }))
+        const found = (index?.found ?? []).map(({ kind, label, text, send }) => ({
+            kind: said(texts, `search.kind_${kind}`), label, text, go: () => send.forEach(message => this.engine.send(message)),
+        }))
+        return [...(settings?.entries() ?? []), ...sheets, ...found]
+    }
+}

@@ -1,0 +1,26 @@
+// Small pictures on buttons, drawn with lines on a square of 24.
+
+const SVG = "http://www.w3.org/2000/svg"
+
+const LINES = {
+    help: "M12 3a9 9 0 1 0 0 18 9 9 0 0 0 0-18M9.2 9.3a2.8 2.8 0 1 1 4 2.9c-.9.5-1.2 1-1.2 2M12 17v.1",
+    gear: "M12 8.5a3.5 3.5 0 1 0 0 7 3.5 3.5 0 0 0 0-7M12 2.5v3M12 18.5v3M2.5 12h3M18.5 12h3M5.3 5.3l2.1 2.1M16.6 16.6l2.1 2.1M5.3 18.7l2.1-2.1M16.6 7.4l2.1-2.1",
+    search: "M10.5 4a6.5 6.5 0 1 0 0 13 6.5 6.5 0 0 0 0-13M15.4 15.4 20.5 20.5",
+    lessons: "M3 5.5c3-1.3 6-1.3 9 .7 3-2 6-2 9-.7v13c-3-1.3-6-1.3-9 .7-3-2-6-2-9-.7zM12 6.2v13",
+    controls: "M4 7h9M17 7h3M4 17h3M11 17h9M15 4.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5M9 14.5a2.5 2.5 0 1 0 0 5 2.5 2.5 0 0 0 0-5",
+    close: "M6 6l12 12M18 6 6 18",
+    right: "M9 5l7 7-7 7",
+    done: "M4.5 12.5l5 5L19.5 7",
+} as const
+
+export type Icon = keyof typeof LINES
+
+export function icon(name: Icon): SVGSVGElement {
+    const picture = document.createElementNS(SVG, "svg"), line = document.createElementNS(SVG, "path")
+    picture.setAttribute("viewBox", "0 0 24 24")
+    picture.setAttribute("class", "op-icon")
+    picture.setAttribute("aria-hidden", "true")
+    line.setAttribute("d", LINES[name])
+    picture.append(line)
+    return picture
+}

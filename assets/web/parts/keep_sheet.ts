@@ -1,0 +1,96 @@
+// Keep, share and export: the lab's code, a code of its set-up, files of the last minute, and the record of the lessons.
+
+import type { Command, KeepSheet, MakeFile, PageMessage } from "../channel/messages"
+import { made, tell } from "../core/dom"
+import { said, type Texts } from "../core/words"
+import { pressed, SheetDialog } from "./sheet"
+
+const FILES: Record<MakeFile["file"], string> = { table: "export.table", picture: "export.picture", film: "export.film", report: "keep.report" }
+
+type Send = (message: Command | PageMessage) => void
+
+export class Keep {
+    private readonly sheet: SheetDialog
+    private readonly shared = made("div", "told")
+    private readonly refusal = made("p", "refusal")
+    private code = ""
+
+    constructor(private readonly texts: Texts, { code, until }: KeepSheet, private readonly send: Send, closed: () => void) {
+        const sheet = (this.sheet = new SheetDialog(texts, "keep", said(texts, "keep.title"), closed))
+        this.refusal.role = "alert"
+        const share = pressed("main", said(texts, "keep.share"), () => send({ do: "Share" }))
+        const sharing = made("section", "", made("h3", "", said(texts, "keep.sharing")), share, this.shared,
+            this.typed("keep.paste", "keep.paste_hint", "keep.use", text => {
+                sheet.close()
+                send({ do: "UseShared", text })
+            }))
+        const files = made("section", "", made("h3", "", said(texts, "export.title")), made("div", "row", ...(["table", "picture", "film"] as const).map(file => this.file(file))))
+        const withCode = Object.assign(made("input", "switch"), { type: "checkbox" })
+        withCode.setAttribute("role", "switch")
+        const record = made("section", "", made("h3", "", said(texts, "keep.record")), this.file("report", () => withCode.checked))
+        sheet.body.append(sharing, files, record)
+        if (code) {
+            record.append(made("label", "row", made("span", "", said(texts, "keep.with_code")), withCode), made("p", "note", said(texts, "keep.with_code_means")))
+            sheet.body.prepend(made("section", "", made("h3", "", said(texts, "keep.coming_back")), made("p", "", said(texts, "keep.yours")),
+                this.codeBox(code), made("p", "note", until),
+                this.typed("keep.other", "keep.other_hint", "keep.go", typed => send({ is: "enter", code: typed }))))
+        }
+        sheet.body.append(this.refusal)
+    }
+
+    open(): SheetDialog {
+        this.sheet.open(this.sheet.body.querySelector<HTMLElement>("button.main"))
+        return this.sheet
+    }
+
+    /** Show the share code that was asked for. */
+    show(shared: string): void {
+        if (!shared || shared === this.code) return
+        this.code = shared
+        this.shared.replaceChildren(made("p", "", said(this.texts, "keep.shared")), this.codeBox(shared))
+    }
+
+    /** Say how it stands with a file, or why a code was refused. */
+    tell(text: string): void { tell(this.refusal, text) }
+
+    /** A button for a file, of whose making the page tells then. */
+    private file(file: MakeFile["file"], withCode = () => false): HTMLElement {
+        return pressed("", said(this.texts, FILES[file]), () => {
+            this.sheet.close()
+            this.send({ is: "make", file, with_code: withCode() })
+        })
+    }
+
+    private codeBox(code: string): HTMLElement {
+        const { texts } = this
+        const shown = made("code", "", code)
+        shown.translate = false
+        const copy = pressed("copy", said(texts, "code.copy"), () => void copied(shown).then(() => tell(copy, said(texts, "code.copied"))))
+        return made("div", "code", shown, copy)
+    }
+
+    /** A field for a code, and the button that uses it. */
+    private typed(label: string, hint: string, act: string, use: (text: string) => void): HTMLElement {
+        const { texts } = this
+        const field = Object.assign(made("input", ""), { type: "text", autocomplete: "off", autocapitalize: "off", spellcheck: false, title: said(texts, hint) })
+        const name = made("label", "", made("span", "", said(texts, label)), field)
+        const form = made("form", "typed", name, Object.assign(made("button", "", said(texts, act)), { type: "submit" }))
+        form.addEventListener("submit", event => {
+            event.preventDefault()
+            tell(this.refusal, "")
+            if (field.value.trim()) use(field.value.trim())
+            else field.focus()
+        })
+        return form
+    }
+}
+
+/** Copy what an element shows; where that is not allowed, it is at least selected. */
+async function copied(element: HTMLElement): Promise<void> {
+    try {
+        await navigator.clipboard.writeText(element.textContent)
+    } catch {
+        getSelection()?.selectAllChildren(element)
+        document.execCommand("copy")
+    }
+}

@@ -1,0 +1,44 @@
+// The lessons in their order, how far one is, and the routes.
+
+import type { Command, LessonCard, LessonSheet, RouteCard } from "../channel/messages"
+import { made } from "../core/dom"
+import { said, type Texts } from "../core/words"
+import { icon } from "./icons"
+import { pressed, SheetDialog } from "./sheet"
+
+type Send = (command: Command) => void
+
+export function chooseLesson(texts: Texts, { lessons, routes, open }: LessonSheet, send: Send): SheetDialog {
+    const sheet = new SheetDialog(texts, "lessons", said(texts, "lesson.choose"))
+    const go: Send = command => {
+        sheet.close()
+        send(command)
+    }
+    const next = lessons.find(each => each.name === open) ?? lessons.find(each => each.number && !each.finished)
+    const cards = lessons.map(lesson => [lesson, cardOf(texts, lesson, lesson === next, () => go({ do: "OpenLesson", name: lesson.name }))] as const)
+    const list = made("ol", "lessons", ...cards.map(([, card]) => made("li", "", card)))
+    sheet.body.append(list)
+    if (routes.length) sheet.body.append(made("h3", "", said(texts, "route.routes")), ...routes.map(route => routeOf(texts, route, go)))
+    sheet.open(cards.find(([lesson]) => lesson === next)?.[1])
+    return sheet
+}
+
+/** A lesson as one button, with a ring of what is done around its number. */
+function cardOf(texts: Texts, lesson: LessonCard, isNext: boolean, act: () => void): HTMLElement {
+    const ring = made("span", "ring", lesson.finished ? icon("done") : lesson.number || "?")
+    ring.style.setProperty("--done", String(lesson.done))
+    ring.setAttribute("aria-hidden", "true")
+    const name = lesson.number ? `${lesson.number}. ${lesson.title}` : lesson.title
+    const state = lesson.finished ? "lesson.done" : lesson.begun ? "lesson.begun" : ""
+    const facts = [...(state ? [said(texts, state)] : []), ...lesson.facts].join(" · ")
+    const card = pressed(`card${isNext ? " next" : ""}`, "", act)
+    card.append(ring, made("b", "", name), made("span", "summary", lesson.summary), made("span", "facts", facts))
+    return card
+}
+
+function routeOf(texts: Texts, { name, title, summary, minutes, stops }: RouteCard, go: Send): HTMLElement {
+    const follow = pressed("", said(texts, "route.follow"), () => go({ do: "FollowRoute", name }))
+    follow.setAttribute("aria-label", `${said(texts, "route.follow")}: ${title}`)
+    const heading = made("summary", "", made("b", "", title), " ", made("span", "facts", minutes))
+    return made("details", "route", heading, made("p", "", summary), made("ul", "", ...stops.map(stop => made("li", "", stop))), follow)
+}

@@ -1,0 +1,44 @@
+// The robots to choose from: a grid of pictures, with the arrow keys and Enter.
+
+import type { RobotCard, RobotSheet } from "../channel/messages"
+import { made } from "../core/dom"
+import { said, type Texts } from "../core/words"
+import { pressed, SheetDialog } from "./sheet"
+
+/** Open the robots; the present one has the focus. */
+export function chooseRobot(texts: Texts, { robots }: RobotSheet, present: string, choose: (name: string) => void): SheetDialog {
+    const sheet = new SheetDialog(texts, "robots", said(texts, "robots.choose"))
+    const cards = robots.map(robot => {
+        const card = pressed("card", "", () => {
+            sheet.close()
+            if (robot.name !== present) choose(robot.name)
+        })
+        card.append(pictureOf(robot), made("b", "", robot.label), made("span", "differs", robot.differs))
+        card.title = robot.text
+        card.tabIndex = robot.name === present ? 0 : -1
+        if (robot.name === present) card.setAttribute("aria-current", "true")
+        return card
+    })
+    const grid = made("div", "grid", ...cards)
+    grid.role = "group"
+    grid.ariaLabel = said(texts, "robots.choose")
+    grid.addEventListener("keydown", event => {
+        const at = cards.indexOf(document.activeElement as HTMLButtonElement)
+        const across = cards.filter(card => card.offsetTop === cards[0]!.offsetTop).length
+        const to = { ArrowRight: at + 1, ArrowLeft: at - 1, ArrowDown: at + across, ArrowUp: at - across, Home: 0, End: cards.length - 1 }[event.key]
+        if (to === undefined || at < 0) return
+        event.preventDefault()
+        const next = cards[to]
+        if (!next) return
+        for (const card of cards) card.tabIndex = card === next ? 0 : -1
+        next.focus()
+    })
+    sheet.body.append(grid)
+    sheet.open(cards.find(card => card.tabIndex === 0) ?? cards[0])
+    return sheet
+}
+
+/** The picture of a robot, whose name stands beside it. */
+export function pictureOf({ picture }: RobotCard): HTMLImageElement {
+    return Object.assign(made("img", "robot"), { src: picture, alt: "" })
+}
