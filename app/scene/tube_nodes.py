@@ -58,15 +58,39 @@ class TubeShape:
     offsets: np.ndarray
 
 
-def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
-    """The tube around a path as it is drawn."""
-    curve = drawn_curve(robot, path)
+@dataclass(frozen=True, slots=True, eq=False)
+class TubeSizes:
+    """Sizes of a tube, [m].
+
+    Attributes:
+        width: see `TubeShape`.
+        shown: how far from the path it is drawn.
+        step: see `TubeShape`.
+        across: distances of the curves of constant ξ on one side.
+    """
+
+    width: float
+    shown: float
+    step: float
+    across: np.ndarray
+
+
+def tube_sizes(curve: Curve) -> TubeSizes:
+    """The sizes of the tube around a curve, as it is drawn."""
     width = tube_width(curve)
     shown = SPREAD * min(width, WIDEST)
     step = _round_step(max(shown / OFFSETS, LEAST_STEP))
+    across = np.arange(1, floor(shown / step + 1e-9) + 1) * step
+    return TubeSizes(width=width, shown=shown, step=step, across=across)
+
+
+def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
+    """The tube around a path as it is drawn."""
+    curve = drawn_curve(robot, path)
+    sizes = tube_sizes(curve)
+    shown, across = sizes.shown, sizes.across
     theta = np.linspace(-np.pi, np.pi, ALONG + 1)
     frames = curve_frames(curve, theta)
-    across = np.arange(1, floor(shown / step + 1e-9) + 1) * step
     in_space = curve.dimension == 3
     at = curve_frames(curve, theta[:: ALONG // LINES])
 
@@ -74,8 +98,8 @@ def tube_shape(robot: Robot, path: PathSnapshot) -> TubeShape:
         return robot.position(robot.frame.lift(points))
 
     return TubeShape(
-        width=width,
-        step=step,
+        width=sizes.width,
+        step=sizes.step,
         degrees=360 / LINES,
         fill=_skin(placed(_rim(frames, shown) if in_space else _edges(frames, shown))),
         normals=placed(_spokes(at, shown) if in_space else _edges(at, shown)),

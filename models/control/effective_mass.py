@@ -28,12 +28,12 @@ def effective_masses(robot: Robot, q: Array, parameters: Parameters, directions:
     """
     frame = robot.frame
     lifted = frame.lift(directions) - frame.lift(np.zeros(2))
-    mobility = _mobility(robot)(q, robot.plant(parameters)).full()
+    mobility = mobility_of(robot)(q, robot.plant(parameters)).full()
     return 1.0 / np.einsum("ki,ij,kj->k", lifted, mobility, lifted)
 
 
 @lru_cache(maxsize=16)
-def _mobility(robot: Robot) -> ca.Function:
+def mobility_of(robot: Robot) -> ca.Function:
     """The function (q, parameters) -> J M⁻¹ Jᵀ of the actual end-point, (p, p)."""
     system = robot.system
     jacobian = ca.jacobian(system.output, system.q)

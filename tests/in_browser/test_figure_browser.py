@@ -80,7 +80,7 @@ REFUSED = """async () => {
 ACT = """([what, value]) => {
     const {simulation} = onpath
     if (what === "advance") onpath.advance(value)
-    else if (what === "set") simulation.set(...value)
+    else if (what === "set") simulation.set({[simulation.data.sliders[value[0]].name]: value[1]})
     else if (what === "move") simulation.followed.move(...value)
     else if (what === "drop") simulation.followed.finish()
     else if (what === "change") simulation.sides[value[0]].change(value[1])
@@ -446,7 +446,7 @@ def test_keys_and_names_are_the_lab_s(browser: Browser, tmp_path: Path) -> None:
     speed = page.get_by_role("slider", name="Tempo")
     speed.focus()
     speed.press("ArrowRight")
-    assert opened.number("onpath.simulation.values[0]") == pytest.approx(2.1)
+    assert opened.number("onpath.simulation.values.speed") == pytest.approx(2.1)
     assert page.locator("html").get_attribute("lang") == "de"
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     page.close()

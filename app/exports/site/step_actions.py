@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
-from onpath.app.exports.site.settings_places import Unsupported, with_values, writes
 from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.setting_places import Unsupported, page_values
 from onpath.app.lab.external_forces import displaced
-from onpath.lessons.action_schema import Action, RobotName, Script
+from onpath.lessons.action_schema import Action, RobotName, Script, Value
 from onpath.lessons.record import ROBOTS
-from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.closed_loop.page_functions import page_functions
+from onpath.models.control.laws.registry import law_name
+from onpath.models.control.settable import specs
+from onpath.models.control.sides import SIDES
 
 Act = dict[str, Any]
 
@@ -23,13 +25,9 @@ def script_acts(script: Script, figure: FigureChoice) -> dict[str, Any]:
 
     Raises:
         Unsupported: a figure cannot do one of its actions.
-        ValueError: a value is out of range.
     """
-    parameters, timed = figure.parameters, list[tuple[float, Act]]()
-    for action in sorted(script.do, key=lambda each: each.at):
-        timed.append((action.at, act_of(action, figure, parameters)))
-        parameters = with_values(parameters, action.set or {})
-    return {"until": script.until, "do": timed}
+    actions = sorted(script.do, key=lambda each: each.at)
+    return {"until": script.until, "do": [(each.at, act_of(each, figure)) for each in actions]}
 
 
 def link_acts(actions: Iterable[Action], figure: FigureChoice) -> list[Act]:
@@ -37,16 +35,12 @@ def link_acts(actions: Iterable[Action], figure: FigureChoice) -> list[Act]:
 
     Raises:
         Unsupported: a figure cannot do one of its actions.
-        ValueError: a value is out of range.
     """
-    return [act_of(action, figure, figure.parameters) for action in actions]
+    return [act_of(action, figure) for action in actions]
 
 
-def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
+def act_of(action: Action, figure: FigureChoice) -> Act:
     """One action as data.
-
-    Args:
-        parameters: the parameters before the action.
 
     Raises:
         Unsupported: a figure cannot do it.
@@ -58,14 +52,36 @@ def act_of(action: Action, figure: FigureChoice, parameters: Any) -> Act:
     if what == "pull":
         assert action.pull is not None
         return {"pull": _in_picture(figure, action.pull), **side}
-    values = action.set or {}
-    if what == "set" and not SETTINGS.keys() & values.keys():
-        return {"set": values, "write": writes(figure, values, parameters)}
+    if what == "set":
+        return {"set": _settable(figure, action.set or {})}
     if what == "path" and action.path and action.path in figure.paths:
         return {"path": list(figure.paths).index(action.path)}
+    if what == "laws" and action.laws is not None:
+        laws = {
+            side: figure.every_law.index(law_name(law)) for side, law in action.laws.named.items()
+        }
+        return {"laws": [laws.get(side) for side in SIDES]}
+    if what == "move" and action.move is not None:
+        index, right, up = action.move
+        return {"move": [index, right / 1e3, up / 1e3]}
     if what in ("release", "reset", "run", "rate"):
         return {what: getattr(action, what)}
     raise Unsupported(f"{what}: only in the lab")
+
+
+def _settable(figure: FigureChoice, values: Mapping[str, Value]) -> Mapping[str, Value]:
+    """The values, if each parameter may change on the page.
+
+    Raises:
+        Unsupported: one may not, or not to its value.
+    """
+    for name, value in values.items():
+        if name not in (*figure.sliders, *figure.changing):
+            raise Unsupported(f"{name}: only in the lab")
+        options = specs(figure.parameters)[name].options
+        if options and value not in page_values(figure, name, {}):
+            raise Unsupported(f"{name} = {value}: only in the lab")
+    return values
 
 
 def _side(only: RobotName | str) -> int | None:

@@ -12,8 +12,9 @@ from onpath.app.steps.block_data import block_data
 from onpath.app.steps.step_html import StepPart, part_of, step_html
 from onpath.lessons.adaptive.branches import answers_meant
 from onpath.lessons.schema import Lesson, Step, Text
-from onpath.lessons.task_schema import Reference, Setting, Task
+from onpath.lessons.task_schema import Once, Reference, Setting, Task
 from onpath.lessons.words import Words
+from onpath.models.control.laws.own import short_name
 from onpath.models.control.settable import values_of
 
 
@@ -77,7 +78,7 @@ def site_step(
         number=index + 1,
         html=html,
         data=data,
-        figure=figure_of(figure, words) if figure.faithful else {},
+        figure=figure_of(figure, words),
         lab_only=lab_only,
     )
 
@@ -88,15 +89,15 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
     scene: dict[str, Any] = {
         "path": next(iter(choice.paths)),
         "robot": choice.robot,
-        "left": choice.laws[0],
-        "right": choice.laws[1],
+        "left": short_name(choice.laws[0]),
+        "right": short_name(choice.laws[1]),
         "lengths": [1e3 * curve.length() for curve in choice.paths.values()],
         "paths": list(choice.paths),
     }
     checks = [check for task in step.tasks() for check in task.evaluated]
-    names = [check.name for check in checks if isinstance(check, Setting)]
+    names = [check.name for check in checks if isinstance(check, Setting | Once)]
     values = values_of(parameters)
-    known = {name: values[name] for name in (*names, *choice.sliders) if name in values}
+    known = {name: values[name] for name in (*names, *choice.changing) if name in values}
     return {**known, **scene}
 
 

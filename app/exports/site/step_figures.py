@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from onpath.app.exports.site.settings_places import Unsupported
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
-from onpath.app.exports.standalone.figure_choice import FigureChoice, check_slider, chosen
-from onpath.app.exports.standalone.figure_data import figure_data, slider_data, stop_texts
-from onpath.lessons.action_schema import Action, Script, StepSetup
+from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
+from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
+from onpath.app.exports.standalone.figure_data import (
+    changes_data,
+    figure_data,
+    slider_data,
+    stop_texts,
+)
+from onpath.app.exports.standalone.setting_places import (
+    Unsupported,
+    Used,
+    page_values,
+    setting_places,
+)
+from onpath.lessons.action_schema import Action, SceneMark, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.sides import ROLES, law_titles, robot_names
-from onpath.lessons.task_schema import Better, Once, Reference, Task
+from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.words import Words
-from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
+from onpath.models.closed_loop.lab_settings import LARGEST, SETTINGS, lab_specs
 from onpath.models.closed_loop.simulation import raised
+from onpath.models.closed_loop.start import Start
+from onpath.models.control.laws.registry import law_name
 from onpath.models.control.settable import specs
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.paths.curve_faults import curve_faults
@@ -27,6 +41,10 @@ from onpath.models.paths.path_design import presets
 
 ALWAYS = ("pull", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
+HERE = ("hold", "editor", "show", "start", "larger")
+"""Controls besides parameters that a step's page has, too."""
+GROUPS = {"flexible": ("output", "alpha")}
+"""Controls that stand for several parameters, of which the page has these."""
 MOST = 8  # figures in the cache; those of one lesson follow each other
 _SHARED: dict[Any, dict[str, Any]] = {}
 
@@ -38,22 +56,22 @@ class StepFigure:
     Attributes:
         choice: what it shows.
         lacking: names of the step's controls that only the lab has.
-        drawings: what is drawn besides the robots, in the lab.
-        plots: that the step shows besides that of the distance.
-        faithful: whether the figure begins where the lab does; only then is it shown.
-        changing: names of the parameters that sliders, links or the script change.
+        drawings: what is drawn besides the robots.
+        marks: texts and arrows beside the robots.
+        plots: plots that the step shows besides the distance.
+        used: values that scripts and links give to parameters.
     """
 
     choice: FigureChoice
     lacking: tuple[str, ...]
     drawings: tuple[str, ...]
+    marks: tuple[SceneMark, ...]
     plots: tuple[str, ...]
-    faithful: bool
-    changing: frozenset[str]
+    used: Used
 
     def script(self, script: Script | None) -> dict[str, Any] | None:
         """A script as data; None if there is none, or only the lab can play it."""
-        if script is None or not self.faithful:
+        if script is None:
             return None
         try:
             return script_acts(script, self.choice)
@@ -62,8 +80,6 @@ class StepFigure:
 
     def link(self, actions: Iterable[Action]) -> list[Act] | None:
         """The actions of a link as data; None if only the lab can do them."""
-        if not self.faithful:
-            return None
         try:
             return link_acts(actions, self.choice)
         except Unsupported:
@@ -71,8 +87,6 @@ class StepFigure:
 
     def can_pass(self, task: Task, reference: Reference, links: Iterable[Action]) -> bool:
         """Whether a reader has everything that the task's reference solution uses."""
-        if any(isinstance(check, Better | Once) for check in task.check):
-            return False
         within_reach = {*self.choice.sliders}
         for action in links:
             if self.link([action]) is not None:
@@ -80,10 +94,19 @@ class StepFigure:
         for action in reference.solution.do:
             if action.hold is not None and "hold" not in self.choice.controls:
                 return False
+            if action.move is not None and "drag" not in self.choice.controls:
+                return False
             if not set(action.set or {}) <= within_reach or action.only:
                 return False
         measured = {getattr(check, "quantity", "distance") for check in task.evaluated}
         return self.script(reference.solution) is not None and measured <= set(self.quantities)
+
+    @property
+    def views(self) -> dict[str, float | bool]:
+        """What a reader may change of the picture, and its first values."""
+        drawn, shown = self.choice.drawings, self.drawings
+        larger = {"larger": 1.0} if "larger" in drawn else {}
+        return larger | {name: name in shown for name in SWITCHES if name in drawn}
 
     @property
     def quantities(self) -> list[str]:
@@ -106,37 +129,45 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     """
     scene, step = lesson.scene_at(index), lesson.steps[index]
     robot = scene.robot or lesson.front.robot
+    actions = _actions(step)
     laws = tuple({**DEFAULT_LAWS, **scene.laws.named}.values())
     first, *others = _paths(lesson, index, scene)
     curves = {first: presets()[first].curve}
-    controls = (*ALWAYS, "hold") if "hold" in scene.controls else ALWAYS
-    if step.kind == "predict":
-        controls = ()
-    own = [name for name in scene.set if name in SETTINGS]
-    parameters = {name: value for name, value in scene.set.items() if name not in SETTINGS}
-    bare = chosen(robot, laws, curves, parameters, sliders=(), controls=controls)
-    bare = replace(bare, paths={**curves, **_possible(bare, others)})
-    known = specs(type(bare.parameters))
-    sliders = tuple(n for n in scene.controls if n in known and _slides(bare, n))
-    lacking = {name: None for name in scene.controls if name not in (*sliders, "hold")}
-    if scene.show:
-        lacking.pop("show", None)
-    elif scene.marks:
-        lacking["show"] = None
-    lacking |= dict.fromkeys(own)
-    if scene.start.numbers:
-        lacking["start"] = None
-    figure = replace(bare, sliders=sliders)
-    set_by = (name for action in _actions(step) for name in action.set or {})
-    changing = frozenset((*sliders, *set_by))
+    own = {name: value for name, value in scene.set.items() if name in SETTINGS}
+    values = {name: value for name, value in scene.set.items() if name not in own}
+    figure = chosen(robot, laws, curves, values, sliders=(), controls=_controls(scene, step))
+    figure = replace(
+        figure,
+        paths={**curves, **_possible(figure, others)},
+        scripted=tuple(
+            law_name(law) for each in actions if each.laws for law in each.laws.named.values()
+        ),
+        drawings=_drawings(scene, figure),
+        bends=any(action.move for action in actions),
+        begins=Start(**scene.start.numbers),
+    )
+    known, wanted = specs(type(figure.parameters)), dict.fromkeys(_expanded(scene.controls))
+    used = _used(actions)
+    settable = dict.fromkeys(name for name in (*wanted, *used) if name in known)
+    figure = _changing(figure, settable, used)
+    sliders = tuple(name for name in wanted if name in figure.changing)
+    lacking = [name for name in (*wanted, *own) if name not in (*sliders, *HERE)]
     return StepFigure(
-        choice=figure,
+        choice=replace(figure, sliders=sliders),
         lacking=tuple(lacking),
         drawings=scene.show,
+        marks=scene.marks,
         plots=scene.plots,
-        faithful=not scene.start.numbers and not own,
-        changing=changing,
+        used=used,
     )
+
+
+def _controls(scene: StepSetup, step: Step) -> tuple[str, ...]:
+    """The controls of a step's figure."""
+    if step.kind == "predict":
+        return ()
+    more = {"hold": "hold", "editor": "drag"}
+    return (*ALWAYS, *(more[name] for name in scene.controls if name in more))
 
 
 def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
@@ -144,18 +175,21 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     data, choice = _shared_data(figure.choice, words), figure.choice
     curve = next(iter(choice.paths.values()))
     stops = [
-        stop_texts(choice, law, curve, "alpha" in figure.changing, words)
+        stop_texts(choice, law, curve, "alpha" in choice.changing, words)
         for law in choice.every_law
     ]
+    changes = changes_data(choice, figure.used)
+    views = [view_data(name, words) for name in figure.views]
     return {
         **data,
         "laws": [
             {**law, "stops": texts, **names}
             for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
         ],
-        "sliders": [slider_data(choice, name, words) for name in choice.sliders],
+        "sliders": [*(slider_data(choice, name, words) for name in choice.sliders), *views],
+        "changes": changes | {"values": changes["values"] | figure.views},
+        "drawings": drawings_data(choice, figure.drawings, figure.marks, words),
         "controls": choice.controls,
-        "names": choice.sliders,
         "quantities": figure.quantities,
     }
 
@@ -181,12 +215,14 @@ def _names(figure: FigureChoice, words: Words) -> list[dict[str, str]]:
 
 
 def _shared_data(choice: FigureChoice, words: Words) -> dict[str, Any]:
-    """The data of a figure without sliders and controls, which many steps share."""
-    key = choice.robot, choice.laws, tuple(choice.paths), choice.parameters, words.language
+    """The data of a figure without what its reader may do, which many steps share."""
+    shared = replace(choice, sliders=(), controls=("drag",) if choice.edits else ())
+    fields = (getattr(shared, field.name) for field in dataclasses.fields(shared))
+    key = *(tuple(each) if isinstance(each, dict) else each for each in fields), words.language
     if key not in _SHARED:
         while len(_SHARED) >= MOST:
             _SHARED.pop(next(iter(_SHARED)))
-        _SHARED[key] = figure_data(replace(choice, sliders=(), controls=()), words)
+        _SHARED[key] = figure_data(shared, words)
     return _SHARED[key]
 
 
@@ -199,7 +235,6 @@ def lacking_words(figure: StepFigure, words: Words) -> str:
         else words(f"site.control.{name}")
         for name in figure.lacking
     ]
-    named += [words(f"show.{name}") for name in figure.drawings]
     return ", ".join(named)
 
 
@@ -224,9 +259,53 @@ def _possible(figure: FigureChoice, names: Iterable[str]) -> dict[str, Curve]:
     return {n: c for n, c in curves.items() if not curve_faults(margin, raised(c, parameters))}
 
 
-def _slides(figure: FigureChoice, name: str) -> bool:
-    try:
-        check_slider(figure, name)
-    except ValueError:
-        return False
-    return True
+def _drawings(scene: StepSetup, figure: FigureChoice) -> tuple[str, ...]:
+    """What may be drawn besides the robots."""
+    names = SWITCHES if "show" in scene.controls else scene.show
+    larger = ("larger",) if {"larger", "flexible"} & {*scene.controls} else ()
+    zone = ("zone",) if "editor" in scene.controls else ()
+    return (*names, *larger, *zone)
+
+
+def view_data(name: str, words: Words) -> dict[str, Any]:
+    """The control of something in the picture."""
+    if name == "larger":
+        low, high, key, kind = 1.0, LARGEST, "flexible.larger", "number"
+    else:
+        low, high, key, kind = 0.0, 1.0, f"show.{name}", "switch"
+    return {
+        "name": name,
+        "kind": kind,
+        "label": words(key),
+        "unit": "",
+        "help": words(f"{key}_hint"),
+        "low": low,
+        "high": high,
+        "step": 1.0,
+        "options": [],
+    }
+
+
+def _expanded(controls: Iterable[str]) -> list[str]:
+    """The controls, with their parameters in place of a group."""
+    return [name for control in controls for name in GROUPS.get(control, (control,))]
+
+
+def _used(actions: Iterable[Action]) -> Used:
+    """The values that actions give to parameters."""
+    used = dict[str, tuple[Any, ...]]()
+    for action in actions:
+        for name, value in (action.set or {}).items():
+            used[name] = (*used.get(name, ()), value)
+    return used
+
+
+def _changing(figure: FigureChoice, names: Iterable[str], used: Used) -> FigureChoice:
+    """The figure on whose page as many of some parameters change as can."""
+    left = tuple(name for name in names if len(page_values(figure, name, used)) > 1)
+    while True:
+        figure = replace(figure, changing=left)
+        found = setting_places(figure, used).names
+        if found >= {*left}:
+            return figure
+        left = tuple(name for name in left if name in found)

@@ -14,11 +14,24 @@ from onpath.lessons.checks import (
     event_named,
     event_words,
     setting_wanted,
+    stat_words,
 )
 from onpath.lessons.labels import setting_label, value_label
+from onpath.lessons.measures.responses import unit_of
 from onpath.lessons.record import ROBOTS as ROLES
 from onpath.lessons.sides import robot_names
-from onpath.lessons.task_schema import Bound, Check, Compare, Event, Only, Order, Setting, Task
+from onpath.lessons.task_schema import (
+    Better,
+    Bound,
+    Check,
+    Compare,
+    Event,
+    Once,
+    Only,
+    Order,
+    Setting,
+    Task,
+)
 from onpath.lessons.words import Words
 from onpath.models.control.laws.own import OWN
 from onpath.models.control.laws.registry import LAWS
@@ -31,6 +44,11 @@ from onpath.models.systems.parameters import Parameters
 MESSAGES = {
     "check.bound": ("robot", "stat", "during", "value", "unit", "wanted"),
     "check.compare": ("larger", "stat", "during", "ratio", "wanted"),
+    "check.better": ("robot", "stat", "during", "value", "before"),
+    "check.once": (
+        *("robot", "stat", "during", "value", "unit", "wanted"),
+        *("setting", "equals", "least"),
+    ),
     "check.seconds": ("have", "need"),
     "check.nothing": ("robot", "stat", "during", "seconds", "wanted"),
     "check.event": ("event", "have", "need"),
@@ -98,6 +116,31 @@ def _(check: Compare, parameters: Parameters, robots: dict[Any, str], words: Wor
         "need": words.number(check.least),
     }
     return {"smaller": smaller, "said": said}
+
+
+@_more.register
+def _(check: Better, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    said = {
+        "robot": robots[check.robot],
+        "stat": stat_words(check.stat, check.quantity, words),
+        "during": words(f"during.{check.during}"),
+        "unit": unit_of(check.stat, check.quantity),
+        "need": words.number(check.least),
+    }
+    return {"said": said}
+
+
+@_more.register
+def _(check: Once, parameters: Parameters, robots: dict[Any, str], words: Words) -> Any:
+    setting = Setting(name=check.name, equals=check.equals)
+    said = {
+        **bound_words(check, robots, words),
+        "setting": setting_label(check.name, parameters, words),
+        "equals": value_label(check.name, check.equals, words),
+        "least": words.number(check.least),
+    }
+    since = [msgspec.to_builtins(event_named(text)) for text in check.since]
+    return {"since": since, "setting": check_data(setting, parameters, robots, words), "said": said}
 
 
 @_more.register

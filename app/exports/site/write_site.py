@@ -6,6 +6,7 @@ import hashlib
 import json
 import shutil
 import tempfile
+from base64 import b64decode
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -198,7 +199,18 @@ class _Writer:
         file = self._folder / SHARED / "kernels" / f"{name}.js"
         if not file.exists():
             file.write_text(f"onpathKernels[{json.dumps(name)}]={json.dumps(module)}\n", "utf-8")
-        return {**figure, "module": name}
+        return {**figure, "module": name, "drawings": self._shared_images(figure["drawings"])}
+
+    def _shared_images(self, drawings: dict[str, Any]) -> dict[str, Any]:
+        """The drawings, with their pictures moved to files that pages share."""
+        shared = dict(drawings)
+        for kind in ("rank", "zone"):
+            if kind in drawings:
+                png = b64decode(drawings[kind]["src"].partition(",")[2])
+                address = f"{SHARED}/pictures/{hashlib.sha256(png).hexdigest()[:16]}.png"
+                (self._folder / address).write_bytes(png)
+                shared[kind] = drawings[kind] | {"src": address}
+        return shared
 
     def _write(self, name: str, words: Words, page: str) -> None:
         (self._folder / self._address(name, words.language)).write_text(page, "utf-8")

@@ -15,12 +15,12 @@ from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.simulation import (
     FREE,
     check_level_set,
-    first_state,
     kernel_of,
     kind_of,
     raised,
     settings_vector,
 )
+from onpath.models.closed_loop.start import ON_PATH, Start, start_state
 from onpath.models.control.forecast import check_possible
 from onpath.models.control.laws.registry import law_name, law_named
 from onpath.models.control.settable import changed, specs, with_values
@@ -51,6 +51,13 @@ class FigureChoice:
         sliders: names of parameters that readers may change; each sets one number of the settings.
         controls: some of `CONTROLS`.
         choices: further laws that readers may choose for each side.
+        scripted: further laws that a lesson's scripts and links choose.
+        changing: names of parameters that change on the page otherwise than by sliders; they may
+            need other loops, see loop_variants.py.
+        bends: whether a script moves the path's control points; a reader who may drag them bends it
+            in any case.
+        begins: where and how the runs start.
+        drawings: what may be drawn besides the robots; see drawings.py.
     """
 
     robot: str
@@ -60,11 +67,21 @@ class FigureChoice:
     sliders: tuple[str, ...]
     controls: tuple[str, ...] = CONTROLS
     choices: tuple[str, ...] = ()
+    scripted: tuple[str, ...] = ()
+    changing: tuple[str, ...] = ()
+    bends: bool = False
+    begins: Start = ON_PATH
+    drawings: tuple[str, ...] = ()
 
     @property
     def every_law(self) -> tuple[str, ...]:
         """The laws of the sides and then the further ones, each once."""
-        return tuple(dict.fromkeys((*self.laws, *self.choices)))
+        return tuple(dict.fromkeys((*self.laws, *self.choices, *self.scripted)))
+
+    @property
+    def edits(self) -> bool:
+        """Whether the path may be bent."""
+        return self.bends or "drag" in self.controls
 
     @property
     def entry(self) -> RobotEntry:
@@ -87,10 +104,10 @@ class FigureChoice:
         return kernel_of(self.machine, self.kind(law, curve))
 
     def start(self, law: str, curve: Curve) -> Array:
-        """The first state of a side: at rest on the path at θ = 0."""
+        """The first state of a side."""
         followed = raised(curve, self.parameters)
         kernel = self.kernel(law, curve)
-        return first_state(self.machine, kernel, followed, self.start_at(curve))
+        return start_state(self.machine, kernel, followed, self.parameters, self.begins)
 
     def start_at(self, curve: Curve) -> Array:
         """The configuration at rest on the path at θ = 0, shape (n,)."""

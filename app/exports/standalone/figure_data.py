@@ -6,11 +6,14 @@ import gzip
 import math
 from base64 import b64encode
 from collections.abc import Mapping
+from dataclasses import asdict
+from types import MappingProxyType
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from onpath.app.exports.standalone.drawings import drawings_data
 from onpath.app.exports.standalone.figure_choice import FigureChoice
 from onpath.app.exports.standalone.figure_module import (
     design_of,
@@ -19,11 +22,19 @@ from onpath.app.exports.standalone.figure_module import (
     kind_name,
 )
 from onpath.app.exports.standalone.figure_words import figure_words
+from onpath.app.exports.standalone.loop_variants import variants_of
+from onpath.app.exports.standalone.setting_places import Used, page_values, setting_places
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.scene.captions import FULL, OFF, RETURNS
-from onpath.lessons.labels import parameter_help, parameter_label, parameter_unit, path_label
+from onpath.lessons.labels import (
+    parameter_help,
+    parameter_label,
+    parameter_unit,
+    path_label,
+    value_label,
+)
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -36,6 +47,7 @@ from onpath.models.closed_loop.page_functions import (
     stop_reasons,
 )
 from onpath.models.closed_loop.simulation import raised
+from onpath.models.control.laws.own import short_name
 from onpath.models.control.laws.registry import law_named
 from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import RIGHT, SIDES
@@ -91,6 +103,9 @@ def figure_data(
         ),
         "sides": _sides(figure),
         "laws": _laws(figure, words),
+        "drawings": drawings_data(figure, (), (), words),
+        "loops": loops_data(figure),
+        "changes": changes_data(figure),
         "choices": [figure.every_law.index(law) for law in _choices(figure)],
         "paths": [
             {"label": path_label(name, words), **path}
@@ -187,6 +202,7 @@ def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
     titles, curve = law_titles(figure.every_law, words), next(iter(figure.paths.values()))
     return [
         {
+            "key": short_name(law),
             "title": titles[law],
             "text": law_text(law, words),
             "aim": law_named(law).aim,
@@ -226,27 +242,42 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
         "outline": _rounded(outline.T),
         "states": [figure.start(law, curve).tolist() for law in figure.every_law],
         "settings": figure.settings(figure.planned, curve).tolist(),
-        "points": design.points.tolist() if "drag" in figure.controls else [],
+        "points": design.points.tolist() if figure.edits else [],
         "fit": fit_name(design),
     }
 
 
 def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
-    """A slider: its words, its range, and the index of its number in the settings."""
+    """A control of a parameter: its words, and its range or options."""
     spec = specs(type(figure.parameters))[name]
-    kernel = figure.kernel(figure.laws[0], next(iter(figure.paths.values())))
-    place = kernel.settings.slices.get(name)
-    low_on_grid = spec.step * math.ceil(spec.low / spec.step)  # so that 0 is one of the steps
+    low_on_grid = spec.step * math.ceil(spec.low / spec.step) if spec.step else 0.0
+    options = page_values(figure, name, {}) if spec.options else ()
     return {
+        "name": name,
+        "kind": "choice" if options else "number",
         "label": parameter_label(name, spec, words),
         "unit": parameter_unit(name, spec, words),
         "help": parameter_help(name, spec, words),
-        "low": low_on_grid if spec.low < 0 else spec.low,
+        "low": low_on_grid if spec.low < 0 else spec.low,  # so that 0 is one of the steps
         "high": spec.high,
         "step": spec.step,
-        "value": value_of(figure.parameters, name),
-        "place": place.start if place else -1,
+        "options": [{"value": each, "label": value_label(name, each, words)} for each in options],
     }
+
+
+def changes_data(figure: FigureChoice, used: Used = MappingProxyType({})) -> dict[str, Any]:
+    """What may change on the page: first values, and where they act."""
+    places = setting_places(figure, used)
+    values = {name: value_of(figure.parameters, name) for name in sorted(places.names)}
+    tables = [asdict(table) for table in places.tables]
+    return {"values": values, "places": places.places, "tables": tables}
+
+
+def loops_data(figure: FigureChoice) -> dict[str, Any]:
+    """The parameters that decide which variant of a loop runs."""
+    variants, known = variants_of(figure), specs(figure.parameters)
+    classes = {name: list(known[name].options) for name in variants.names}
+    return {"classes": classes, "keys": dict(variants.keys)}
 
 
 def _box(figure: FigureChoice) -> list[float]:

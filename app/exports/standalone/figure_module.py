@@ -7,7 +7,9 @@ from itertools import permutations
 
 import casadi as ca
 
+from onpath.app.exports.standalone.drawings import drawing_functions
 from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.loop_variants import loops_of
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.loop_kind import Kind
 from onpath.models.closed_loop.page_functions import measurements, page_functions
@@ -55,8 +57,9 @@ def figure_module(figure: FigureChoice) -> bytes:
         kernels = [figure.kernel(law, curve) for law in figure.every_law]
         shown = {**page_functions(figure.machine, kind), **_changes(figure, kernels)}
         shown |= measurements(figure.machine, figure.parameters)
+        shown |= drawing_functions(figure, kind)
         edited, steps = _editing(figure, kind, kernels)
-        loops |= {f"loop{number}.{name}": kernel for number, kernel in enumerate(kernels)}
+        loops |= {f"{each}.{name}": kernel for each, kernel in loops_of(figure, curve).items()}
         functions |= {f"{each}.{name}": function for each, function in (shown | edited).items()}
         scans |= {f"{each}.{name}": scan for each, scan in steps.items()}
     shared, steps = _shared(figure)
@@ -64,18 +67,18 @@ def figure_module(figure: FigureChoice) -> bytes:
 
 
 def _changes(figure: FigureChoice, kernels: Sequence[Kernel]) -> dict[str, ca.Function]:
-    """Functions that change each law to each other one, if readers may choose laws."""
+    """Functions that change each law to each other one, if readers or scripts choose laws."""
     return {
         f"change{i}to{j}": change_function(before, after, figure.every_law[j])
         for (i, before), (j, after) in permutations(enumerate(kernels), 2)
-        if figure.choices
+        if figure.choices or figure.scripted
     }
 
 
 def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Parts:
     """Functions and scans that edit paths of a kind, if readers may drag their points."""
     robot = figure.machine
-    if "drag" not in figure.controls:
+    if not figure.edits:
         return {}, {}
     functions = edit_functions(robot, kind) | {"table": table_function(kind.closed)}
     for i, kernel in enumerate(kernels):
@@ -86,7 +89,7 @@ def _editing(figure: FigureChoice, kind: Kind, kernels: Sequence[Kernel]) -> Par
 def _shared(figure: FigureChoice) -> Parts:
     """Functions and scans that serve all kinds of paths."""
     functions, scans, paths = dict[str, ca.Function](), dict[str, Scan](), figure.paths
-    if "drag" in figure.controls:
+    if figure.edits:
         scans["arc"] = arc_scan()
         for design in (design_of(name, curve) for name, curve in paths.items()):
             count = len(design.points)

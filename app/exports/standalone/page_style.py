@@ -29,6 +29,8 @@ def _tones(tones: Tones) -> dict[str, str]:
         "force": tones.force,
         "held": tones.wall.toward(palette.BLUE, 0.35 if is_dark else 0.13),
         "pulled": tones.wall.toward(tones.force, 0.16 if is_dark else 0.1),
+        "mass": palette.GREEN.toward(palette.WHITE, 0.35 if is_dark else 0),
+        "arc": tones.arc,
         "yours": palette.VIOLET.toward(palette.WHITE, 0.5 if is_dark else 0),
     }
     for number, side in enumerate(SIDES):

@@ -14,6 +14,8 @@ type Texts<Name extends string> = Record<Name, string>
 export interface SideData { law: number; side: 0 | 1 }
 
 export interface LawData extends Texts<"title" | "text"> {
+    /** Its name, or "own" for one that somebody has typed. */
+    key: string
     /** Of the robot under this law in a lesson's texts. */
     name?: string
     aim: "theta" | "theta_ref"
@@ -33,7 +35,44 @@ export interface PathData extends Texts<"label" | "kind" | "fit"> {
     settings: number[]
 }
 
-export type SliderData = Texts<"label" | "unit" | "help"> & Numbers<"low" | "high" | "step" | "value" | "place">
+/** The value of a parameter: a number, or one of some options; or whether something is shown. */
+export type Setting = number | string | boolean
+
+/** A control of a parameter: a number within a range, or one of the options, if there are any. */
+export type SliderData = Texts<"name" | "label" | "unit" | "help"> & Numbers<"low" | "high" | "step"> &
+    { kind: "number" | "choice" | "switch"; options: { value: Setting; label: string }[] }
+
+/** The parameters that may change: their first values, and where they act in the settings of the loops. */
+export interface ChangesData {
+    values: Record<string, Setting>
+    /** Of those that are one number of the settings. */
+    places: Record<string, number>
+    /** Rows of numbers at some places, for the values of some parameters. */
+    tables: { names: string[]; values: Setting[][]; places: number[]; numbers: number[][] }[]
+}
+
+/** A picture in the plane of the path: its lower left corner, and the ways to its right and to its top. */
+export interface PlaneImage extends Texts<"src"> { corner: Point; right: Point; up: Point; opacity?: number }
+
+/** What is drawn besides the robots; see app/exports/standalone/drawings.py. */
+export interface DrawingsData {
+    switches: Texts<"name" | "label" | "help">[]
+    /** What is drawn at first. */
+    shown: string[]
+    marks: { at: Point; from?: Point; text: string }[]
+    labels?: { names: string[]; points: number; axes: [Point, Point][]; axisNames: { text: string; place: Point }[] }
+    /** Of each path. */
+    tubes?: { shown: number; across: number[]; along: number; lines: number; said: string; steps: string }[]
+    rank?: PlaneImage
+    zone?: PlaneImage
+}
+
+/** Which variant of the loops runs: the classes of the values that decide it, joined by commas, are a key. A number is of class
+ * 0 or 1, "off" or "on", one of some options that of its place among them. */
+export interface LoopsData {
+    classes: Record<string, Setting[]>
+    keys: Record<string, number>
+}
 
 export type EffortData = Texts<"joint" | "unit"> & Numbers<"motor" | "most">
 
@@ -49,6 +88,9 @@ export interface FigureData extends Texts<"language" | "module"> {
     rows: RowData[]
     sides: SideData[]
     laws: LawData[]
+    drawings: DrawingsData
+    loops: LoopsData
+    changes: ChangesData
     /** Laws from which readers may choose. */
     choices: number[]
     paths: PathData[]

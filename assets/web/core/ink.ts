@@ -4,7 +4,7 @@ export type Pixel = readonly [number, number]
 
 /** The colours of the page's style, light or dark; see assets/templates/web/parts.css. */
 const NAMES = [
-    "paper", "ink", "soft", "grid", "path", "point", "selected", "warning", "steel", "force", "held", "pulled", "yours",
+    "paper", "ink", "soft", "grid", "path", "point", "selected", "warning", "steel", "force", "held", "pulled", "yours", "mass", "arc",
     "side0", "side1", "dark0", "dark1",
 ] as const
 export type Tone = (typeof NAMES)[number]

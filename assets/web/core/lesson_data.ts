@@ -1,10 +1,10 @@
 // The data that Python puts into the pages: see app/exports/site.
 
-import type { FigureData } from "./figure_data"
+import type { FigureData, Setting } from "./figure_data"
 
 export type Robot = "tracker" | "follower"
 export const ROBOTS: Robot[] = ["tracker", "follower"]
-export type Setting = number | string
+export type { Setting }
 
 /** One action of a script or a link; it has one of these fields besides `side`. */
 export interface Action {
@@ -12,8 +12,11 @@ export interface Action {
     pull?: [number, number]
     release?: boolean
     set?: Record<string, Setting>
-    write?: [number, number][]
     path?: number
+    /** A control point, and how far it moves to the right and up in the plane of the path, [m]. */
+    move?: [number, number, number]
+    /** Of each side; null: as it is. */
+    laws?: (number | null)[]
     reset?: boolean
     run?: boolean
     rate?: number
@@ -26,7 +29,6 @@ export interface Script {
 }
 
 export interface SiteFigure extends FigureData {
-    names: string[]
     quantities: string[]
 }
 
@@ -55,6 +57,28 @@ export interface Compare extends TimeWindow {
     smaller: Robot
     stat: string
     ratio: number
+    said: Said
+}
+
+export interface Better extends TimeWindow {
+    kind: "better"
+    quantity: string
+    robot: Robot
+    stat: string
+    share: number
+    said: Said
+}
+
+export interface Once extends TimeWindow {
+    kind: "once"
+    quantity: string
+    robot: Robot
+    stat: string
+    below: number | null
+    above: number | null
+    since: { event: string; name: string }[]
+    /** With which it counts. */
+    setting: SettingCheck
     said: Said
 }
 
@@ -89,7 +113,7 @@ export interface Only {
     labels: Record<string, string>
 }
 
-export type Check = Bound | Compare | EventCheck | Order | SettingCheck | Only
+export type Check = Bound | Compare | Better | Once | EventCheck | Order | SettingCheck | Only
 
 export interface TaskData {
     kind: "task"

@@ -1,6 +1,6 @@
 // Evaluates the checks of a task, as lessons/checks.py does. Pure functions.
 
-import type { Bound, Check, Compare, Only, Robot, Said, Setting, SettingCheck, TimeWindow } from "../core/lesson_data"
+import type { Better, Bound, Check, Compare, Once, Only, Robot, Said, Setting, SettingCheck, TimeWindow } from "../core/lesson_data"
 import { fixed, general, sum } from "../core/numbers"
 import { filled, localized } from "../core/words"
 
@@ -22,6 +22,8 @@ export interface RunRecord {
     settings: Record<string, Setting>
     /** Names of the settings that have changed since the step began. */
     changed: string[]
+    /** What was measured earlier: see earlier.ts. */
+    before: ReadonlyMap<Check, number>
 }
 
 export interface Verdict {
@@ -46,10 +48,10 @@ export function wayOf(ways: Check[], record: RunRecord, words: Words): number {
 function verdict(check: Check, record: RunRecord, words: Words): Verdict {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)
+    if (check.kind === "better") return better(check, record, words)
+    if (check.kind === "once") return once(check, record, words)
     if (check.kind === "setting") return setting(check, record, words)
     if (check.kind === "only") return only(check, record, words)
-    const happens = (each: { name: string; detail: string }, wanted: { event: string; name: string }) =>
-        each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
     if (check.kind === "event") {
         const undone = record.happenings.map(each => check.since.some(wanted => happens(each, wanted))).lastIndexOf(true)
         const have = record.happenings.filter((each, i) => i >= undone && happens(each, check)).length
@@ -63,6 +65,11 @@ function verdict(check: Check, record: RunRecord, words: Words): Verdict {
         passed: found === check.events.length,
         words: filled(words["check.order"]!, { events: marked.join(" → ") }),
     }
+}
+
+/** Whether an event counts as the wanted one. */
+export function happens(each: { name: string; detail: string }, wanted: { event: string; name: string }): boolean {
+    return each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
 }
 
 function bound(check: Bound, record: RunRecord, words: Words): Verdict {
@@ -97,6 +104,46 @@ function compare(check: Compare, record: RunRecord, words: Words): Verdict {
     }
 }
 
+function better(check: Better, record: RunRecord, words: Words): Verdict {
+    const { said } = check
+    if (stopped(record, check.robot)) return halted(said["robot"]!, words)
+    const mask = chosen(record, check.robot, check)
+    const [enough, seconds] = duration(check, record, mask, said, words)
+    const value = statistic(record, check.robot, check.quantity, check.stat, mask)
+    const before = record.before.get(check) ?? null
+    const limit = before === null ? null : check.share * before
+    const written = (each: number | null, below: number | null) =>
+        each === null ? "–" : `${digits(each, below, null, words)} ${said["unit"]!}`
+    const shown = { ...said, value: written(value, limit), before: written(before, null) }
+    return {
+        passed: enough && value !== null && limit !== null && value < limit,
+        words: filled(words["check.better"]!, shown) + seconds,
+    }
+}
+
+/** The statistic of a check in a run; null if it was too short for that. */
+export function measured(check: Better | Once, record: RunRecord): number | null {
+    const mask = chosen(record, check.robot, check)
+    if (stopped(record, check.robot) || secondsOf(record, mask) < check.least - INSTANT) return null
+    return statistic(record, check.robot, check.quantity, check.stat, mask)
+}
+
+function once(check: Once, record: RunRecord, words: Words): Verdict {
+    const kept = record.before.get(check) ?? null
+    const now = kept === null && setting(check.setting, record, words).passed
+    const mask = chosen(record, check.robot, check)
+    const shown = now ? statistic(record, check.robot, check.quantity, check.stat, mask) : kept
+    const value = shown === null ? "–" : digits(shown, check.below, check.above, words)
+    return { passed: kept !== null, words: filled(words["check.once"]!, { ...check.said, value }) }
+}
+
+/** The value that meets the bound while the setting is as required; null if there is none. */
+export function keeps(check: Once, record: RunRecord, words: Words): number | null {
+    if (!setting(check.setting, record, words).passed) return null
+    const value = measured(check, record)
+    return value !== null && within(value, check.below, check.above) ? value : null
+}
+
 function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict {
     const value = record.settings[check.name] ?? "None"
     const { equals, said } = check
@@ -105,7 +152,7 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
             ? same(value, equals, check.whole)
             : typeof value === "number" && within(value, check.below, check.above)
     const shown =
-        typeof value !== "number" ? (check.labels[value] ?? value) : check.whole ? String(value) : localized(general(value, 4), { words })
+        typeof value !== "number" ? (check.labels[String(value)] ?? String(value)) : check.whole ? String(value) : localized(general(value, 4), { words })
     return { passed, words: filled(words["check.setting"]!, { ...said, value: shown }) }
 }
 
@@ -230,9 +277,13 @@ function digits(value: number, below: number | null, above: number | null, words
     return localized(shown, { words })
 }
 
+function secondsOf(record: RunRecord, mask: boolean[]): number {
+    return sum(steps(record).filter((_, i) => mask[i]))
+}
+
 /** Whether the instants last long enough, and the words for it, rounded down. */
 function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
-    const have = sum(steps(record).filter((_, i) => mask[i]))
+    const have = secondsOf(record, mask)
     const need = said["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT
     const tenths = Math.floor(10 * have)

@@ -1,10 +1,15 @@
 // A simulation that records what the lessons need: events, and all quantities 60 times a second.
 
-import { ROBOTS, type Action, type Robot, type Script, type SiteFigure, type StepData, type Curves } from "../core/lesson_data"
+import type { Point } from "../core/figure_data"
+import type { Action, Check, Curves, Robot, Script, Setting, SiteFigure, StepData } from "../core/lesson_data"
+import { ROBOTS } from "../core/lesson_data"
 import type { Kernels } from "../simulation/kernels"
+import type { Side } from "../simulation/side"
 import { Simulation } from "../simulation/simulation"
 import type { Happening, RunRecord } from "./checks"
 
+const SIDES = ["left", "right"] // in the order of ROBOTS
+const EDITED = "own" // the name of a path that is no preset
 const FRAME = 1 / 60 // [s]
 const MOST = 3600 // samples: the lab keeps one minute, too
 
@@ -14,9 +19,9 @@ export class Recorded extends Simulation {
     private before: (time: number) => boolean = () => true
     /** Number of the run; each reset begins another one. */
     run = 0
+    protected override readonly likeLab = true
     private frame = 0
-    private written = new Map<number, number>()
-    private settings: Record<string, number | string> = {}
+    private settings: Record<string, Setting> = {}
     private times: number[] = []
     private samples: Record<Robot, Record<string, number[]>>
 
@@ -30,8 +35,10 @@ export class Recorded extends Simulation {
     setUp(): void {
         const { lengths, paths, ...settings } = this.begun
         this.settings = { ...settings, length: lengths[0]!, path: paths[0]! }
-        this.written.clear()
-        this.data.sliders.forEach((slider, i) => (this.values[i] = slider.value))
+        this.changes.begin()
+        this.configure()
+        this.sides.forEach(side => (side.law = side.data.law))
+        for (const path of this.paths) path.restore()
         this.path = 0
         this.restart()
         this.happenings = []
@@ -66,12 +73,28 @@ export class Recorded extends Simulation {
         super.pull(by, only)
     }
 
-    override set(slider: number, value: number): void {
-        super.set(slider, value)
-        const name = this.data.names[slider]
-        if (!name) return
-        this.settings[name] = value
-        this.note("set", name)
+    override set(values: Record<string, Setting>): void {
+        super.set(values)
+        for (const [name, value] of Object.entries(values)) {
+            if (!(name in this.begun)) continue // how something is drawn
+            this.settings[name] = value
+            this.note("set", name)
+        }
+    }
+
+    /** Change the law of a side. */
+    chooseLaw(side: number, law: number): void {
+        if (law === this.sides[side]!.law) return
+        this.sides[side]!.change(law)
+        const { key } = this.data.laws[law]!
+        this.settings[SIDES[side]!] = key
+        this.note("law", key, [ROBOTS[side]!])
+    }
+
+    /** Keep the result of an edit of the path. */
+    protected override edited(): void {
+        Object.assign(this.settings, { path: EDITED, length: 1e3 * this.followed.length() })
+        this.note("path", EDITED)
     }
 
     override reset(): void {
@@ -82,6 +105,7 @@ export class Recorded extends Simulation {
     override choose(path: number): void {
         const { lengths, paths } = this.begun
         this.path = path
+        this.paths[path]!.restore()
         Object.assign(this.settings, { path: paths[path], length: lengths[path] })
         this.note("path", paths[path])
         this.restart()
@@ -91,11 +115,13 @@ export class Recorded extends Simulation {
     act(action: Action): void {
         const only = action.side ?? undefined
         if (action.hold !== undefined) this.hold(action.hold, only)
-        else if (action.pull) this.pull(action.pull, only)
+        else if (action.pull) this.pullOn(action.pull, only)
         else if (action.release) this.pull(null)
         else if (action.path !== undefined) this.choose(action.path)
         else if (action.reset) this.reset()
-        else if (action.set) this.write(action.set, action.write ?? [])
+        else if (action.set) this.set(action.set)
+        else if (action.move) this.bend(...action.move)
+        else action.laws?.forEach((law, side) => law !== null && this.chooseLaw(side, law))
     }
 
     /** Begin a script, from the step's beginning; time must then advance. `told` gets each action, and `ended` whether all of
@@ -133,15 +159,25 @@ export class Recorded extends Simulation {
         return this.curve(quantity)
     }
 
-    record(): RunRecord {
+    /** `before`: what was measured in earlier runs. */
+    record(before: ReadonlyMap<Check, number> = new Map()): RunRecord {
         const { times, happenings, run, settings } = this
-        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.different() }
+        return { times, end: this.time, values: this.samples, happenings, run, settings, changed: this.different(), before }
+    }
+
+    /** Pull from where the tip is now, even during a pull; both robots by what the follower is pulled. */
+    private pullOn(by: Point, only?: number): void {
+        const [tracker, follower] = this.sides as [Side, Side], side = this.sides[only ?? 1]!
+        const moved = side.pulled ? side.grabAnew() : null
+        if (moved && side === follower && tracker.pulled) tracker.moveGrab(moved)
+        this.pull(by, only)
     }
 
     private different(): string[] {
         const given = { ...this.begun, path: this.begun.paths[0]! } as Record<string, unknown>
-        const compared = Object.keys(this.settings).filter(name => name !== "length")
-        return compared.filter(name => this.settings[name] !== given[name])
+        const compared = Object.keys(this.settings).filter(name => name !== "length" && !SIDES.includes(name))
+        const laws = SIDES.filter((_, i) => this.sides[i]!.law !== this.data.sides[i]!.law)
+        return [...compared.filter(name => this.settings[name] !== given[name]), ...laws]
     }
 
     /** A quantity of both robots up to now. */
@@ -151,19 +187,6 @@ export class Recorded extends Simulation {
         return { times: [...this.times, this.time], tracker: of("tracker"), follower: of("follower") }
     }
 
-    private write(values: Record<string, number | string>, places: [number, number][]): void {
-        for (const [place, value] of places) {
-            this.written.set(place, value)
-            for (const side of this.sides) side.set(place, value)
-        }
-        for (const [name, value] of Object.entries(values)) {
-            this.settings[name] = value
-            const slider = this.data.names.indexOf(name)
-            if (slider >= 0) this.values[slider] = Number(value)
-            this.note("set", name)
-        }
-    }
-
     /** Begin anew, with the settings as they are. */
     private restart(): void {
         this.run++
@@ -171,17 +194,16 @@ export class Recorded extends Simulation {
         this.times = []
         this.samples = this.nothing()
         const kept = [...this.happenings]
-        super.reset() // this sets all sliders
+        super.reset()
         this.happenings = kept
-        for (const [place, value] of this.written) for (const side of this.sides) side.set(place, value)
-        this.data.sliders.forEach(({ place }, i) => {
-            if (place >= 0) for (const side of this.sides) side.set(place, this.values[i]!)
-        })
     }
 
     private readonly at = (frame: number): number => Math.floor((frame * FRAME) / this.data.dt + 1e-9)
+    /** Record an event; what a drag of a slider repeats within a second is recorded once. */
     private note(name: string, detail = "", robots: Robot[] = ROBOTS): void {
-        this.happenings.push({ run: this.run, time: this.time, name, detail, robots })
+        const { run, time } = this, last = this.happenings[this.happenings.length - 1]
+        const repeats = name === "set" && last?.name === "set" && last.run === run && last.detail === detail
+        if (!repeats || time - last.time >= 1) this.happenings.push({ run, time, name, detail, robots })
     }
 
     private isStopped(robot: Robot): boolean {

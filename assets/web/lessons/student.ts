@@ -2,6 +2,7 @@
 
 import type { PageData, TaskData, Answer, Curves } from "../core/lesson_data"
 import { judge, statistic, wayOf, type Verdict } from "./checks"
+import { EarlierRun } from "./earlier"
 import { gradeOf } from "./grade"
 import { keep, notesOf, type Notes } from "./notes"
 import type { Progress } from "./progress"
@@ -37,14 +38,20 @@ export interface Result {
 export class LocalStudent implements Student {
     readonly notes: Notes
     readonly name: string
-    /** What the tasks are about. */
-    recorded: Recorded | null = null
+    private about: Recorded | null = null
+    private earlier = new EarlierRun()
     changed: () => void = () => {}
 
     constructor(private readonly page: PageData, private readonly progress: Progress) {
         this.notes = notesOf(progress, page.lesson)
         this.name = progress.get("student") ?? crypto.getRandomValues(new Uint32Array(2)).join("-")
         progress.set("student", this.name)
+    }
+
+    /** What the tasks are about. */
+    set recorded(recorded: Recorded | null) {
+        this.about = recorded
+        this.earlier = new EarlierRun()
     }
 
     goes(step: number): void {
@@ -90,8 +97,9 @@ export class LocalStudent implements Student {
     }
 
     result({ checks, ways, id, best }: TaskData): Result | null {
-        if (!checks || !this.recorded) return null
-        const record = this.recorded.record()
+        if (!checks || !this.about) return null
+        const record = this.about.record(this.earlier.values)
+        this.earlier.follow(record, checks, this.page.words)
         const verdicts = judge(checks, record, this.page.words)
         if (verdicts.every(verdict => verdict.passed)) {
             const all = record.times.map(() => true)

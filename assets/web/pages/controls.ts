@@ -1,7 +1,7 @@
 // Buttons, menus and sliders of a figure.
 
 import { isTyped, keyOf, made } from "../core/dom"
-import type { Point, SliderData } from "../core/figure_data"
+import type { Point, Setting, SliderData } from "../core/figure_data"
 import { said, significant } from "../core/words"
 import type { Simulation } from "../simulation/simulation"
 import { Transport } from "../parts/transport"
@@ -18,7 +18,7 @@ export class Controls {
         this.transport = new Transport(data, page.engine, data.controls, ended)
         const paths = data.paths.length > 1 && data.controls.includes("path") ? [this.paths()] : []
         const laws = data.choices.length ? simulation.sides.map((_, i) => this.laws(i)) : []
-        const sliders = data.sliders.map((slider, i) => this.slider(slider, i))
+        const sliders = data.sliders.map(each => this.control(each))
         this.element = made("div", "controls", made("div", "buttons", ...paths, ...laws), made("div", "sliders", ...sliders))
         document.addEventListener("keydown", event => this.key(event), { signal: ended })
     }
@@ -49,25 +49,62 @@ export class Controls {
         return made("label", "choice", `${label} `, select)
     }
 
-    private slider(slider: SliderData, number: number): HTMLElement {
+    private control(data: SliderData): HTMLElement {
+        return data.kind === "switch" ? this.tick(data) : data.kind === "choice" ? this.options(data) : this.slider(data)
+    }
+
+    private tick({ name, label, help }: SliderData): HTMLElement {
+        const input = made("input", "")
+        Object.assign(input, { type: "checkbox", role: "switch", title: help })
+        const show = () => (input.checked = Boolean(this.simulation.values[name]))
+        input.addEventListener("change", () => this.set(name, input.checked))
+        input.addEventListener("told", show)
+        show()
+        return made("label", "choice", input, ` ${label}`)
+    }
+
+    private options({ name, label, options }: SliderData): HTMLElement {
+        const { simulation } = this
+        const values = options.map(option => option.value)
+        const first = values.indexOf(simulation.values[name]!)
+        const choice = this.choice(label, options.map(option => option.label), first, chosen => this.set(name, values[chosen]!))
+        choice.querySelector("select")!.addEventListener("told", event => {
+            (event.target as HTMLSelectElement).selectedIndex = values.indexOf(simulation.values[name]!)
+        })
+        return choice
+    }
+
+    private slider({ name, label, unit, low, high, step, help }: SliderData): HTMLElement {
         const { data } = this.simulation
         const input = made("input", "")
         const shown = made("span", "value")
+        const value = () => Number(this.simulation.values[name])
         const show = () => {
-            shown.textContent = `${significant(data, this.simulation.values[number]!, 4)} ${slider.unit}`.trim()
+            shown.textContent = `${significant(data, value(), 4)} ${unit}`.trim()
             input.setAttribute("aria-valuetext", shown.textContent)
         }
         shown.setAttribute("aria-hidden", "true")
-        const { low, high, step, value, help } = slider
-        Object.assign(input, { type: "range", min: low, max: high, step, value, title: help })
+        Object.assign(input, { type: "range", min: low, max: high, step, value: value(), title: help })
         input.addEventListener("input", () => {
-            this.simulation.set(number, input.valueAsNumber)
-            this.page.changed()
+            this.set(name, input.valueAsNumber)
             show()
         })
-        input.addEventListener("told", show) // the value was set by something else
+        input.addEventListener("told", () => {
+            if (input.valueAsNumber !== value()) input.value = String(value())
+            show()
+        })
         show()
-        return made("label", "slider", made("span", "", slider.label), input, shown)
+        return made("label", "slider", made("span", "", label), input, shown)
+    }
+
+    /** Show the values that something else has set. */
+    tell(): void {
+        for (const each of this.element.querySelectorAll("input, select")) each.dispatchEvent(new Event("told"))
+    }
+
+    private set(name: string, value: Setting): void {
+        this.simulation.set({ [name]: value })
+        this.page.changed()
     }
 
     /** The lab's keys, unless the focused control uses them. */
@@ -76,7 +113,7 @@ export class Controls {
         if (isTyped(event) || target.closest("input, [role=slider]")) return
         if (event.key === " " && target.closest("button")) return
         const { simulation, transport, page } = this
-        const { selected, followed } = simulation
+        const { selected, followed, data: { edit: { nudge } } } = simulation
         const acts: Record<string, [string, () => void]> = {
             h: ["hold", () => transport.toggleHold()],
             " ": ["run", () => transport.toggleRun()],
@@ -86,7 +123,7 @@ export class Controls {
             n: ["drag", () => simulation.select(((selected ?? -1) + 1) % followed.data.points.length)],
         }
         const direction = DIRECTIONS[event.key]
-        if (selected !== null && direction) acts[event.key] = ["drag", () => followed.nudge(selected, ...direction)]
+        if (selected !== null && direction) acts[event.key] = ["drag", () => simulation.bend(selected, nudge * direction[0], nudge * direction[1])]
         if (selected !== null) acts["Escape"] = ["drag", () => simulation.select(null)]
         const [name, act] = acts[event.key] ?? acts[keyOf(event)] ?? []
         if (!name || !act || !simulation.data.controls.includes(name) || (event.repeat && !direction)) return

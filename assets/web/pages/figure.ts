@@ -21,7 +21,7 @@ const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, 
 export class Figure {
     readonly engine = new LocalEngine(this.simulation, !this.inLesson)
     private readonly data = this.simulation.data
-    private readonly views = this.simulation.sides.map(side => new View(side, this.data, () => (this.stale = true)))
+    private readonly views = this.simulation.sides.map(side => new View(side, this.simulation.sides[0]!, this.data, () => (this.stale = true)))
     private readonly lenses = this.views.map((_, i) => new Lens(this.data, this.engine, i, this.ended))
     private readonly titles = this.views.map(() => made("span", ""))
     private readonly captions = this.views.map(() => made("span", "caption"))
@@ -59,6 +59,11 @@ export class Figure {
     /** Update everything that depends on the settings. */
     changed(): void {
         const { simulation, data } = this
+        const shown = new Set(data.drawings.switches.map(each => each.name).filter(name => simulation.values[name]))
+        for (const view of this.views) {
+            view.larger = Number(simulation.values["larger"] ?? 1)
+            view.drawings.shown = shown
+        }
         this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
         this.titles.forEach((element, i) => {
             const law = (element.textContent = simulation.title(i))
@@ -120,7 +125,7 @@ export class Figure {
         const moments = [...engine.since((past ?? simulation.time) - TRACE), ...(past === null ? [engine.present] : [])]
         const traced = moments.filter(moment => past === null || moment.time <= past)
         this.views.forEach((view, i) => {
-            view.draw(simulation.followed, simulation.selected, traced.map(moment => moment.tips[i]!))
+            view.draw(simulation.followed, simulation.path, simulation.selected, traced.map(moment => moment.tips[i]!))
         })
         const captions = engine.texts.map(text => (past === null ? text.caption : ""))
         this.captions.forEach((element, i) => tell(element, captions[i]!))
@@ -152,7 +157,7 @@ export class Figure {
         const act = (by: Point | null) => {
             if (grabbed?.what === "tip") simulation.pull(by)
             else if (grabbed && by) simulation.followed.drag(grabbed.what, by)
-            else simulation.followed.finish()
+            else simulation.drop()
             this.stale = true
         }
         const begin = (event: TouchEvent) => at(event.touches[0]!) !== null && event.preventDefault() // no scrolling

@@ -59,9 +59,9 @@ export class Stage {
         for (const action of actions) {
             if (action.run !== undefined) this.run(action.run)
             else this.simulation.act(action)
-            if (action.reset || action.path !== undefined) this.figure.changed()
+            if (action.reset || action.path !== undefined || action.laws) this.figure.changed()
         }
-        this.sliders()
+        this.figure.controls.tell()
     }
 
     /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
@@ -74,17 +74,7 @@ export class Stage {
             ended(whole)
         })
         figure.changed()
-        this.sliders()
+        this.figure.controls.tell()
         this.run(true)
-    }
-
-    /** Show the values on the sliders. */
-    private sliders(): void {
-        this.into.querySelectorAll<HTMLInputElement>(".slider input").forEach((input, i) => {
-            const value = this.simulation.values[i]!
-            if (input.valueAsNumber === value) return
-            input.value = String(value)
-            input.dispatchEvent(new Event("told"))
-        })
     }
 }

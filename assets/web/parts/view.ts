@@ -3,6 +3,7 @@
 import type { FigureData, Point } from "../core/figure_data"
 import { arrow, disc, Sheet, stroke, tones } from "../core/ink"
 import { drawShapes, jointsOfFiveBar, shapesOf, type Seen } from "../core/symbols"
+import { Drawings } from "./drawings"
 import type { Path } from "../simulation/path"
 import type { Side } from "../simulation/side"
 
@@ -19,9 +20,15 @@ export class View {
     private left = 0
     private top = 0
 
-    constructor(private readonly side: Side, private readonly data: FigureData, changed: () => void) {
+    /** How many times as large the deflection of a flexible link is drawn. */
+    larger = 1
+    readonly drawings: Drawings
+
+    /** `clock`: the robot whose point runs by the clock. */
+    constructor(private readonly side: Side, private readonly clock: Side, private readonly data: FigureData, changed: () => void) {
         this.sheet = new Sheet(changed)
         this.canvas = this.sheet.canvas
+        this.drawings = new Drawings(data.drawings, changed)
     }
 
     /** Converts pixels to metres in the picture. */
@@ -39,10 +46,12 @@ export class View {
         return tip < REACH ? "tip" : null
     }
 
-    draw(path: Path, selected: number | null, trace: Point[]): void {
+    draw(path: Path, number: number, selected: number | null, trace: Point[]): void {
         const ink = this.sheet.cleared()
         if (!ink) return
         this.fill()
+        const { side, clock, pixel, scale, drawings } = this, scene = { side, clock, path, number, pixel, scale }
+        drawings.beneath(ink, scene)
         const { controls } = this.data, colours = tones()
         this.line(ink, points(path.outline), colours.path, 2.5)
         const spots = controls.includes("drag") ? path.spots() : []
@@ -58,6 +67,7 @@ export class View {
         this.robot(ink)
         this.marker(ink)
         this.force(ink)
+        drawings.over(ink, scene)
         if (this.lit) drawShapes(ink, shapesOf(this.lit, this.seen(path)), this.pixel, colours.selected)
     }
 
@@ -87,7 +97,7 @@ export class View {
     private robot(ink: CanvasRenderingContext2D): void {
         const { sizes, strip } = this.data
         const { dark, colour } = this, mixed = `color-mix(in srgb, ${dark}, ${colour})`
-        const picture = this.side.picture()
+        const picture = this.side.picture(this.larger)
         const links = sizes.bars - strip
         for (let i = 0; i < sizes.bars; i++) {
             const ends = points(picture.subarray(4 * i, 4 * i + 4))
@@ -95,7 +105,8 @@ export class View {
             this.line(ink, ends, i < links && i % 2 === 0 ? mixed : colour, i < links ? 8 : 5)
         }
         for (const joint of points(picture.subarray(4 * sizes.bars))) this.joint(ink, joint)
-        this.disc(ink, this.side.tip(), 5, tones().ink)
+        const tip: Point = this.larger === 1 ? this.side.tip() : [picture[4 * sizes.bars - 2]!, picture[4 * sizes.bars - 1]!]
+        this.disc(ink, tip, 5, tones().ink)
     }
 
     private joint(ink: CanvasRenderingContext2D, place: Point): void {

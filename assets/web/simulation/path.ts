@@ -52,6 +52,14 @@ export class Path {
         })
     }
 
+    /** The point in the picture at a distance to the left of the followed curve, [m]. */
+    beside(theta: number, across: number): Point {
+        const { work, kernels } = this
+        kernels.numbers.set([theta, across], work)
+        this.call("beside", this.table, work, work + 1, work + 2)
+        return kernels.pair(work + 2)
+    }
+
     /** Move a point by a vector in the picture, from where it was before the edit. */
     drag(index: number, by: Point): void {
         const { work } = this
@@ -60,11 +68,11 @@ export class Path {
         this.move(index, this.kernels.pair(work + 4))
     }
 
-    /** Move a point by a number of steps, and keep it there. */
-    nudge(index: number, right: number, up: number): void {
+    /** Move a point in the plane of the path, [m], and keep it there; returns whether it has moved. */
+    shift(index: number, right: number, up: number): boolean {
         const [x, y] = this.kernels.pair(this.kept[0] + 2 * index)
-        this.move(index, [x + this.edit.nudge * right, y + this.edit.nudge * up])
-        this.finish()
+        this.move(index, [x + right, y + up])
+        return this.finish()
     }
 
     /** Move a point towards a target, [m]; if that is refused, find by bisection how far it may go. */
@@ -84,10 +92,13 @@ export class Path {
         this.edited = true
     }
 
-    /** Keep the result of an edit. */
-    finish(): void {
+    /** Keep the result of an edit; returns whether it is new. */
+    finish(): boolean {
+        const { numbers } = this.kernels, [kept, shown] = [this.kept[0], this.shown[0]]
+        const isNew = this.flat.some((_, i) => numbers[kept + i] !== numbers[shown + i])
         this.take(this.shown, this.kept)
         if (this.edited) this.doubts = this.ambiguities()
+        return isNew
     }
 
     /** Move the followed curve towards the shown one; returns whether it moves. */
@@ -104,6 +115,26 @@ export class Path {
         this.scan("outline", work, table, rows, edit.outline)
         this.outline = [...kernels.numbers.subarray(rows, rows + this.outline.length)]
         return true
+    }
+
+    /** As before all edits. */
+    restore(): void {
+        const { numbers } = this.kernels
+        for (const [points, table] of [this.kept, this.shown, this.tried]) {
+            numbers.set(this.flat, points)
+            numbers.set(this.data.table, table)
+        }
+        numbers.set(this.data.table, this.table)
+        numbers.set(this.data.grid, this.grid)
+        Object.assign(this, { outline: this.data.outline, doubts: this.data.doubts, edited: false, fault: null, progress: 1 })
+    }
+
+    /** The length of the kept curve, [m]. */
+    length(): number {
+        const { work, rows, edit, kernels } = this
+        kernels.numbers.fill(0, work, work + 4)
+        this.scan("check", work, this.kept[1], rows, edit.samples + 1)
+        return kernels.numbers[rows + edit.row * edit.samples + 2]!
     }
 
     /** Follow the shown curve at once. */
@@ -172,9 +203,7 @@ export class Path {
         const { numbers } = this.kernels
         const { row, samples } = edit
         let [near, crosses] = [false, false]
-        numbers.fill(0, work, work + 4)
-        this.scan("check", work, this.kept[1], rows, samples + 1)
-        const length = numbers[rows + row * samples + 2]!
+        const length = this.length()
         for (let i = 0, next = rows + row; i < samples - 1; i++, next += row) {
             numbers.set([0, 0, 0, 0, length], work)
             this.scan("strands", work, next - row, next, samples - 1 - i)

@@ -5,6 +5,7 @@ import type { EffortData, SideData, FigureData, LawData, Place, Point } from "..
 import type { Kernels } from "./kernels"
 import type { Path } from "./path"
 
+const MOST_POINTS = 400 // of a drawing
 export const MOST_TICKS = 128 // in one call of a loop
 
 /** What is kept of an instant: the row of the log that is drawn, and the state from which to go on. */
@@ -27,6 +28,9 @@ export class Side {
     distance = 0
     most = 0 // largest distance since it was held back
     law = this.data.law
+    /** Which variant of its loop runs, and numbers in its settings; see changes.ts. */
+    private variant = 0
+    private numbers: readonly (readonly [number, number])[] = []
     private readonly sizes = this.figure.sizes
     private readonly longest = Math.max(...this.path.data.states.map(each => each.length))
     private readonly state = this.kernels.room(this.longest)
@@ -39,6 +43,7 @@ export class Side {
     private readonly straight = this.kernels.room(this.sizes.n + this.sizes.p) // a configuration, and its tip
     private readonly moved = this.kernels.room(2 * this.sizes.n) // a configuration, and its velocity
     private readonly y = this.kernels.room(this.sizes.p)
+    private drawing: number | null = null // places of the points of a drawing
     private readonly grabbed = this.kernels.room(this.sizes.p) // where the tip was when a pull began
     private row = this.log // the last one
     private readonly past = this.kernels.room(this.sizes.log)
@@ -61,6 +66,7 @@ export class Side {
         this.path = path
         kernels.numbers.set(path.data.states[this.law]!, state)
         kernels.numbers.set(path.data.settings, this.settings)
+        this.configure(this.variant, this.numbers)
         if (path.edited) this.call(`begin${this.law}`, path.table, state, state)
         this.held = this.looked = false
         this.pulledBy = this.beyond = null
@@ -75,13 +81,19 @@ export class Side {
         this.kernels.copy(this.state + this.figure.state.theta_ref[0], this.field("theta_ref"), 1)
     }
 
-    readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
+    /** Take a variant of the loop, and numbers at places in the settings. */
+    configure(variant: number, numbers: readonly (readonly [number, number])[]): void {
+        Object.assign(this, { variant, numbers })
+        for (const [place, value] of numbers) this.set(place, value)
+    }
+
+    private readonly set = (place: number, value: number) => (this.kernels.numbers[this.settings + place] = value)
     /** Advance by some ticks; a robot that stops stays as it was one tick before, as in the lab. */
     advance(ticks: number): void {
         if (this.stopped) return
         const { kernels, state, settings, log, sizes } = this
         kernels.copy(this.row, log, sizes.log)
-        kernels.loop(this.name(`loop${this.law}`), [state, settings, this.path.table, log + sizes.log], ticks)
+        kernels.loop(this.loop, [state, settings, this.path.table, log + sizes.log], ticks)
         for (let i = 1; i <= ticks && !this.stopped; i++, this.ticks++) {
             this.row = log + i * sizes.log
             this.call("fault", this.field("q"), this.field("v"), this.field("theta_ref"), this.result)
@@ -128,14 +140,15 @@ export class Side {
         this.measure()
     }
 
-    /** Hold it back along the path where it is, or let it go. */
-    hold(on: boolean): void {
+    /** Hold it back along the path where it is, or let it go; `logged`: where it was in the last row of the log. */
+    hold(on: boolean, logged = false): void {
         const { settings: places, state } = this.figure
         if (on) {
-            const tangent = this.settings + places.hold_tangent[0]
-            this.call("tip", this.state + state.q[0], this.y)
+            const tangent = this.settings + places.hold_tangent[0], theta = logged ? this.field("theta") : this.state + state.theta[0]
+            if (logged) this.kernels.copy(this.field("y"), this.y, this.sizes.p)
+            else this.call("tip", this.state + state.q[0], this.y)
             this.kernels.copy(this.y, this.settings + places.hold_anchor[0], this.sizes.p)
-            this.call("brake", this.path.table, this.y, this.state + state.theta[0], tangent)
+            this.call("brake", this.path.table, this.y, theta, tangent)
             this.most = this.distance
         }
         this.held = on
@@ -153,11 +166,33 @@ export class Side {
         this.call("hand", this.grabbed, this.result, this.result + 2, this.settings + places.hand_target[0])
     }
 
-    /** Both ends of each bar, then joints, as x and y in the picture. */
-    picture(): Float64Array {
-        const { bars, joints } = this.sizes
-        this.call("picture", this.seen("q"), this.points, this.points + 4 * bars)
+    /** Let a pull begin where the tip is now; returns by how much. */
+    grabAnew(): number[] {
+        const { kernels, sizes, grabbed } = this, y = this.field("y")
+        const by = Array.from({ length: sizes.p }, (_, i) => kernels.numbers[y + i]! - kernels.numbers[grabbed + i]!)
+        this.moveGrab(by)
+        return by
+    }
+
+    /** Let a pull begin elsewhere. */
+    moveGrab(by: readonly number[]): void {
+        by.forEach((each, i) => (this.kernels.numbers[this.grabbed + i]! += each))
+    }
+
+    /** Both ends of each bar, then joints, as x and y in the picture; with the deflection so many times as large. */
+    picture(larger = 1): Float64Array {
+        const { bars, joints } = this.sizes, factor = this.result
+        this.kernels.numbers[factor] = larger
+        if (larger === 1) this.call("picture", this.seen("q"), this.points, this.points + 4 * bars)
+        else this.call("enlarged", this.seen("q"), factor, this.points, this.points + 4 * bars)
         return this.kernels.numbers.subarray(this.points, this.points + 4 * bars + 2 * joints)
+    }
+
+    /** Points of a drawing that a function of the configuration gives. */
+    drawn(name: "labels" | "ellipse", count: number): Point[] {
+        this.drawing ??= this.kernels.room(2 * MOST_POINTS)
+        this.call(name, this.seen("q"), this.drawing)
+        return Array.from({ length: count }, (_, i) => this.kernels.pair(this.drawing! + 2 * i))
     }
 
     readonly tip = (): Point => this.point("place", this.seen("y"))
@@ -198,7 +233,7 @@ export class Side {
     private seeStart(): void {
         const { kernels, figure, state, log } = this
         kernels.copy(state, this.begun, this.longest)
-        kernels.loop(this.name(`loop${this.law}`), [state, this.settings, this.path.table, log], 1)
+        kernels.loop(this.loop, [state, this.settings, this.path.table, log], 1)
         kernels.copy(this.begun, state, this.longest)
         this.row = log
         for (const [from, size] of [figure.log.u, figure.log.force]) kernels.numbers.fill(0, log + from, log + from + size)
@@ -232,5 +267,6 @@ export class Side {
         (this.looked ? this.past : this.row) + this.figure.log[name][0]
     private readonly field = (name: keyof FigureData["log"]): number => this.row + this.figure.log[name][0]
     private readonly call = (name: string, ...places: number[]) => this.kernels.call(this.name(name), ...places)
+    private get loop(): string { return this.name(`loop${this.law}${this.variant ? `v${this.variant}` : ""}`) }
     private readonly name = (name: string): string => `${name}.${this.path.data.kind}`
 }

@@ -1,9 +1,10 @@
 // The simulated figure: sides on a path, time, and the reader's actions. It does not depend on a page.
 
 import type { Change, Sample } from "../core/engine"
-import type { FigureData, Point } from "../core/figure_data"
+import type { FigureData, Point, Setting } from "../core/figure_data"
 import { said } from "../core/words"
 import type { Kernels } from "./kernels"
+import { Changes } from "./changes"
 import { Path } from "./path"
 import { Poles } from "./poles"
 import { Side, MOST_TICKS, type Kept } from "./side"
@@ -22,11 +23,13 @@ export class Simulation {
     ticks = 0
     held = false
     path = 0
+    /** Whether the brake catches the robots where the lab does, at the row of the last tick, and not as in `onpath.simulate`. */
+    protected readonly likeLab: boolean = false
     /** The control point that keys move. */
     selected: number | null = null
     readonly paths = this.data.paths.map(path => new Path(path, this.data, this.kernels))
     readonly sides = this.data.sides.map(each => new Side(each, this.data, this.kernels, this.paths[0]!))
-    readonly values = this.data.sliders.map(slider => slider.value)
+    readonly changes = new Changes(this.data.changes, this.data.loops)
     private readonly poles = new Poles(this.data, this.kernels)
     private readonly period = Math.min(Math.max(Math.round(PERIOD / this.data.dt), 1), MOST_TICKS) // in ticks
     /** Called at each change. */
@@ -99,7 +102,7 @@ export class Simulation {
             if (on === this.held) return
             this.held = on
         }
-        for (const side of this.meant(only)) side.hold(on)
+        for (const side of this.meant(only)) side.hold(on, this.likeLab)
         this.changed("state")
     }
 
@@ -111,13 +114,12 @@ export class Simulation {
 
     private readonly meant = (only?: number): Side[] => (only === undefined ? this.sides : [this.sides[only]!])
 
-    /** Begin anew, with the values of the sliders. */
+    /** Begin anew, with the parameters as they are. */
     reset(): void {
         this.ticks = 0
         this.held = false
         this.followed.settle()
         for (const side of this.sides) side.begin(this.followed)
-        this.values.forEach((value, i) => this.set(i, value))
         this.recent = [this.moment()]
         this.changed("path")
         this.changed("history")
@@ -130,15 +132,35 @@ export class Simulation {
         this.reset()
     }
 
+    /** Move a control point in the plane of the path, [m]. */
+    bend(point: number, right: number, up: number): void {
+        if (this.followed.shift(point, right, up)) this.edited()
+    }
+
+    /** Keep the result of a drag of a control point. */
+    drop(): void {
+        if (this.followed.finish()) this.edited()
+    }
+
+    /** The path is another one now. */
+    protected edited(): void {}
+
     select(point: number | null): void {
         this.selected = point
         this.followed.fault = null
     }
 
-    /** Set a slider's value in the loops. */
-    set(slider: number, value: number): void {
-        this.values[slider] = value
-        const { place } = this.data.sliders[slider]!
-        if (place >= 0) for (const side of this.sides) side.set(place, value)
+    get values(): Record<string, Setting> { return this.changes.values }
+
+    /** Give parameters other values. */
+    set(values: Record<string, Setting>): void {
+        Object.assign(this.values, values)
+        this.configure()
+    }
+
+    /** Let the values of the parameters act in the loops. */
+    protected configure(): void {
+        const { variant } = this.changes, numbers = [...this.changes.numbers()]
+        for (const side of this.sides) side.configure(variant, numbers)
     }
 }

@@ -1,0 +1,102 @@
+"""What a site's page computes for a step, without a browser: its scripts, run by Node.
+
+The page itself is another matter: see `tests/in_browser`.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from functools import cache
+from tempfile import NamedTemporaryFile
+from typing import Any
+
+import pytest
+
+from onpath.app.exports.site.step_actions import script_acts
+from onpath.app.exports.site.step_data import site_step
+from onpath.app.exports.site.step_figures import step_figure
+from onpath.app.exports.site.task_data import check_words, task_data
+from onpath.assets import asset_path
+from onpath.lessons.action_schema import Script
+from onpath.lessons.schema import Lesson
+from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.words import ENGLISH
+
+ESBUILD = asset_path("web/node_modules/.bin/esbuild")
+needs_node = pytest.mark.skipif(
+    not (shutil.which("node") and ESBUILD.exists()), reason="run npm ci in assets/web"
+)
+PLAYER = """
+import { judge } from "./lessons/checks"
+import { EarlierRun } from "./lessons/earlier"
+import { Recorded } from "./lessons/recorded"
+import { Kernels } from "./simulation/kernels"
+import { readFileSync } from "node:fs"
+
+const { figure, values, words, plays } = JSON.parse(readFileSync(0, "utf8"))
+
+/** Play a script, and look at the checks ten times a second. */
+async function played({ script, checks, quantity }) {
+    const simulation = new Recorded(figure, await Kernels.from(figure.module), values)
+    const earlier = new EarlierRun()
+    let [going, passed, verdicts] = [true, false, []]
+    simulation.play(script, () => {}, () => (going = false))
+    while (going) {
+        simulation.advance(Math.round(0.1 / figure.dt))
+        const record = simulation.record(earlier.values)
+        earlier.follow(record, checks, words)
+        verdicts = judge(checks, record, words)
+        passed ||= verdicts.every(each => each.passed)
+    }
+    const { recent, sides } = simulation
+    const { values: settings } = simulation
+    return { passed, verdicts, settings, curve: quantity ? simulation.curve(quantity) : null,
+        rows: sides.map(side => [...side.logged()]) }
+}
+
+const results = []
+for (const play of plays) results.push(await played(play))
+console.log(JSON.stringify(results))
+"""
+
+
+@cache
+def _bundle() -> str:
+    """The player as one script."""
+    home = asset_path("web")
+    command = [str(ESBUILD), "--bundle", "--format=esm", "--platform=node", "--loader=ts"]
+    made = subprocess.run(
+        command, input=PLAYER, cwd=home, text=True, capture_output=True, check=True
+    )
+    return made.stdout
+
+
+def play_on_site(lesson: Lesson, index: int, plays: list[tuple[Script, Task | None]]) -> Any:
+    """What a step's page makes of scripts: verdicts on a task, if any, and the last log rows."""
+    figure, step = step_figure(lesson, index), lesson.steps[index]
+    references = {task.id: Reference(Script(), Script()) for task in step.tasks()}
+    site = site_step(lesson, index, references, ENGLISH)
+    laws = lesson.scene_at(index).laws.named
+    data = {
+        "figure": site.figure,
+        "values": site.data["values"],
+        "words": site.figure["words"] | check_words(ENGLISH),
+        "plays": [
+            {
+                "script": script_acts(script, figure.choice),
+                "checks": task_data(task, figure.choice.parameters, laws, ENGLISH)["checks"]
+                if task
+                else [],
+            }
+            for script, task in plays
+        ],
+    }
+    with NamedTemporaryFile("w", encoding="utf-8", suffix=".mjs") as file:
+        file.write(_bundle())
+        file.flush()
+        run = subprocess.run(
+            ["node", file.name], input=json.dumps(data), text=True, capture_output=True, check=True
+        )
+    return json.loads(run.stdout)
