@@ -14,6 +14,7 @@ from onpath.app.exports.standalone.figure_data import (
     changes_data,
     figure_data,
     slider_data,
+    spec_data,
     stop_texts,
 )
 from onpath.app.exports.standalone.setting_places import (
@@ -29,7 +30,7 @@ from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.sides import ROLES, law_titles, robot_names
 from onpath.lessons.task_schema import Reference, Task
 from onpath.lessons.words import Words
-from onpath.models.closed_loop.lab_settings import LARGEST, SETTINGS, lab_specs
+from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.laws.registry import law_name
@@ -43,6 +44,7 @@ ALWAYS = ("pull", "run", "step", "reset", "plot")
 """Controls that every step of the lab has."""
 HERE = ("hold", "editor", "show", "start", "larger")
 """Controls besides parameters that a step's page has, too."""
+NO_RANGE: dict[str, Any] = {"low": 0.0, "high": 1.0, "step": 1.0, "options": []}
 GROUPS = {"flexible": ("output", "alpha")}
 """Controls that stand for several parameters, of which the page has these."""
 MOST = 8  # figures in the cache; those of one lesson follow each other
@@ -269,21 +271,11 @@ def _drawings(scene: StepSetup, figure: FigureChoice) -> tuple[str, ...]:
 
 def view_data(name: str, words: Words) -> dict[str, Any]:
     """The control of something in the picture."""
-    if name == "larger":
-        low, high, key, kind = 1.0, LARGEST, "flexible.larger", "number"
-    else:
-        low, high, key, kind = 0.0, 1.0, f"show.{name}", "switch"
-    return {
-        "name": name,
-        "kind": kind,
-        "label": words(key),
-        "unit": "",
-        "help": words(f"{key}_hint"),
-        "low": low,
-        "high": high,
-        "step": 1.0,
-        "options": [],
-    }
+    if name in SETTINGS:
+        return spec_data(name, SETTINGS[name].spec, words)
+    key = f"show.{name}"
+    label, text = words(key), words(f"{key}_hint")
+    return {"name": name, "kind": "switch", "label": label, "unit": "", "help": text, **NO_RANGE}
 
 
 def _expanded(controls: Iterable[str]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import math
 from base64 import b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from types import MappingProxyType
 from typing import Any
@@ -59,6 +59,7 @@ from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
+from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import time_step
 from onpath.models.systems.robots import Robot
 
@@ -250,8 +251,12 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
 def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
     """A control of a parameter: its words, and its range or options."""
     spec = specs(type(figure.parameters))[name]
+    return spec_data(name, spec, words, page_values(figure, name, {}) if spec.options else ())
+
+
+def spec_data(name: str, spec: Spec, words: Words, options: Sequence[Any] = ()) -> dict[str, Any]:
+    """A control of something that is declared."""
     low_on_grid = spec.step * math.ceil(spec.low / spec.step) if spec.step else 0.0
-    options = page_values(figure, name, {}) if spec.options else ()
     return {
         "name": name,
         "kind": "choice" if options else "number",
