@@ -79,10 +79,8 @@ def robot_names(laws: Mapping[str, str], words: Words) -> dict[RobotName, str]:
     }
 
 
-def displayed_names(laws: Mapping[str, str], words: Words, in_lesson: bool) -> dict[str, str]:
-    """Displayed name of each side: of its robot in a lesson, else of its law."""
-    if not in_lesson:
-        return side_titles(laws, words)
+def displayed_names(laws: Mapping[str, str], words: Words) -> dict[str, str]:
+    """Displayed name of each side's robot; see `robot_names`."""
     named = robot_names(laws, words)
     return {side: named[ROLES[side]] for side in laws}
 

@@ -255,12 +255,13 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         said: what is spoken, and what newcomers are invited to do.
         presenting: whether large type for a projector is on.
         height: how high a part of the scene the canvas shows, at the distance of the robots [m].
-        apart: how far the robots are apart in the picture [m].
         cameras: for each robot, how the picture shows a point of the output space: three rows of p
             factors and a constant; the first two results divided by the third are right and down
             from the middle, as shares of the height.
+        above: the point of the output space over which a robot's title stands.
         arrow: length of the arrow of a force [m/N].
         frozen: why the lab takes no commands, if the teacher has stopped it; else empty.
+        waits: that time waits for what takes long; else empty.
         own: whether commands are taken: not if a teacher looks at the lab of a student.
         rows: what can be plotted of these robots.
         laws: names of the robots' control laws; a typed one is its own name.
@@ -286,10 +287,11 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     said: Said
     presenting: bool
     height: float
-    apart: float
     cameras: list[list[list[float]]]
+    above: list[float]
     arrow: float
     frozen: str
+    waits: str
     own: bool
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]
     laws: list[str]

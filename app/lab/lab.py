@@ -105,6 +105,7 @@ class Lab:
         self.lessons = LessonRun(course)
         self.script: ScriptPlayer[Command] | None = None
         self.message, self.message_level, self.messages = "", "info", 0
+        self._holds: Callable[[], bool] | None = None  # whether the message has a reason
         self._caution: Message | None = None
         self._forecast: tuple[tuple[object, ...], Message | None] | None = None
         self.refused: dict[str, str] = {}
@@ -174,6 +175,8 @@ class Lab:
         self._adopt_identified()
         self._end_level_set()
         self.lessons.follow(self)
+        if self._holds is not None and not self._holds():
+            self.clear_message()
         if self.watch is not None:
             self.watch(self)
         return taken
@@ -186,7 +189,8 @@ class Lab:
                 self.asked += 1
                 if refusal := self._refusal(command):
                     level = "stop" if self.frozen else "warning"
-                    self.show_message(self.words.sentence(refusal), level)
+                    text = self.words.sentence(refusal)
+                    self.show_message(text, level, lambda: self._refusal(command) is not None)
                     return
                 if self.breakdown.interrupt(self.simulation):
                     self.clear_message()
@@ -275,26 +279,29 @@ class Lab:
     def notice(self) -> tuple[str, str]:
         """The message on the page, and its level.
 
-        It is preceded by a warning while nothing is saved, and replaced while the lab waits, unless
-        it says that something has stopped.
+        It is preceded by a warning while nothing is saved.
         """
         message, level = self.message, self.message_level
-        if self.waits and level not in ("error", "stop"):
-            message, level = self.words("say.waits"), "info"
         if not self.unsaved:
             return message, level
         is_error = bool(message) and level == "error"
         text = f"{self.words(self.unsaved)} {message}".strip()
         return text, "error" if is_error else "warning"
 
-    def show_message(self, message: str, level: str = "info") -> None:
-        """Show a message to the user; an empty one clears the last."""
-        self.message, self.message_level = message, level
+    def show_message(
+        self, message: str, level: str = "info", holds: Callable[[], bool] | None = None
+    ) -> None:
+        """Show a message to the user; an empty one clears the last.
+
+        Args:
+            holds: whether there is still reason for it; if not, it is cleared.
+        """
+        self.message, self.message_level, self._holds = message, level, holds
         self.messages += message != ""
 
     def clear_message(self) -> None:
         """Clear the message, or show again why robots are stopped."""
-        self.message, self.message_level = "", "info"
+        self.message, self.message_level, self._holds = "", "info", None
         if text := self.fault_words("say.stopped"):
             self.message, self.message_level = text, "error"
         elif self._caution is not None:

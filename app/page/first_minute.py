@@ -14,6 +14,8 @@ KEPT_AS = "first_minute"
 """Where a browser keeps how many of the invitations it has shown."""
 PAUSE = 2.5
 """Simulated time between invitations, to see the consequence of the last one [s]."""
+READ = 6.0
+"""Simulated time for which an explanation stays after what it explains [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,17 +27,20 @@ class Invitation:
         is_followed: whether it has been followed, according to a snapshot.
         act: the command of its button, as JSON; None if it is followed in the scene itself, or by
             opening the first lesson.
+        explained: name of the sentence that takes its place while it is being followed, and for
+            `READ` afterwards; empty: there is none.
     """
 
     name: str
     is_followed: Callable[[PageSnapshot], bool]
     act: Mapping[str, str] | None = None
+    explained: str = ""
 
 
 INVITATIONS = (
     Invitation("hold", lambda shown: shown.held, {"do": "Hold"}),
     Invitation("let_go", lambda shown: not shown.held, {"do": "Hold"}),
-    Invitation("pull", lambda shown: shown.grabbed is not None),
+    Invitation("pull", lambda shown: shown.grabbed is not None, explained="pulled"),
     Invitation("bend", lambda shown: shown.edit.name in ("edited", "drawn")),
     Invitation("lesson", lambda shown: shown.key.in_lesson),
 )
@@ -61,7 +66,13 @@ class FirstMinute:
         self.shown: Invitation | None = None
         self._next = len(INVITATIONS)  # until the browser reports which it has shown
         self._since: float | None = None
+        self._followed: float | None = None  # when the present one was followed last, [s]
         ask_item(client, KEPT_AS, self._begin)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether all have been shown."""
+        return self._next >= len(INVITATIONS)
 
     def end(self) -> None:
         """Show no more invitations."""
@@ -69,12 +80,18 @@ class FirstMinute:
 
     def follow(self, snapshot: PageSnapshot) -> None:
         """Show the next invitation, or remove the one that has been followed."""
-        if self._next >= len(INVITATIONS):
+        if self.is_over:
             return
         if self._since is None or snapshot.time < self._since:  # the first, or after a reset
             self._since = snapshot.time - PAUSE * (self._next == 0)
-        if INVITATIONS[self._next].is_followed(snapshot):
-            self._next, self._since = self._next + 1, snapshot.time
+        wanted, followed = INVITATIONS[self._next], self._followed
+        if wanted.is_followed(snapshot) and wanted.explained:
+            self._followed = snapshot.time
+            self.shown = Invitation(wanted.explained, wanted.is_followed)
+        elif wanted.is_followed(snapshot) or (
+            followed is not None and not followed <= snapshot.time < followed + READ
+        ):
+            self._next, self._since, self._followed = self._next + 1, snapshot.time, None
             self._client.local_storage.set_item(KEPT_AS, str(self._next))
             self.shown = None
         elif self.shown is None and snapshot.time >= self._since + PAUSE:

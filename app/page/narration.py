@@ -11,7 +11,7 @@ from onpath.app.lab.snapshots.snapshot import Snapshot
 from onpath.app.page.first_minute import FirstMinute
 from onpath.app.scene.captions import Captions, spoken
 from onpath.lessons.labels import parameter_label, path_label, value_label
-from onpath.lessons.sides import side_titles
+from onpath.lessons.sides import displayed_names
 from onpath.lessons.words import Words
 from onpath.models.control.settable import specs
 from onpath.models.systems.catalogue import ROBOTS
@@ -59,7 +59,9 @@ class Narration:
             self._summary = summary(snapshot, captions, self._words)
         stopped = bool(snapshot.stopped) and level == "error"
         shows_remedy = (stopped or level == "replay") and not _in_lesson(snapshot)
-        invitation = None if self.first_minute is None else self.first_minute.shown
+        first_minute = self.first_minute
+        invitation = None if first_minute is None else first_minute.shown
+        self._captions.brief = first_minute is not None and not first_minute.is_over
         self.said = Said(
             voice=self._voice(snapshot, captions) if self._preferences["speaks"] else "",
             summary=self._summary,
@@ -89,7 +91,8 @@ def _without_numbers(text: str) -> str:
 def _spoken(snapshot: Snapshot, captions: dict[str, str], words: Words) -> str:
     """What a sighted user sees: the state of the lab, and what each robot is doing."""
     state = "held" if snapshot.held else "running"
-    robots = spoken(captions, side_titles(snapshot.laws, words), words) or words("spoken.on_path")
+    names = displayed_names(snapshot.laws, words)
+    robots = spoken(captions, names, words) or words("spoken.on_path")
     return f"{words('spoken.' + (state if snapshot.running else 'paused'))} {robots}"
 
 
@@ -117,7 +120,7 @@ def summary(snapshot: PageSnapshot, captions: dict[str, str], words: Words) -> s
         _spoken(snapshot, captions, words),
         words("summary.clock", time=f"{snapshot.time:.1f}", path=path),
     ]
-    for side, title in side_titles(snapshot.laws, words).items():
+    for side, title in displayed_names(snapshot.laws, words).items():
         robot = snapshot.robots[side]
         sentences.append(
             words(

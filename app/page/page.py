@@ -51,7 +51,6 @@ STANDS = 5  # of them, until the panel can be folded
 CONTROL_WIDTH, LARGE_WIDTH = 330, 560  # [px], the latter for a plot on a projector
 TITLES = 44.0  # [px], of the scene, that the titles of the robots take
 MOST_TITLES = 0.1  # of its height
-ASIDE = 0.025  # of the scene's width, for the brakes, which stick out of the robots' boxes
 SHAPE_KEY = "shape"
 """Where a browser keeps its window's shape; see assets/page/portrait.js."""
 
@@ -383,12 +382,11 @@ class Page:
         if width > 0 and abs(shape - self._framed) > 0.02 * shape:
             self._framed = shape
             ask_item(self._client, SHAPE_KEY, self._heard_shape)
-            self._scene.frame_camera(self._insets(width, height))
+            self._scene.frame_camera(self._insets(height))
 
-    def _insets(self, width: float, height: float) -> Insets:
-        """Margins of the canvas, for our titles and for the brakes beside the robots."""
-        top = min(TITLES, MOST_TITLES * height)
-        return Insets(left=ASIDE / 2 * width, right=ASIDE * width, top=top)
+    def _insets(self, height: float) -> Insets:
+        """Margins of the canvas, for our titles."""
+        return Insets(top=min(TITLES, MOST_TITLES * height))
 
 
 def _hooks(post: Post, robot: Robot) -> SceneCallbacks:

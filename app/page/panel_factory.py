@@ -129,7 +129,6 @@ class PanelFactory:
                 fields=fields,
                 plot=plot,
                 large=large,
-                in_lesson=True,
             )
             for plot in plots
         ]
@@ -154,7 +153,6 @@ class PanelFactory:
                 words=words,
                 fields=first.key.fields,
                 post=post,
-                in_lesson=first.key.in_lesson,
             ),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "export": lambda: _silent(add_exports(gui, words, exporter)),

@@ -126,7 +126,6 @@ class LivePlot:
     Args:
         level_set: whether ξ₁ is an area, [m²], instead of a distance.
         large: whether it is shown with a projector.
-        in_lesson: whether its lines are named after the robots of a lesson, not after their laws.
     """
 
     def __init__(
@@ -137,10 +136,8 @@ class LivePlot:
         plot: TimePlot,
         level_set: bool = False,
         large: bool = False,
-        in_lesson: bool = False,
     ) -> None:
         self._gui, self._words, self._has_xi = gui, words, plot.field in XI
-        self._in_lesson = in_lesson
         in_level_set = level_set and self._has_xi
         self._shown = -1.0
         # with a level set only the first line is drawn: the others have another unit
@@ -191,7 +188,7 @@ class LivePlot:
     def _series(self) -> tuple[uplot.Series, ...]:
         """Time and the lines of each side."""
         series = [uplot.Series(label=self._words("plots.time"))]
-        names = displayed_names(self._laws, self._words, self._in_lesson)
+        names = displayed_names(self._laws, self._words)
         for side, title in names.items():
             for name, dash, mark in zip(self._names, LINES, MARKS, strict=False):
                 label = f"{title} {name} {mark}" if name else title
@@ -239,11 +236,10 @@ def add_plot(
     plot: Plot,
     level_set: bool = False,
     large: bool = False,
-    in_lesson: bool = False,
 ) -> LivePlot | PhasePlot:
     """Add one of the selectable plots; see `LivePlot`."""
     if not isinstance(plot, TimePlot):
-        return PhasePlot(gui, words, in_lesson)
+        return PhasePlot(gui, words)
     return LivePlot(
         gui=gui,
         words=words,
@@ -251,7 +247,6 @@ def add_plot(
         plot=plot,
         level_set=level_set,
         large=large,
-        in_lesson=in_lesson,
     )
 
 
@@ -260,14 +255,10 @@ class MorePlots:
 
     Args:
         post: receives a command that says whether the phase plane is shown.
-        in_lesson: see `LivePlot`.
     """
 
-    def __init__(
-        self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post, in_lesson: bool
-    ) -> None:
+    def __init__(self, gui: viser.GuiApi, words: Words, fields: Fields, post: Post) -> None:
         self._gui, self._words, self._fields = gui, words, fields
-        self._in_lesson = in_lesson
         self._plot: LivePlot | PhasePlot | None = None
         self._plots = _shown(fields, words)
         self._folder = gui.add_folder(words("plots.more"), expand_by_default=False)
@@ -297,7 +288,6 @@ class MorePlots:
                         fields=self._fields,
                         plot=chosen,
                         level_set=level_set,
-                        in_lesson=self._in_lesson,
                     )
         if self._plot is not None:
             self._plot.follow(snapshot)

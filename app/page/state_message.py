@@ -31,7 +31,7 @@ def state_message(
     laws, run, rate = snapshot.laws, snapshot.run, snapshot.settings.rate
     titles = side_titles(laws, words)
     is_level_set = snapshot.parameters["across"] == LEVEL_SET
-    names = displayed_names(laws, words, snapshot.key.in_lesson)
+    names = displayed_names(laws, words)
     return StateMessage(
         v=VERSION,
         language=words.language,
@@ -52,10 +52,11 @@ def state_message(
         said=said,
         presenting=snapshot.key.presenting,
         height=round(seen.height, 3),
-        apart=round(seen.apart, 3),
         cameras=np.round(seen.cameras, 5).tolist(),
+        above=np.round(seen.above, 4).tolist(),
         arrow=seen.arrow,
         frozen=words("class.frozen") if run.frozen else "",
+        waits=words("say.waits") if run.waits else "",
         own=not snapshot.key.student,
         rows=row_data(snapshot.key.fields, is_level_set, words),
         laws=list(run.laws.values()),

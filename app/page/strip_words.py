@@ -21,11 +21,13 @@ _PLAIN = (
     *("lesson.lessons", "help.close"),
     *("breakdown.slowly", "breakdown.end", "breakdown.reset", "invite.skip"),
     *(f"invite.{invitation.name}" for invitation in INVITATIONS),
-    *("invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
+    *(f"invite.{each.explained}" for each in INVITATIONS if each.explained),
+    *("stage.paused", "invite.hold_button", "invite.let_go_button", "invite.lesson_button"),
     *SHELL,
 )
 _FILLED = {
     "chart.at": ("time", "values"),
+    "stage.past": ("time",),
     "lens.name": ("law",),
     "readout.running": ("time", "speed"),
     "readout.paused": ("time", "speed"),

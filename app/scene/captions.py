@@ -17,6 +17,8 @@ STILL, NEAR = 2e-3, 3e-3
 """Speed below which a robot is at rest [m/s], and distance within which it is at an end [m]."""
 PULLED = 0.05
 """Force above which a robot counts as pulled [N]."""
+BOUNDED = "_bounded"
+"""Ends the names of captions that also say that the integral action is at its bound."""
 RETURNS, FULL = 0.5, 0.99
 """Shares above which a law counts as returning from far away, and its integral as bounded."""
 
@@ -29,6 +31,7 @@ class Captions:
 
     Attributes:
         shown: the captions for the latest snapshot, by side.
+        brief: whether only what a newcomer sees is said, and nothing of integral action.
     """
 
     def __init__(self, words: Words) -> None:
@@ -36,6 +39,7 @@ class Captions:
         self._before = dict[str, float]()  # `max_distance` when a robot was first seen held back
         self._largest = dict[str, float]()  # distance since then
         self.shown = dict[str, str]()
+        self.brief = False
 
     def follow(self, snapshot: Snapshot) -> dict[str, str]:
         """The captions for a snapshot, by side. Call it with snapshots in order of time."""
@@ -51,6 +55,8 @@ class Captions:
         kind = "stopped" if side in snapshot.stopped else _kind(robot, is_held, distance)
         if not kind and is_at_end(robot, snapshot.path):
             kind = "at_end"
+        if self.brief:
+            kind = kind.removesuffix(BOUNDED)
         return self._words(f"caption.{kind}", mm=f"{1e3 * distance:.0f}") if kind else ""
 
     def _largest_held(self, side: str, robot: RobotSnapshot) -> float:

@@ -18,14 +18,14 @@ class Seen:
 
     Attributes:
         height: that the canvas shows at the distance of the robots, [m].
-        apart: distance between the robots, [m].
         cameras: one for each robot, shape (k, 3, p + 1); see `projections`.
+        above: the point of the output space that is nearest to a title's place, shape (p,), [m].
         arrow: length of the arrow of a force [m/N].
     """
 
     height: float
-    apart: float
     cameras: np.ndarray
+    above: np.ndarray
     arrow: float
 
 
@@ -34,8 +34,8 @@ def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Seen:
     distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
     return Seen(
         height=float(2 * distance * np.tan(camera.fov / 2)),
-        apart=float(np.linalg.norm(np.ptp(stage.origins, axis=0))),
         cameras=projections(camera.position, camera.wxyz, camera.fov, stage.origins, robot),
+        above=robot.output_at(stage.title),
         arrow=stage.force_scale,
     )
 

@@ -25,6 +25,9 @@ from onpath.models.systems.robots import Robot
 IN_PATH_PLANE, HORIZONTAL = "path's plane", "horizontal plane"
 LARGEST_PATH = 0.075
 """Usual extent of paths from their centre, for which the view has room [m]."""
+USUAL_PATH, ROOM = 0.05, 0.25
+"""Radius of the circle with which a lab begins [m], and room beside it for pulling at the robots,
+as a share of the distance between them."""
 ASIDE, ABOVE, BELOW = 0.03, 0.095, 0.05
 """Margins beside the bars, above them for the title, and between them and the floor [m]."""
 THIN = 0.03
@@ -51,7 +54,7 @@ def stage_of(robot: Robot, tones: Tones = LIGHT, plain: bool = False) -> Stage:
         bases=_side_by_side(apart, drawing.azimuth),
         low=low,
         high=high,
-        outline=_outline(robot, low, high, parts),
+        outline=np.vstack([_outline(robot, low, high, parts), _room(robot, apart)]),
         floor=floor,
         elevation=drawing.elevation,
         azimuth=drawing.azimuth,
@@ -107,6 +110,14 @@ def _outline(robot: Robot, low: Array, high: Array, parts: Callable[[], Parts]) 
     margins = np.array(list(product((-ASIDE, ASIDE), repeat=3)))
     near = (bars[:, None] + margins).reshape(-1, 3)
     return np.clip(np.vstack([near, *(mesh.vertices for _, mesh, _ in parts())]), low, high)
+
+
+def _room(robot: Robot, apart: float) -> Array:
+    """Points of the path's plane to which an end-point is pulled from its usual path, (4, 3)."""
+    origin, right, up = _axes(robot)
+    far = USUAL_PATH + ROOM * apart
+    ways = np.array([side / np.linalg.norm(side) for side in (right, up)])
+    return origin + far * np.vstack([ways, -ways])
 
 
 def _bars(robot: Robot) -> tuple[Array, Array]:

@@ -541,11 +541,15 @@ caption-stopped = angehalten
 caption-at_end = am Ende: Zurücksetzen drücken
 caption-spoken = { $robot }: { $caption }.
 
+stage-paused = Die Zeit steht still
+stage-past = Rückblick auf { $time } s
+
 invite-hold = Zwei gleiche Roboter folgen einer Bahn. Was geschieht, wenn ihnen etwas im Weg steht?
 invite-hold_button = Halte sie fest
 invite-let_go = Den einen reißt seine Uhr von der Bahn; der andere wartet, so lange es dauert.
 invite-let_go_button = Lass sie los
-invite-pull = Fasse einen Roboter an der Spitze und ziehe: mit der Maus, dem Finger oder den Tasten A, D, W, S.
+invite-pull = Sei nun selbst das Hindernis: Drücke auf die Spitze eines Roboters und halte still, mit Maus, Finger oder den Tasten A, D, W, S. Eine Hand wirkt auf beide.
+invite-pulled = Hältst du still, wartet der Bahnfolger an deiner Hand, und den Nachläufer zieht seine Uhr fort. Ziehst du nach außen, verlassen beide die Bahn: Eine solche Hand hält sie nicht auf.
 invite-bend = Verbiege die Bahn: Ziehe an einem ihrer grauen Punkte.
 invite-lesson = Was geschieht, während ein Roboter zwei Sekunden lang festgehalten wird? Sag es in Lektion 1 voraus, und sieh dann nach.
 invite-lesson_button = Lektion 1 öffnen

@@ -456,11 +456,15 @@ caption-stopped = stopped
 caption-at_end = at the end: press Reset
 caption-spoken = { $robot }: { $caption }.
 
+stage-paused = Time stands still
+stage-past = Looking back at { $time } s
+
 invite-hold = Two identical robots follow the same path. What if something stands in their way?
 invite-hold_button = Hold them back
 invite-let_go = One is torn off the path by its clock; the other waits for as long as it takes.
 invite-let_go_button = Let them go
-invite-pull = Grab a robot by its tip and pull: with the mouse, a finger, or the keys A, D, W, S.
+invite-pull = Now be the obstacle yourself: press on a robot’s tip and keep still, with the mouse, a finger, or the keys A, D, W, S. One hand acts on both.
+invite-pulled = Held still, the follower waits at your hand, and the clock drags the tracker on. Pulled outwards, both leave the path: such a hand does not hold them back.
 invite-bend = Bend the path: drag one of its grey points.
 invite-lesson = What happens while a robot is held for two seconds? Predict it in lesson 1, and then see.
 invite-lesson_button = Open lesson 1

@@ -24,7 +24,7 @@ LENGTHS = (
     Length("ℓ₄", 1, 7, at=0.3),
 )
 DRAWING = Drawing(
-    box=((-0.14, -0.03, -0.13), (0.285, 0.03, 0.36)),
+    box=((-0.21, -0.03, -0.13), (0.31, 0.03, 0.36)),
     angles=ANGLES,
     lengths=LENGTHS,
     elbow=1,

@@ -31,7 +31,7 @@ def test_holding_both_back_shows_the_difference(tab: Tab) -> None:
     wait_for(lambda: lab.simulation.time > 4.0)
     assert lab.simulation.runs[FOLLOWER].max_distance < 0.003
     assert lab.simulation.runs[TRACKER].max_distance > 0.040
-    shown = tab.page.get_by_role("group", name="Path following").inner_text()
+    shown = tab.page.get_by_role("group", name="Follower").inner_text()
     assert float(shown.split()[0]) < 3.0
     tab.press("Let both go")
     wait_for(lambda: not lab.simulation.forces.held)

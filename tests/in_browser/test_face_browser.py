@@ -77,15 +77,15 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     wait_for(lambda: len(tab.simulation.forces.held) == 2)
     expect(invitation).to_be_hidden()
     expect(spoken).to_contain_text(
-        re.compile(r"Held back\. Trajectory tracking: torn off: up to \d+ mm")
+        re.compile(r"Held back\. Tracker: torn off: up to \d+ mm")
     )
-    expect(spoken).to_contain_text(re.compile(r"Path following: waits: up to \d mm"))
+    expect(spoken).to_contain_text(re.compile(r"Follower: waits: up to \d mm"))
     tab.button("Let them go").click()
     wait_for(lambda: not tab.simulation.forces.held)
-    expect(invitation).to_contain_text("pull")
+    expect(invitation).to_contain_text("keep still")
     tab.page.keyboard.press("d")
     wait_for(lambda: tab.simulation.forces.hands)
-    expect(invitation).to_be_hidden()
+    expect(invitation).to_contain_text("the follower waits at your hand")
     tab.page.keyboard.press("x")
     expect(invitation).to_contain_text("Bend the path")
     tab.reload()
@@ -206,7 +206,7 @@ def test_what_happens_is_spoken_unless_that_is_switched_off(tab: Tab) -> None:
 
 def test_a_summary_is_told_on_demand(tab: Tab) -> None:
     tab.page.keyboard.press("q")
-    told = re.compile(r"Path: circle\. Trajectory tracking: \d+\.\d millimetres from the path")
+    told = re.compile(r"Path: circle\. Tracker: \d+\.\d millimetres from the path")
     expect(tab.page.locator("#op-voice")).to_contain_text(told)
     message = tab.page.locator("#op-message")
     expect(message).to_contain_text(told)

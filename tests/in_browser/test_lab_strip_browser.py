@@ -103,7 +103,7 @@ def test_numbers_titles_and_captions_are_the_labs(tab: Tab) -> None:
     wait_for(lambda: lab.simulation.runs[LEFT].distance > 0.02)
     tab.press("Pause")
     wait_for(lambda: not lab.simulation.running)
-    for title, side in {"Trajectory tracking": LEFT, "Path following": RIGHT}.items():
+    for title, side in {"Tracker": LEFT, "Follower": RIGHT}.items():
         expect(page.get_by_role("heading", name=title)).to_be_visible()
         distance = 1e3 * lab.simulation.runs[side].distance
         wait_for(lambda title=title, mm=distance: abs(number(tab, title) - mm) < 0.06)

@@ -10,6 +10,7 @@ from typing_extensions import override
 from onpath.app.lab.commands import checks
 from onpath.app.lab.external_forces import displaced
 from onpath.app.lab.lab import Command, Lab
+from onpath.app.lab.simulation import Simulation
 from onpath.models.arrays import Array
 from onpath.models.control.sides import RIGHT, SIDES
 
@@ -90,4 +91,9 @@ def _grab(lab: Lab, name: str, target: Array) -> None:
     simulation.forces.grab(name, target, simulation.targets(name))
     if not simulation.running:
         locked = lab.locked
-        lab.show_message(lab.words.sentence(locked) if locked else lab.words("say.pull_paused"))
+        text = lab.words.sentence(locked) if locked else lab.words("say.pull_paused")
+        lab.show_message(text, holds=lambda: _pulls_in_vain(simulation))
+
+
+def _pulls_in_vain(simulation: Simulation) -> bool:
+    return bool(simulation.forces.hands) and not simulation.running

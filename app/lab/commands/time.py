@@ -138,7 +138,8 @@ def _look_back(lab: Lab, ago: float) -> None:
         lab.return_to_present()
         return
     if simulation.viewing is None:
-        lab.show_message(words("say.looking_back"))
-    if simulation.forces.hands:
-        lab.show_message(words("say.looking_back") + " " + words("say.let_go"))
+        said = words("say.looking_back")
+        if simulation.forces.hands:
+            said += " " + words("say.let_go")
+        lab.show_message(said, holds=lambda: simulation.viewing is not None)
     look_back(simulation, ago)

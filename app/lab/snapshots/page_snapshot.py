@@ -30,6 +30,7 @@ class RunState:
         now: simulated time, also while the past is viewed, [s].
         viewing: the past instant being viewed, [s], or None.
         frozen: whether the teacher has stopped the lab.
+        waits: whether time waits for loops that are being made, or for a long command.
         can_undo_going_on: whether a discarded timeline can be restored.
         laws: control law of each side, also while the past is viewed or its loop is being made.
     """
@@ -37,6 +38,7 @@ class RunState:
     now: float
     viewing: float | None
     frozen: bool
+    waits: bool
     can_undo_going_on: bool
     laws: dict[str, str]
 

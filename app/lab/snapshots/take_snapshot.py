@@ -99,6 +99,7 @@ def take_page_snapshot(
             now=simulation.time,
             viewing=simulation.viewing,
             frozen=lab.frozen,
+            waits=lab.waits,
             can_undo_going_on=simulation.undo_timeline is not None,
             laws=simulation.chosen_laws,
         ),

@@ -24,11 +24,10 @@ class PhasePlot:
     """One picture, redrawn when the displayed time changes.
 
     Args:
-        in_lesson: whether its lines are named after the robots of a lesson, not after their laws.
     """
 
-    def __init__(self, gui: viser.GuiApi, words: Words, in_lesson: bool) -> None:
-        self._words, self._in_lesson, self._shown = words, in_lesson, (-1.0, "")
+    def __init__(self, gui: viser.GuiApi, words: Words) -> None:
+        self._words, self._shown = words, (-1.0, "")
         self._handle = gui.add_html(phase_picture(np.zeros((0, 2, 2)), {}, words))
 
     def follow(self, snapshot: PageSnapshot) -> None:
@@ -38,7 +37,7 @@ class PhasePlot:
         if shown == self._shown:
             return
         self._shown = shown
-        names = displayed_names(snapshot.laws, self._words, self._in_lesson)
+        names = displayed_names(snapshot.laws, self._words)
         content = phase_picture(snapshot.phase, names, self._words, level_set)
         self._handle.content = content
 

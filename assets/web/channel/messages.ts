@@ -368,15 +368,17 @@ export interface StateMessage {
     presenting: boolean
     /** how high a part of the scene the canvas shows, at the distance of the robots [m]. */
     height: number
-    /** how far the robots are apart in the picture [m]. */
-    apart: number
     /** for each robot, how the picture shows a point of the output space: three rows of p factors and a constant; the first two
      * results divided by the third are right and down from the middle, as shares of the height. */
     cameras: number[][][]
+    /** the point of the output space over which a robot's title stands. */
+    above: number[]
     /** length of the arrow of a force [m/N]. */
     arrow: number
     /** why the lab takes no commands, if the teacher has stopped it; else empty. */
     frozen: string
+    /** that time waits for what takes long; else empty. */
+    waits: string
     /** whether commands are taken: not if a teacher looks at the lab of a student. */
     own: boolean
     /** what can be plotted of these robots. */

@@ -10,6 +10,7 @@ import { Connection } from "../channel/connection"
 import { Column } from "../parts/column"
 import { Downloads } from "../parts/downloads"
 import { Lens } from "../parts/lens"
+import { OverStage } from "../parts/over_stage"
 import { Strip } from "../parts/strip"
 import { SymbolOverlay } from "../parts/symbol_overlay"
 import { Transport } from "../parts/transport"
@@ -31,12 +32,9 @@ class Face {
     private readonly strip: Strip
     private readonly lenses: Lens[]
     private readonly overlay: SymbolOverlay
-    private readonly titles: HTMLElement[]
-    private readonly captions: HTMLElement[]
     private readonly numbers: HTMLElement[]
     private readonly readings: HTMLElement[]
-    private readonly stage: HTMLElement
-    private readonly sides: HTMLElement[]
+    private readonly stage: OverStage
     private readonly element: HTMLElement
     private readonly undo = made("button", "")
     private readonly transport: Transport
@@ -47,7 +45,6 @@ class Face {
     private canvas: HTMLElement | null = null
     private width = 0 // of the canvas, [px]
     private height = 0
-    private apart = 0 // of the robots in the picture, [px]
     private resizing = 0
     private read = 0
 
@@ -58,15 +55,11 @@ class Face {
         this.strip = new Strip(texts, engine, signal, "onpath-rows")
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
         this.overlay = new SymbolOverlay(engine)
-        this.titles = indices.map(() => made("h2", "title", made("span", ""), made("small", "")))
-        this.captions = indices.map(() => made("p", "caption"))
         this.numbers = indices.map(() => made("b", "number"))
         this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
-        this.sides = indices.map(i => made("div", `side side${i}`, this.titles[i]!, this.captions[i]!))
-        this.stage = made("div", "", made("h1", "op-unseen", "OnPath"), this.overlay.element, ...this.sides)
-        this.stage.id = "op-stage"
+        this.stage = new OverStage(engine, texts, this.overlay.element)
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo, this.strip.menu.element)
@@ -79,7 +72,7 @@ class Face {
         head.prepend(this.voice.invitation)
         // Before viser's panel, so that Tab and screen readers come to them first.
         this.shell = OURS ? new Shell(engine, texts, signal, reopen) : null
-        document.body.prepend(this.stage, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],
+        document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],
             new Downloads(engine.files, texts, signal).element)
         document.documentElement.classList.toggle("op-ours", OURS)
         document.documentElement.classList.add("op-stripped")
@@ -111,7 +104,7 @@ class Face {
         const open = this.shell?.end() ?? ""
         this.ended.abort()
         this.column.element.remove()
-        this.stage.remove()
+        this.stage.element.remove()
         this.element.remove()
         document.documentElement.classList.remove("op-stripped", "op-large", "op-lesson", "op-waits", "op-beside")
         return open
@@ -134,7 +127,7 @@ class Face {
         }
         this.voice.place(left, top, width, height)
         this.makeRoom(this.column.open ? 0 : left)
-        Object.assign(this.stage.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` })
+        this.stage.place(left, top, width, height)
     }
 
     /** A panel on the left is as high as the window; the strip begins beside it. */
@@ -147,7 +140,7 @@ class Face {
     private arrange(): void {
         this.lenses.forEach((lens, i) => {
             if (PHONE.matches) this.readings[i]!.prepend(lens.element)
-            else this.sides[i]!.append(lens.element)
+            else this.stage.sides[i]!.append(lens.element)
         })
         this.column.arrange()
         this.place()
@@ -155,13 +148,8 @@ class Face {
 
     private show(): void {
         const { engine, transport } = this
-        const { past } = engine.state
-        engine.texts.forEach(({ title, name, text, caption }, i) => {
-            const [robot, law] = this.titles[i]!.children as unknown as [HTMLElement, HTMLElement]
-            tell(robot, name)
-            tell(law, name === title ? "" : title)
-            this.titles[i]!.title = text
-            tell(this.captions[i]!, past === null ? caption : "")
+        this.stage.show()
+        engine.texts.forEach(({ name }, i) => {
             this.readings[i]!.ariaLabel = name
             tell(this.readings[i]!.querySelector<HTMLElement>(".whose")!, name)
         })
@@ -177,13 +165,6 @@ class Face {
         for (const picture of [this.overlay, ...this.lenses]) picture.lit = symbol
         for (const row of document.querySelectorAll(".op-gain")) row.classList.remove("op-gain")
         if (symbol.startsWith("K_")) sliderOf(symbol.replace("_", ""))?.classList.add("op-gain")
-    }
-
-    /** Give each robot's half of the stage the width that the robot has in the picture. */
-    private spread(apart: number): void {
-        if (Math.abs(apart - this.apart) < 1) return
-        this.apart = apart
-        this.stage.style.setProperty("--op-apart", `${apart.toFixed(0)}px`)
     }
 
     /** Draw for a projector, or for a screen. */
@@ -202,7 +183,6 @@ class Face {
             lens.scale = this.height / engine.lab!.height / lens.sheet.zoom || lens.scale
             lens.draw(now)
         }
-        this.spread(engine.lab!.apart * this.height / engine.lab!.height)
         if (now > this.read + NUMBERS) {
             this.read = now
             const { time, sides } = shown(engine), { running } = engine.state

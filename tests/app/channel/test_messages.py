@@ -125,11 +125,8 @@ def test_a_mutated_message_is_read_or_refused(text: str, chance: random.Random) 
 
 VALUES: dict[str, st.SearchStrategy[Any]] = {
     name: st.text(max_size=2)
-    for name in ("language", "robot", "message", "level", "frozen", "shared")
-} | {
-    name: st.integers(0, 2)
-    for name in ("v", "rate", "achieved", "messages", "height", "apart", "arrow")
-}
+    for name in ("language", "robot", "message", "level", "frozen", "waits", "shared")
+} | {name: st.integers(0, 2) for name in ("v", "rate", "achieved", "messages", "height", "arrow")}
 VALUES |= {name: st.booleans() for name in ("together", "undo", "presenting", "own")}
 VALUES |= {
     name: st.lists(st.text(max_size=1)) for name in ("titles", "names", "texts", "captions", "laws")
@@ -137,6 +134,7 @@ VALUES |= {
 VALUES |= {name: st.lists(st.booleans()) for name in ("clocks", "stopped")}
 VALUES |= {
     "said": st.builds(messages.Said, voice=st.text(max_size=1)),
+    "above": st.lists(st.floats(0, 1)),
     "cameras": st.lists(st.lists(st.lists(st.floats(0, 1)))),
     "rows": st.lists(st.fixed_dictionaries({"name": st.text(max_size=1)}), max_size=2),
 }

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.lessons.course import read_course
+from onpath.models.control.sides import RIGHT
 from onpath.models.paths.distance import path_distance
 from onpath.models.systems.catalogue import FIVE_BAR
 from tests.support.lab import FOLLOWER, assert_sound, do, loop_cache, new_lab, run, states, y
@@ -176,6 +177,24 @@ def test_a_step_of_a_lesson_cannot_be_passed_by_bringing_back_what_came_before(
     assert lab.simulation.undo_timeline is not None
     do(lab, c.GoToStep(1))
     assert lab.simulation.undo_timeline is None
+
+
+def test_a_notice_goes_when_its_reason_does() -> None:
+    lab = new_lab(1.0)
+    tip = lab.simulation.runs[RIGHT].shown()["y"].copy()
+    paused = lab.words("say.pull_paused")
+    for end in (c.SetRunning(True), c.Release()):
+        do(lab, c.SetRunning(False), c.Grab(RIGHT, tip))
+        assert lab.notice[0] == paused
+        run(lab, 0.5)
+        assert lab.notice[0] == paused
+        do(lab, end)
+        assert lab.notice[0] == ""
+        do(lab, c.SetRunning(True), c.Release())
+    do(lab, c.LookBack(0.5))
+    assert lab.notice[0] == lab.words("say.looking_back")
+    do(lab, c.Reset())
+    assert lab.notice[0] != lab.words("say.looking_back")
 
 
 def test_acting_on_the_lab_while_looking_back_returns_to_the_present_and_says_so() -> None:

@@ -20,6 +20,7 @@ from onpath.app.lab.commands.scripts import player_of
 from onpath.app.lab.lab import PATIENCE, Lab
 from onpath.app.lab.loops import loop_cache as module
 from onpath.app.lab.loops.loop_cache import MOST, MOST_SOON, Key, LoopCache
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.warm_up import LATER, warm_up
 from onpath.lessons.action_schema import Action, Laws, Script
 from onpath.lessons.course import NO_LESSONS
@@ -103,7 +104,7 @@ def test_a_lab_stands_still_until_its_loops_are_made_and_says_so(
     run(lab, 0.2)
     assert lab.simulation.time == 0.0 and loops(lab) == [None, None] and not lab.waits
     run(lab, PATIENCE * FRAME)
-    assert lab.waits and lab.notice == (lab.words("say.waits"), "info")
+    assert lab.waits and take_page_snapshot(lab, 1.0).run.waits
     gate.set()
     finish(loop_cache)
     run(lab, 0.5)

@@ -7,15 +7,22 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.commands.command_codec import command_from
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page import first_minute
-from onpath.app.page.first_minute import INVITATIONS, FirstMinute
+from onpath.app.page.first_minute import INVITATIONS, PAUSE, READ, FirstMinute
+from onpath.app.page.narration import Narration
+from onpath.app.scene.captions import Captions
 from onpath.app.server.built_in_course import built_in_course
+from onpath.lessons.words import ENGLISH
+from onpath.models.control.sides import RIGHT, SIDES
 from tests.support.lab import do, loop_cache, new_lab, run
 
 
@@ -60,9 +67,12 @@ def test_a_newcomer_is_led_from_a_hold_to_a_pull_to_a_bent_path(
     assert new.after(lab, 0.5) == ""
     assert new.after(lab, 4.0) == "pull"
     do(lab, c.MoveHand(0.01, 0.0))
-    assert new.after(lab, 0.5) == ""
+    assert new.after(lab, 0.1) == "pulled"
+    assert new.after(lab, READ + PAUSE) == "pulled"  # as long as one pulls, and after it
     do(lab, c.Release())
-    assert new.after(lab, 4.0) == "bend"
+    assert new.after(lab, READ - 0.5) == "pulled"
+    assert new.after(lab, 0.8) == ""
+    assert new.after(lab, PAUSE) == "bend"
     do(lab, c.MovePoint(2, 1.2 * lab.simulation.editor.points()[2]))
     assert new.after(lab, 4.0) == "lesson"
     do(lab, c.OpenLesson(next(iter(course.lessons))))
@@ -102,3 +112,54 @@ def test_the_button_of_an_invitation_has_a_command_that_the_lab_takes(
         if act is not None:
             command_from(json.dumps(act))
         assert (act is None) == (invitation.name in ("pull", "bend"))
+
+
+@settings(max_examples=6, deadline=None)
+@given(
+    begun=st.floats(0.5, 6.0),
+    side=st.sampled_from(SIDES),
+    angle=st.floats(0, 2 * np.pi),
+    far=st.floats(0.03, 0.2),
+)
+def test_the_explanation_of_a_pull_is_true(
+    begun: float, side: str, angle: float, far: float
+) -> None:
+    """A hand that keeps still holds back; one that pulls outwards takes both off the path."""
+    lab = new_lab(begun)
+    tip = lab.simulation.runs[side].shown()["y"].copy()
+    do(lab, c.Grab(side, tip))
+    still = distances(lab, 3.0)
+    assert still[:, 1].max() < 4e-3 and still[:, 0].max() > 15e-3
+    assert abs(take_page_snapshot(lab, 1.0).robots[RIGHT].speed) < 2e-3  # it waits
+    do(lab, c.Release(), c.Reset())
+    run(lab, begun)
+    frame = lab.simulation.robot.frame
+    outside = (0.05 + far) * np.array([np.cos(angle), np.sin(angle)])
+    do(lab, c.Grab(side, frame.lift(outside)))
+    assert (distances(lab, 3.0).max(axis=0) > 5e-3).all()
+    do(lab, c.Release())
+    run(lab, 1.5)
+    assert distances(lab, 0.1).max() < 2e-3
+
+
+def distances(lab: Lab, seconds: float) -> np.ndarray:
+    """How far the robots are from the path, from the left, every tenth of a second, [m]."""
+    found = list[list[float]]()
+    for _ in range(round(10 * seconds)):
+        run(lab, 0.1)
+        found.append([each.distance for each in take_page_snapshot(lab, 1.0).robots.values()])
+    return np.array(found)
+
+
+def test_a_newcomer_reads_nothing_of_integral_action(guest: Callable[[str], Guest]) -> None:
+    lab, captions = new_lab(1.0), Captions(ENGLISH)
+    do(lab, c.Grab(RIGHT, lab.simulation.robot.frame.lift(np.array([0.1, 0.0]))))
+    run(lab, 3.0)
+    snapshot = take_page_snapshot(lab, 1.0)
+    assert "integral" in captions.follow(snapshot)[RIGHT]
+    narration = Narration(ENGLISH, {"speaks": False, "sounds": False}, captions)
+    for kept in range(len(INVITATIONS) + 1):
+        narration.first_minute = guest(str(kept)).part
+        narration.follow(snapshot)
+        is_over = kept == len(INVITATIONS)
+        assert ("integral" in captions.follow(snapshot)[RIGHT]) == is_over

@@ -96,7 +96,7 @@ def test_the_legend_tells_the_lines_of_a_robot_apart() -> None:
     plots.LivePlot(gui, ENGLISH, fields, over_time("speed"))
     labels = [series.get("label", "") for series in made[0][1:]]
     assert [label.split()[-2:] for label in labels] == 2 * [["u1", "―"], ["u2", "╌"]]
-    assert made[1][1].get("label") == "Trajectory tracking"
+    assert made[1][1].get("label") == "Tracker"
 
 
 @settings(max_examples=3)

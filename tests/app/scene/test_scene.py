@@ -10,9 +10,12 @@ from typing import Any
 import numpy as np
 import pytest
 import viser
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from onpath.app.common import palette
+from onpath.app.lab import commands as c
 from onpath.app.lab.snapshots.part_poses import bar_quaternions, waist_angle
 from onpath.app.lab.snapshots.robot_geometry import geometry_function, path_place
 from onpath.app.lab.snapshots.snapshot import (
@@ -21,12 +24,13 @@ from onpath.app.lab.snapshots.snapshot import (
     RobotSnapshot,
     Snapshot,
 )
+from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.scene import meshes
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.poses import trace_segments
 from onpath.app.scene.robot_nodes import FORCE, TRACE_SEGMENTS
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Stage, view_of
+from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, Pose, Stage, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.control.sides import DEFAULT_LAWS, LEFT, RIGHT, SIDES
 from onpath.models.paths.curves import TABLE_SHAPE, circle
@@ -35,6 +39,7 @@ from onpath.models.systems.drawing import BACK_LAYER, FRONT_LAYER
 from onpath.models.systems.five_bar_robot import RIGID_FIVE_BAR
 from tests.support.drags import play
 from tests.support.drawing import drawn_length, evaluated
+from tests.support.lab import do, new_lab, run
 
 FIVE_BAR = RIGID_FIVE_BAR
 RIGID = stage_of(FIVE_BAR)
@@ -283,20 +288,59 @@ def test_traces_are_connected_and_end_at_the_newest_point(length):
 @pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
 def test_camera_shows_both_robots_clear_of_the_panels(size, insets, stage: Stage):
     pose = view_of(stage, size, insets)
-    forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
-    right = np.cross(forward, [0.0, 0.0, 1.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(right, forward)
-    scale = size[1] / 2 / np.tan(FIELD_OF_VIEW / 2)
-    seen = stage.corners - pose.position
-    x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
-    y = size[1] / 2 - scale * (seen @ up) / (seen @ forward)
+    x, y = in_picture(pose, stage.corners, size)
     slack = 2.0
     assert x.min() > insets.left - slack and x.max() < size[0] - insets.right + slack
     assert y.min() > insets.top - slack and y.max() < size[1] + slack
     free = size[0] - insets.left - insets.right, size[1] - insets.top
     widest = max(np.ptp(x) / free[0], np.ptp(y) / free[1])
     assert widest > 0.8
+
+
+@given(
+    size=st.tuples(st.integers(300, 2600), st.integers(250, 1500)),
+    name=st.sampled_from(list(STAGES)),
+)
+def test_there_is_room_to_pull(size: tuple[int, int], name: str) -> None:
+    """A quarter of the distance between the robots is free around their usual paths."""
+    stage, robot = STAGES[name], ROBOTS[name].make(ROBOTS[name].parameters())
+    pose = view_of(stage, size, Insets())
+    apart = float(np.linalg.norm(np.ptp(stage.origins, axis=0)))
+    far = 0.05 + 0.25 * apart
+    around = robot.position(robot.frame.lift(far * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])))
+    for base in stage.bases.values():
+        x, y = in_picture(pose, base + around, size)
+        assert x.min() > -1 and x.max() < size[0] + 1
+        assert y.min() > -1 and y.max() < size[1] + 1
+
+
+@pytest.mark.thorough
+@settings(max_examples=8, deadline=None)
+@given(angle=st.floats(0, 2 * np.pi), far=st.floats(0.02, 0.1), begun=st.floats(0.5, 4.0))
+def test_no_elbow_leaves_its_half_while_one_pulls(angle: float, far: float, begun: float) -> None:
+    lab = new_lab(begun)
+    width = float(np.ptp(RIGID.origins[:, 0]))
+    at = (0.05 + far) * np.array([np.cos(angle), np.sin(angle)])
+    do(lab, c.Grab(RIGHT, lab.simulation.robot.frame.lift(at)))
+    middle = RIGID.title[0]
+    for _ in range(30):
+        run(lab, 0.1)
+        for each in take_page_snapshot(lab, 1.0).robots.values():
+            ends = each.points[: 2 * each.counts.bars, 0]
+            elbows = np.delete(ends, np.argmax(ends))  # but for the end-point
+            assert np.abs(elbows - middle).max() < width / 2
+
+
+def in_picture(pose: Pose, points: np.ndarray, size: tuple[int, int]) -> tuple[np.ndarray, ...]:
+    """Where a camera shows points, shape (k, 3): from the left and from above, [px]."""
+    forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(right, forward)
+    scale = size[1] / 2 / np.tan(FIELD_OF_VIEW / 2)
+    seen = points - pose.position
+    x = size[0] / 2 + scale * (seen @ right) / (seen @ forward)
+    return x, size[1] / 2 - scale * (seen @ up) / (seen @ forward)
 
 
 def test_layers_keep_links_apart():
