@@ -76,9 +76,7 @@ def test_a_newcomer_is_invited_once(browser: Browser, server: LabServer) -> None
     tab.button("Hold them back").click()
     wait_for(lambda: len(tab.simulation.forces.held) == 2)
     expect(invitation).to_be_hidden()
-    expect(spoken).to_contain_text(
-        re.compile(r"Held back\. Tracker: torn off: up to \d+ mm")
-    )
+    expect(spoken).to_contain_text(re.compile(r"Held back\. Tracker: torn off: up to \d+ mm"))
     expect(spoken).to_contain_text(re.compile(r"Follower: waits: up to \d mm"))
     tab.button("Let them go").click()
     wait_for(lambda: not tab.simulation.forces.held)
