@@ -62,6 +62,7 @@ class CartParameters(Parameters):
         "whether the pendulum hangs from the cart or stands on it",
         group="robot",
         label="Pendulum",
+        compiles=True,
     )
     mass: float = number(
         0.1, "kg", (0.01, 0.5, 0.01), "mass of the pendulum", group="robot", label="Mass"

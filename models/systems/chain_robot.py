@@ -79,6 +79,7 @@ class ChainParameters(Parameters):
         group="realism",
         label="Torque limit",
         on=50.0,
+        compiles=True,
     )
     error_inertia: float = model_error(
         "Error in inertia", "the controller's masses and inertias are off by this"

@@ -185,7 +185,7 @@ class FlexibleParameters(Parameters):
         compiles=True,
         on=0.0005,
     )
-    payload: float = unknown_payload((0, 0.1, 0.005), on=0.02)
+    payload: float = unknown_payload((0, 0.1, 0.005), on=0.02, compiles=True)
     error_M11: float = model_error(
         "Error in M11", "the controller's M11, the inertia at motor 1, is off by this"
     )

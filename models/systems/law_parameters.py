@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from onpath.models.systems.parameter_specs import DEGREES, Need, choice, number, wanted_speed
 
+PLACE = Need("task", ("position",))
 ALONG = (Need("task", ("speed",)),)
+AT_REST = tuple(Need(side, ("set_point",)) for side in ("left", "right"))
 DISTANCE, LEVEL_SET = "distance", "level_set"  # meanings of ξ across the path, [m] or [m²]
 
 
@@ -65,7 +67,7 @@ class LawParameters:
         label="K4 along",
         symbol="K₄",
         scale="log",
-        needs=(Need("task", ("position",)),),
+        needs=(PLACE,),
     )
     K5: float = number(
         10.0,
@@ -92,7 +94,7 @@ class LawParameters:
         "how quickly the wanted speed changes; 0: at once",
         group="task",
         label="Speed ramp",
-        needs=(*ALONG, Need("speed_profile", ("constant",))),
+        needs=(Need("speed_profile", ("constant",), instead=(PLACE,)),),
     )
     speed_profile: str = choice(
         "constant",
@@ -121,7 +123,7 @@ class LawParameters:
         group="task",
         label="Target",
         symbol="θ",
-        needs=(Need("task", ("position",)),),
+        needs=(Need("task", ("position",), instead=AT_REST),),
         shown_in=DEGREES,
     )
     across: str = choice(

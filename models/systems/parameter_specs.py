@@ -30,19 +30,20 @@ class Need:
     """What a setting needs in order to act: another setting with a certain value.
 
     Attributes:
-        name: of the other setting.
+        name: of the other setting, or of a side, whose value is its law.
         of: values with which it suffices; empty: any but 0, "off" and False.
-        others: names of settings of which each suffices in its place.
+        instead: other conditions, of which each suffices in its place.
     """
 
     name: str
     of: tuple[Any, ...] = ()
-    others: tuple[str, ...] = ()
+    instead: tuple[Need, ...] = ()
 
     def met(self, values: Mapping[str, Any]) -> bool:
         """Whether the values of all settings fulfil it; one that is missing does not."""
-        present = [values[name] for name in (self.name, *self.others) if name in values]
-        return any(value in self.of if self.of else value not in (0, "off") for value in present)
+        value = values.get(self.name, 0)
+        suffices = value in self.of if self.of else value not in (0, "off")
+        return suffices or any(other.met(values) for other in self.instead)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +63,8 @@ class Spec:
         scale: of a slider; a logarithmic one whose range begins at 0 has 0 at its end, and then
             goes on from `step`.
         needs: all that it needs in order to act.
-        compiles: whether another loop is compiled for some of its values.
+        compiles: whether some of its values need a loop that another value does not have, which
+            may have to be compiled first.
         shown_in: if pages show another unit, that unit and how many of it make one `unit`, such as
             ("mm", 1000).
     """
@@ -149,8 +151,8 @@ def switch(default: bool, text: str, *, group: str, label: str, **more: Any) -> 
     return choice(default, (False, True), text, group=group, label=label, **more)
 
 
-NOISY = Need("sensor_noise", others=("strain_noise",))
-INEXACT = Need("encoder_counts", others=("sensor_noise", "strain_noise"))
+NOISY = Need("sensor_noise", instead=(Need("strain_noise"),))
+INEXACT = Need("encoder_counts", instead=(NOISY,))
 
 
 def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
@@ -159,8 +161,7 @@ def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
         "wanted speed along the path; negative: backwards; with a speed profile, the mean of the"
         " sine, and otherwise the largest speed"
     )
-    needs = (Need("task", ("speed",)),)
-    return number(default, "rad/s", bounds, text, group="task", label="Speed", needs=needs)
+    return number(default, "rad/s", bounds, text, group="task", label="Speed")
 
 
 def model_error(label: str, text: str, on: float = 30.0) -> Any:
@@ -168,11 +169,11 @@ def model_error(label: str, text: str, on: float = 30.0) -> Any:
     return number(0.0, "%", (-50, 50, 1), text, group="realism", label=label, on=on)
 
 
-def unknown_payload(bounds: tuple[float, float, float], on: float) -> Any:
+def unknown_payload(bounds: tuple[float, float, float], on: float, **more: Any) -> Any:
     """A dataclass field for a mass at the end-point that no controller knows, [kg]."""
     text = "mass at the end-point; the controller does not know it, and its integral lifts no more"
     text += " than what would otherwise hang 10 mm low"
-    return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on)
+    return number(0.0, "kg", bounds, text, group="realism", label="Payload", on=on, **more)
 
 
 def pivot_damping(default: float) -> Any:

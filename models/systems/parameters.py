@@ -71,7 +71,6 @@ class Parameters(LawParameters):
         "the motors' torque is a multiple of this; 0: any torque",
         group="realism",
         label="Torque steps",
-        compiles=True,
         on=0.02,
     )
     encoder_counts: float = number(
@@ -125,7 +124,6 @@ class Parameters(LawParameters):
         "dry friction in the joints; 0: none",
         group="realism",
         label="Dry friction",
-        compiles=True,
         on=0.05,
     )
     stiction: float = number(
@@ -146,7 +144,6 @@ class Parameters(LawParameters):
         " 3 % above theirs",
         group="realism",
         label="Control rate",
-        compiles=True,
     )
     look_ahead: str = choice(
         "half_tick",

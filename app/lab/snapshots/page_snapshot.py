@@ -149,8 +149,8 @@ class PageSnapshot(Snapshot):
 
     @property
     def values(self) -> dict[str, Any]:
-        """The values of all settings, by name: parameters, gains, and the lab's own."""
-        return {**self.parameters, **self.settings.values}
+        """The values of all settings by name: parameters, gains, the lab's own; laws by side."""
+        return {**self.parameters, **self.settings.values, **self.run.laws}
 
 
 def parameters_of(snapshot: PageSnapshot) -> Parameters:
