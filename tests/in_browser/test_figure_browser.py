@@ -12,8 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, example, given, settings
-from hypothesis import strategies as st
 
 import onpath
 from onpath.app.common import palette
@@ -27,12 +25,10 @@ from onpath.models.control.sides import SIDES
 from onpath.models.errors import Message
 from onpath.models.paths.curve_faults import ambiguities
 from onpath.models.paths.path_design import presets
-from onpath.models.systems.catalogue import ROBOTS
 from tests.support.axe import RUN, SCRIPT, unnamed
 from tests.support.browser import THREE_FRAMES
-from tests.support.figure_runs import Act, PythonFigure
+from tests.support.figure_runs import Act
 from tests.support.fingers import fingers
-from tests.support.robot_files import HEAVY, urdf
 from tests.support.waiting import wait_for
 
 pytestmark = pytest.mark.thorough
@@ -56,9 +52,6 @@ SPEEDS = """(() => {
     return [...onpath.simulation.sides[0].logged().slice(begin, begin + size)]
 })()"""
 """Speeds of the first robot's joints in the last row of its log, [rad/s]."""
-CLOSE = 1e-12
-EDITED = 1e-10
-"""After an edit: the curve itself is fitted with other roundings, to 1e-13."""
 REFUSED = """async () => {
     const tried = []
     await new Promise(done => setTimeout(() => {  // what is evaluated by a tool may use eval
@@ -86,7 +79,6 @@ ACT = """([what, value]) => {
     else if (what === "change") simulation.sides[value[0]].change(value[1])
     else simulation[what](value)
 }"""
-LOGGED = "onpath.simulation.sides.map(side => [...side.logged()])"
 DISTANCES = "onpath.simulation.sides.map(side => side.distance)"
 
 
@@ -157,15 +149,6 @@ def opened(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterat
     opened.page.close()
 
 
-@pytest.fixture(scope="module")
-def still(browser: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Opened]:
-    """A figure that does nothing between what it is told to do, once it is loaded again."""
-    opened = Opened(browser, written(tmp_path_factory.mktemp("still")))
-    opened.page.add_init_script("window.requestAnimationFrame = () => 0")
-    yield opened
-    opened.page.close()
-
-
 def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_path: Path) -> None:
     file = written(tmp_path)
     opened = Opened(browser, file)
@@ -173,49 +156,6 @@ def test_it_moves_by_itself_and_asks_nobody_for_anything(browser: Browser, tmp_p
     assert opened.requests == [file.as_uri()]
     assert opened.complaints == []
     assert opened.number(REFUSED) == []  # from now on it complains
-    opened.page.close()
-
-
-@pytest.mark.parametrize("robot", onpath.robots())
-@pytest.mark.parametrize("given", [{}, {"speed": 3.0}])
-def test_it_moves_as_a_run_with_the_same_arguments(
-    browser: Browser, tmp_path: Path, robot: str, given: dict[str, Any]
-) -> None:
-    file = onpath.figure(robot, "ellipse", LAWS, sliders=(), **given).save(tmp_path / "a.html")
-    opened = Opened(browser, file)
-    opened.press("Pause")
-    opened.do(("reset", None), ("advance", 300))
-    begin, size = opened.number("onpath.data.log.y")
-    there = [row[begin : begin + size] for row in opened.number(LOGGED)]
-    own = given or onpath.NEWCOMER
-    here = [onpath.simulate(robot, "ellipse", law, duration=0.3, **own).y[-1] for law in LAWS]
-    assert np.array(there) == pytest.approx(np.array(here), abs=CLOSE)
-    opened.page.close()
-
-
-def test_a_heavy_arm_moves_as_in_python_and_says_that_it_exceeds_its_file(
-    browser: Browser, tmp_path: Path
-) -> None:
-    source = tmp_path / "heavy.urdf"
-    source.write_text(urdf("heavy", HEAVY), "utf-8")
-    arm = onpath.robot(source)
-    file = onpath.figure(arm, "circle 0.1", LAWS, sliders=(), speed=6.0).save(tmp_path / "a.html")
-    opened = Opened(browser, file)
-    opened.press("Pause")
-    opened.do(("reset", None), ("advance", 300))
-    begin, size = opened.number("onpath.data.log.u")
-    there = [row[begin : begin + size] for row in opened.number(LOGGED)]
-    with pytest.warns(UserWarning, match="more than the"):
-        runs = [onpath.simulate(arm, "circle 0.1", law, duration=0.3, speed=6.0) for law in LAWS]
-    assert all(np.abs(run.torque).max() > 3000 for run in runs)
-    here = np.array([run.torque[-1] for run in runs])
-    assert np.array(there) == pytest.approx(here, rel=1e-9, abs=1e-9 * np.abs(here).max())
-    opened.page.evaluate(THREE_FRAMES)
-    said = opened.page.locator(".note").inner_text()
-    assert "joint2 gave" in said and "more than the 3000 N m" in said
-    opened.press("Reset")
-    opened.page.evaluate(THREE_FRAMES)
-    assert "gave" not in opened.page.locator(".note").inner_text()
     opened.page.close()
 
 
@@ -233,94 +173,6 @@ def test_held_back_the_tracker_is_torn_off_and_the_follower_waits(opened: Opened
     opened.press("Pause")
     opened.do(("advance", 3000))
     assert max(opened.number(DISTANCES)) < 1e-3
-
-
-BEGIN: list[Act] = [("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0])]
-PULLED: list[Act] = [
-    *BEGIN,
-    *(("advance", 500), ("pull", [0.01, 0.02]), ("advance", 300), ("pull", [0.02, 0.0])),
-    *(("advance", 300), ("hold", True), ("advance", 100), ("pull", None)),
-]
-
-
-DRAGGED: list[Act] = [
-    *(("move", [1, [0.05, 0.05]]), ("advance", 100), ("move", [1, [0.09, 0.02]]), ("drop", None)),
-    *(("advance", 200), ("move", [0, [0.2, 0.2]]), ("advance", 500), ("drop", None)),
-]
-
-
-def acts() -> st.SearchStrategy[list[Act]]:
-    coordinate, place = st.floats(-0.03, 0.03), st.floats(-0.2, 0.2)
-    each = (
-        st.tuples(st.just("advance"), st.integers(1, 600)),
-        st.tuples(st.just("hold"), st.booleans()),
-        st.tuples(st.just("set"), st.tuples(st.just(0), st.floats(-4, 4))),
-        st.tuples(st.just("set"), st.tuples(st.just(1), st.floats(100, 900))),
-        st.tuples(st.just("choose"), st.integers(0, len(PATHS) - 1)),
-        st.tuples(st.just("reset"), st.none()),
-        st.tuples(st.just("pull"), st.one_of(st.none(), st.tuples(coordinate, coordinate))),
-        st.tuples(st.just("change"), st.tuples(st.integers(0, 1), st.integers(0, 3))),
-        st.tuples(st.just("move"), st.tuples(st.integers(0, 1), st.tuples(place, place))),
-        st.tuples(st.just("drop"), st.none()),
-    )
-    return st.lists(st.one_of(each), min_size=3, max_size=12).map(lambda found: [*BEGIN, *found])
-
-
-@settings(
-    max_examples=12,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
-@given(acts())
-@example(PULLED)
-@example([*BEGIN, ("advance", 300), *DRAGGED, ("choose", 2), *DRAGGED, ("reset", None)])
-@example([*BEGIN, ("change", [0, 2]), ("advance", 700), ("change", [0, 3]), ("advance", 9)])
-def test_the_same_inputs_give_the_trajectory_of_python(still: Opened, script: list[Act]) -> None:
-    opened = still
-    opened.page.reload()  # its paths are as they were
-    wait_for(lambda: opened.number("'onpath' in window"), WAIT)
-    python = PythonFigure(choice())
-    for act in (*script, ("advance", 1000)):
-        opened.do(act)
-        python.act(act)
-        if act[0] == "advance":
-            found = np.array(opened.number(LOGGED))
-            edited = any(act[0] == "move" for act in script)
-            close = EDITED if edited else CLOSE
-            np.testing.assert_allclose(found, np.array(python.rows()), rtol=0, atol=close)
-            assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
-            expected = [side.distance() for side in python.sides]
-            np.testing.assert_allclose(opened.number(DISTANCES), expected, atol=1e-5)
-
-
-def test_it_is_the_run_of_simulate(opened: Opened) -> None:
-    opened.do(("choose", 0), ("set", [0, 2.0]), ("set", [1, 400.0]), ("advance", 1000))
-    opened.do(("hold", True), ("advance", 1000), ("hold", False), ("advance", 1000))
-    found = np.array(opened.number(LOGGED))
-    for law, row in zip(LAWS, found, strict=True):
-        run = onpath.simulate(law=law, hold=(1, 2), duration=3, speed=2, ramp=4)
-        end = np.concatenate([run.q[-1], run.v[-1], run.y[-1]])
-        np.testing.assert_allclose(row[: len(end)], end, rtol=0, atol=CLOSE)
-
-
-@pytest.mark.parametrize("robot", [name for name in ROBOTS if name != "five_bar"])
-def test_every_robot_follows_also_a_path_whose_points_are_dragged(
-    browser: Browser, tmp_path: Path, robot: str
-) -> None:
-    opened = Opened(browser, written(tmp_path, robot=robot))
-    opened.press("Pause")
-    opened.do(("reset", None), ("advance", 3000))
-    python = PythonFigure(choice(robot))
-    python.act(("advance", 3000))
-    np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=CLOSE)
-    before = python.editor.table.copy()
-    for act in (*DRAGGED, ("advance", 300), ("reset", None), ("advance", 3000)):
-        opened.do(act)
-        python.act(act)
-    assert max(abs(python.editor.table - before)) > 1e-3
-    assert max(abs(np.array(opened.number(TABLE)) - python.editor.table)) < 1e-11
-    np.testing.assert_allclose(opened.number(LOGGED), python.rows(), rtol=0, atol=EDITED)
-    assert max(opened.number(DISTANCES)) < 1e-3 and opened.complaints == []
-    opened.page.close()
 
 
 def drawn(opened: Opened) -> tuple[list[Array], list[Array]]:

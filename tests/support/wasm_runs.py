@@ -1,9 +1,8 @@
-"""Runs loops that were translated to WebAssembly, in a page of a browser."""
+"""Runs loops that were translated to WebAssembly, in Node."""
 
 from __future__ import annotations
 
 from base64 import b64decode, b64encode
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +10,9 @@ from onpath.models.arrays import Array
 from onpath.models.closed_loop.kernel import Kernel
 from onpath.models.closed_loop.wasm_loop import wasm_of
 from tests.support.checkout import ROOT
+from tests.support.node_page import NodePage
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Page
-
-_MATHEMATICS = ROOT / "assets" / "web" / "mathematics.ts"
+_MATHEMATICS = ROOT / "assets" / "web" / "simulation" / "mathematics.ts"
 _RUN = """async ([module, vectors, row, ticks]) => {
     MATHEMATICS
     const bytes = text => Uint8Array.from(atob(text), letter => letter.charCodeAt(0))
@@ -38,8 +35,8 @@ _RUN = """async ([module, vectors, row, ticks]) => {
 }"""
 
 
-def rows_in_browser(
-    page: Page, kernel: Kernel, state: Array, settings: Array, table: Array, ticks: int
+def rows_in_node(
+    page: NodePage, kernel: Kernel, state: Array, settings: Array, table: Array, ticks: int
 ) -> Array:
     """The log rows of `Loop.run`."""
     vectors = [_text(vector.tobytes()) for vector in (state, settings, table)]

@@ -3,16 +3,18 @@
 
 import { Window } from "happy-dom"
 
-const window = new Window({ url: "http://localhost/", width: 1280, height: 800 })
-const NAMES = [
-    "document", "Node", "Element", "HTMLElement", "HTMLCanvasElement", "Event", "CustomEvent", "KeyboardEvent", "PointerEvent",
-    "MouseEvent", "CSS", "getComputedStyle", "requestAnimationFrame", "cancelAnimationFrame", "location", "localStorage", "matchMedia",
-] as const
-const values = Object.fromEntries(NAMES.map(name => [name, (window as unknown as Record<string, unknown>)[name]]))
-for (const [name, value] of Object.entries({ window, self: window, ...values }))
+export const window = new Window({ url: "http://localhost/", width: 1280, height: 800 })
+const OVER = new Set(["Event", "EventTarget", "CustomEvent", "navigator", "localStorage", "sessionStorage", "addEventListener", "removeEventListener", "dispatchEvent"])
+for (const name of new Set([...Object.getOwnPropertyNames(window), ...Object.getOwnPropertyNames(Window.prototype), ...OVER])) {
+    if (name in globalThis && !OVER.has(name)) continue // Node's own, such as timers
+    const own = (window as unknown as Record<string, unknown>)[name]
+    const isFunction = typeof own === "function" && !/^[A-Z]/.test(name)
+    const value: unknown = isFunction ? (own as (...given: unknown[]) => unknown).bind(window) : own
     Object.defineProperty(globalThis, name, { value, configurable: true, writable: true })
-for (const name of ["addEventListener", "removeEventListener", "dispatchEvent"] as const)
-    Object.defineProperty(globalThis, name, { value: window[name].bind(window), configurable: true })
+}
+// What a page keeps in `window`, scripts find without naming it.
+for (const name of ["window", "self", "parent", "top"]) Object.defineProperty(globalThis, name, { value: globalThis, configurable: true, writable: true })
+Object.defineProperty(globalThis, "location", { value: window.location, configurable: true, writable: true })
 
 const observers = new Map<Element, (size: { width: number; height: number }) => void>()
 class FakeResizeObserver {
@@ -23,7 +25,8 @@ class FakeResizeObserver {
     unobserve(element: Element): void { observers.delete(element) }
     disconnect(): void {}
 }
-Object.assign(globalThis, { ResizeObserver: FakeResizeObserver })
+const media = (query: string) => ({ matches: /reduce/.test(query), media: query, addEventListener(): void {}, removeEventListener(): void {} })
+Object.assign(globalThis, { ResizeObserver: FakeResizeObserver, matchMedia: media })
 
 /** Give an element a size, of which its observer hears. */
 export function resize(element: Element, width: number, height: number): void {

