@@ -4,7 +4,7 @@ from __future__ import annotations
 
 AIDS = ("hold", "pull", "bend", "aim", "lens", "chart", "view", "search")
 """What the help names; see assets/web/parts/help_sheet.ts."""
-SHEETS = ("robots", "laws", "compare", "keep", "lessons", "help", "display")
+SHEETS = ("robots", "laws", "compare", "keep", "lessons", "help", "display", "file")
 KINDS = ("open", "robot", "law", "path", "lesson", "key")
 SHELL = (
     *("lesson.controls", "controls.help", "panel.handle"),
@@ -25,6 +25,8 @@ SHELL = (
     *("keep.shared", "keep.paste", "keep.paste_hint", "keep.use", "keep.report"),
     *("keep.with_code", "keep.with_code_means", "keep.sharing", "keep.coming_back", "keep.record"),
     *("code.copy", "code.copied"),
+    *("design.files", "design.size", "design.size_hint", "design.radius", "design.radius_hint"),
+    *("design.open", "design.open_hint", "design.upload", "design.reading"),
     *("export.title", "export.table", "export.picture", "export.film"),
     *("compare.title", "compare.text", "compare.laws", "compare.obstruction", "compare.run"),
     *("compare.law", "compare.distance", "compare.delay", "compare.force", "compare.put"),

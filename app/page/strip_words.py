@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+from onpath.app.exports.path_upload import MOST_BYTES
 from onpath.app.exports.standalone.figure_words import CHART
 from onpath.app.page.first_minute import INVITATIONS
 from onpath.app.page.shell_words import FILLED, SHELL
@@ -42,4 +43,5 @@ def strip_words(words: Words) -> str:
     messages |= {
         key: words(key, **{name: f"{{{name}}}" for name in names}) for key, names in _FILLED.items()
     }
+    messages["design.upload_hint"] = words("design.upload_hint", most=f"{MOST_BYTES / 1e6:g}")
     return json.dumps(messages | {"point": words("report.point")}, ensure_ascii=False)

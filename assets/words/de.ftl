@@ -1931,6 +1931,7 @@ search-of_compare = Dasselbe Hindernis für mehrere Regelungen, mit Kurven und T
 search-of_keep = Codes, Teilen, Export, Tabelle, Bild, Aufnahme, Bericht über Lektionen
 search-of_lessons = Alle Lektionen und Routen, und wie weit du bist
 search-of_help = Was ist was, Tasten, Glossar
+search-of_file = Eine Bahn aus einer Punkttabelle, einer Zeichnung oder G-Code
 search-of_display = Sprache, Aussehen: hell oder dunkel, große Schrift, Ansagen, Ton
 look-title = Aussehen
 look-system = wie das System

@@ -1521,6 +1521,7 @@ search-of_compare = The same obstruction for several laws, with curves and a tab
 search-of_keep = Codes, share, export, table, picture, recording, record of lessons
 search-of_lessons = All lessons and routes, and how far you are
 search-of_help = What is what, keys, glossary
+search-of_file = A path from a table of points, a drawing or G-code
 search-of_display = Language, look: light or dark, large type, speech, sound
 look-title = Look
 look-system = as the system

@@ -6,6 +6,7 @@ import { keptLook, keepLook } from "../core/look"
 import { said, type Texts } from "../core/words"
 import { Compare } from "../parts/compare_sheet"
 import { display } from "../parts/display_sheet"
+import { pathFromFile } from "../parts/file_sheet"
 import { Header } from "../parts/header"
 import { help } from "../parts/help_sheet"
 import { Keep } from "../parts/keep_sheet"
@@ -21,7 +22,7 @@ import type { SheetDialog } from "../parts/sheet"
 /** What can be opened, with the title under which the search finds it. */
 const TITLES = {
     robots: "robots.choose", laws: "laws.about", compare: "compare.title", keep: "keep.title", lessons: "lesson.choose",
-    help: "help.title", display: "display.title",
+    help: "help.title", display: "display.title", file: "design.files",
 } as const
 type Opens = keyof typeof TITLES
 
@@ -83,6 +84,7 @@ export class Shell {
                 language: lab.language, large: lab.presenting, look: keptLook(), send, setLook: keepLook,
             }),
             keep: async () => (this.keep = new Keep(texts, await engine.ask("keep"), send, () => (this.keep = null))).open(),
+            file: () => Promise.resolve(pathFromFile(texts, engine.files)),
             compare: async () => {
                 const data = await engine.ask("compare")
                 return (this.compare ??= new Compare(texts, { send, get laws() { return engine.lab!.laws } })).open(data)
