@@ -17,7 +17,8 @@ class NamesCommand:
 
     def run(self) -> None:
         """Print the lists."""
-        from onpath.app.notebook.simulate import laws, parameters, paths, robots
+        from onpath.app.notebook.simulate import described, laws, parameters, paths, robots
+        from onpath.models.closed_loop.lab_settings import SETTINGS
         from onpath.models.studies import schedule
 
         entry = self.file_options.entry_of(self.robot)
@@ -26,6 +27,9 @@ class NamesCommand:
             "--path": paths(),
             "--law": laws(),
             f"--set, of {entry.name}": parameters(entry),
+            "--set of a new lab (onpath serve), too": {
+                name: described(each.spec, each.default) for name, each in SETTINGS.items()
+            },
         }
         for title, names in lists.items():
             print(title)

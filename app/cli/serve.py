@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 from urllib.parse import urlsplit
 
+from onpath.app.cli.assignments import assignments
 from onpath.app.cli.options import Repeated
 from onpath.app.cli.robot_options import NO_OPTIONS, FileOptions
 
@@ -40,6 +41,9 @@ class Serve:
     law: Repeated = ()
     """A law of your own in a Python file, as my_law.py:Name; repeat for more. They are in the menu
     of laws, and the robot on the right begins with the first. Not with --classroom."""
+    set: Repeated = ()
+    """Set a parameter of the robot, or one of the lab's own settings, of new labs, as name=value;
+    repeat for more."""
     lessons: Path | None = None
     """A folder with lessons of your own, shown after the built-in ones."""
     database: str | None = None
@@ -128,6 +132,7 @@ class Serve:
                     robot=entry,
                     path=self._path(entry),
                     law=law,
+                    settings=self._settings(entry),
                     classrooms=classrooms,
                     most_clients=self.most_clients,
                     retention=Retention(self.keep_days, self.most_labs),
@@ -163,6 +168,22 @@ class Serve:
         for name in names:
             kernel_of(entry.make(parameters), kind_of(name, parameters, circle(0.05)))
         return names[0] if names else ""
+
+    def _settings(self, entry: RobotEntry) -> dict[str, str]:
+        """The settings of new labs.
+
+        Raises:
+            ValueError: an unknown name or a bad value.
+        """
+        from onpath.models.closed_loop.lab_settings import lab_specs
+        from onpath.models.systems.parameter_specs import checked, unknown_name
+
+        given, known = assignments(self.set), lab_specs(entry.parameters)
+        for name, value in given.items():
+            if name not in known:
+                raise unknown_name(name, list(known), "setting")
+            checked(known[name], name, value)
+        return given
 
     def _path(self, entry: RobotEntry) -> PathDesign | None:
         """The path of new labs; None: the usual one."""

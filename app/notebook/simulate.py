@@ -298,7 +298,7 @@ def parameters(robot: str | Path | RobotEntry = "five_bar") -> dict[str, str]:
     """
     entry = entry_named(robot)
     defaults, known = values_of(entry.parameters()), specs(entry.parameters)
-    texts = {name: _described(spec, defaults[name]) for name, spec in known.items()}
+    texts = {name: described(spec, defaults[name]) for name, spec in known.items()}
     rows = [(name, *_columns(spec, defaults[name]), spec.help) for name, spec in known.items()]
     return NamesTable(texts, ("setting", "default", "range", "unit", "what it does"), rows)
 
@@ -429,7 +429,8 @@ def check_names(
             raise CodedError("error.value_not_a_number", name=name, value=repr(value))
 
 
-def _described(spec: Spec, default: Any) -> str:
+def described(spec: Spec, default: Any) -> str:
+    """Default, range and meaning of a setting, in one line."""
     value, allowed, unit = _columns(spec, default)
     choice = "one of " if spec.options else ""
     return f"{value}, {choice}{allowed}{unit and ' ' + unit}: {spec.help}"

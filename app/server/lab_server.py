@@ -118,7 +118,15 @@ class LabServer:
         )
         robot, records = options.robot, options.records
         self.registry = LabRegistry(
-            self.thread, lambda: new_lab(loop_cache, lessons, robot, options.path, options.law)
+            self.thread,
+            lambda: new_lab(
+                loop_cache,
+                lessons,
+                robot,
+                path=options.path,
+                law=options.law,
+                settings=options.settings,
+            ),
         )
         self._memory = Periodic("memory", FREEING, self.registry.free_memory)
         self._keeper = self._expiry = None

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from onpath.app.common.newcomer import NEWCOMER
+from onpath.app.lab.commands.settings import SetByProcess
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.loops.loop_cache import LoopCache
 from onpath.app.lab.simulation import RobotSettings
@@ -19,6 +23,7 @@ def new_lab(
     robot: RobotEntry = FIVE_BAR,
     path: PathDesign | None = None,
     law: str = "",
+    settings: Mapping[str, str] = MappingProxyType({}),
 ) -> Lab:
     """A lab whose robots all start slowly; lessons and files keep the usual speed.
 
@@ -26,6 +31,7 @@ def new_lab(
         robot: the robot at first.
         path: the path at first, which this robot must be able to follow; None: the robot's circle.
         law: the law of the robot on the right at first; "": path following.
+        settings: values of settings at first, by name.
     """
     lab = Lab(loop_cache, robot, course)
     simulation = lab.simulation
@@ -39,4 +45,6 @@ def new_lab(
         simulation.reset()
     if law:
         simulation.reset({RIGHT: law})
+    for name, value in settings.items():
+        lab.post(SetByProcess(name, value))
     return lab

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from onpath.app.classroom.classroom import Classroom
@@ -32,7 +32,7 @@ class ServerOptions:
         hang_seconds: see `Watchdog`; 0 for no watchdog.
         privacy_url: the address of the site's privacy notice, if it has one.
         robot: with which a new lab begins.
-        path, law: those of new labs; see `new_lab`.
+        path, law, settings: those of new labs; see `new_lab`.
         limits, allowed_origins, trusted_proxies, unix_socket, course_url: see `make_server`.
     """
 
@@ -46,6 +46,7 @@ class ServerOptions:
     robot: RobotEntry = FIVE_BAR
     path: PathDesign | None = None
     law: str = ""
+    settings: Mapping[str, str] = field(default_factory=dict[str, str])
     limits: Limits = Limits(max_upload_bytes=path_upload.MOST_BYTES)
     allowed_origins: tuple[str, ...] = ()
     trusted_proxies: tuple[str, ...] = ()

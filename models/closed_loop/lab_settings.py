@@ -70,7 +70,12 @@ def own(declared: Any, *, kept: Kept = "code", by: Role = "lab", of_robot: bool 
     Args:
         declared: what `number`, `choice` or `switch` returns.
         kept, by, of_robot: see `Setting`.
+
+    Raises:
+        ValueError: it is kept in share codes, which anybody makes, and not everybody may set it.
     """
+    if kept == "code" and by != "lab":
+        raise ValueError("whoever makes a share code can set what it keeps")
     spec, default = declared.metadata["spec"], declared.default
     setting = Setting(spec=spec, default=default, by=by, kept=kept, of_robot=of_robot)
     return dataclasses.field(default=default, metadata={"setting": setting})

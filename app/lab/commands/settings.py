@@ -112,6 +112,22 @@ def set_parameters(lab: Lab, wanted: Parameters) -> None:
         lab.remark(lab.words("say.begun_anew"))
 
 
+class SetByTeacher(Set):
+    """The same as a teacher's order."""
+
+    __slots__ = ()
+    from_teacher: ClassVar[bool] = True
+    role: ClassVar[Role] = "teacher"
+
+
+class SetByProcess(Set):
+    """The same as an order of those who run the process."""
+
+    __slots__ = ()
+    from_teacher: ClassVar[bool] = True
+    role: ClassVar[Role] = "process"
+
+
 @dataclass(frozen=True, slots=True)
 class ResetParameters(Command):
     """Set all parameters to their defaults."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onpath.app.lab import commands as c
+from onpath.app.lab.commands.settings import SetByProcess, SetByTeacher
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
 from onpath.app.lab.setups.share_code import decode, encode
@@ -36,17 +37,7 @@ MATTERS = ("across", "b", "d", "centre", "rise", "start_beside", "start_along", 
 """Settings of which a value in range may still be impossible on the present path."""
 
 
-class TeacherSets(c.Set):
-    role: ClassVar[Role] = "teacher"
-    from_teacher: ClassVar[bool] = True
-
-
-class ProcessSets(c.Set):
-    role: ClassVar[Role] = "process"
-    from_teacher: ClassVar[bool] = True
-
-
-ORDERS: dict[Role, type[c.Set]] = {"lab": c.Set, "teacher": TeacherSets, "process": ProcessSets}
+ORDERS: dict[Role, type[c.Set]] = {"lab": c.Set, "teacher": SetByTeacher, "process": SetByProcess}
 
 
 def good(spec: Spec) -> st.SearchStrategy[Any]:
