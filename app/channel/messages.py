@@ -48,10 +48,10 @@ class Light(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag
     """Tell where a symbol is found on the robots, until another one is asked for.
 
     Attributes:
-        symbol: empty to be told nothing more.
+        symbol: "bars" for the ends of all bars, two for each; empty to be told nothing more.
     """
 
-    symbol: JointSymbol | Literal[""]
+    symbol: JointSymbol | Literal["bars", ""]
 
 
 class Plot(Struct, frozen=True, forbid_unknown_fields=True, tag_field="is", tag="plots"):
@@ -261,6 +261,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
         above: the point of the output space over which a robot's title stands.
         arrow: length of the arrow of a force [m/N].
         frozen: why the lab takes no commands, if the teacher has stopped it; else empty.
+        machine: displayed name of the kind of robot.
+        drawn: whether the picture shows these robots, as `cameras` tells.
         waits: that time waits for what takes long; else empty.
         own: whether commands are taken: not if a teacher looks at the lab of a student.
         rows: what can be plotted of these robots.
@@ -291,6 +293,8 @@ class StateMessage(Struct, frozen=True, kw_only=True, tag_field="is", tag="state
     above: list[float]
     arrow: float
     frozen: str
+    machine: str
+    drawn: bool
     waits: str
     own: bool
     rows: Annotated[list[dict[str, Any]], Meta(extra={"typescript": "RowData[]"})]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import viser
 
 from onpath.app.channel.messages import StateMessage
@@ -34,9 +35,9 @@ from onpath.app.page.step_drawings import StepDrawings
 from onpath.app.page.strip_words import strip_words
 from onpath.app.scene.mouse import SceneCallbacks
 from onpath.app.scene.pointer_projection import plane_coordinates
-from onpath.app.scene.projection import seen_by
+from onpath.app.scene.projection import Seen, seen_by, seen_from
 from onpath.app.scene.scene import Scene
-from onpath.app.scene.stage import NARROW, Insets
+from onpath.app.scene.stage import NARROW, Insets, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.app.scene.tones import DARK, LIGHT
 from onpath.app.viser_adapter.frame_channel import FrameChannel
@@ -51,6 +52,7 @@ STANDS = 5  # of them, until the panel can be folded
 CONTROL_WIDTH, LARGE_WIDTH = 330, 560  # [px], the latter for a plot on a projector
 TITLES = 44.0  # [px], of the scene, that the titles of the robots take
 MOST_TITLES = 0.1  # of its height
+NEAR = 1e-3  # of its distance from the robots, to where a camera is put
 SHAPE_KEY = "shape"
 """Where a browser keeps its window's shape; see assets/page/portrait.js."""
 
@@ -137,7 +139,7 @@ class Page:
             words=self._words_for(snapshot),
             captions=self._scene.captions.shown,
             said=self._narration.said,
-            seen=seen_by(self._client.camera, self._scene.stage, self._robot),
+            seen=self._seen(),
         )
 
     def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
@@ -160,6 +162,19 @@ class Page:
     def updates(self) -> int:
         """Number of updates sent to the browser."""
         return self._channel.frames
+
+    def _seen(self) -> Seen:
+        """How the picture shows the robots, or how it will as soon as its camera is in place."""
+        camera, stage = self._client.camera, self._scene.stage
+        if not self._stands:
+            width, height = max(camera.image_width, 1), max(camera.image_height, 1)
+            pose = view_of(stage, (width, height), self._insets(height))
+            off = np.linalg.norm(camera.position - pose.position)
+            reach = np.linalg.norm(pose.look_at - pose.position)
+            self._stands = bool(off < NEAR * reach) or not self._settling
+            if not self._stands:
+                return seen_from(pose, stage, self._robot)
+        return seen_by(camera, stage, self._robot)
 
     def _renew(self, snapshot: PageSnapshot | Motion) -> None:
         """Rebuild the page; nothing is shown until it is complete."""
@@ -193,6 +208,7 @@ class Page:
     def _build(self, first: PageSnapshot) -> None:
         post, words, robot = self._post_for(first), self._words_for(first), robot_of(first)
         self._built, self._step = self._key(first), None
+        self._stands = False
         self._lay_out(first)
         tones = DARK if self._context.dark else LIGHT
         stage = stage_of(robot, tones, self._context.plain)

@@ -11,6 +11,7 @@ from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.snapshots.page_snapshot import PageSnapshot
 from onpath.app.scene.projection import Seen
 from onpath.app.viser_adapter.data_channel import VERSION
+from onpath.lessons.labels import robot_label
 from onpath.lessons.sides import displayed_names, law_text, side_titles
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import law_named
@@ -18,7 +19,11 @@ from onpath.models.systems.law_parameters import LEVEL_SET
 
 
 def state_message(
-    snapshot: PageSnapshot, words: Words, captions: Mapping[str, str], said: Said, seen: Seen
+    snapshot: PageSnapshot,
+    words: Words,
+    captions: Mapping[str, str],
+    said: Said,
+    seen: Seen,
 ) -> StateMessage:
     """The message of a lab's state.
 
@@ -26,7 +31,7 @@ def state_message(
         words: of the page.
         captions: of the robots, by side; see `app.scene.captions.Captions`.
         said: what the page says.
-        seen: how the picture shows the robots.
+        seen: how the picture shows the robots, or will.
     """
     laws, run, rate = snapshot.laws, snapshot.run, snapshot.settings.rate
     titles = side_titles(laws, words)
@@ -56,6 +61,8 @@ def state_message(
         above=np.round(seen.above, 4).tolist(),
         arrow=seen.arrow,
         frozen=words("class.frozen") if run.frozen else "",
+        machine=robot_label(snapshot.key.robot, words),
+        drawn=seen.drawn,
         waits=words("say.waits") if run.waits else "",
         own=not snapshot.key.student,
         rows=row_data(snapshot.key.fields, is_level_set, words),

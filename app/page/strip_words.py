@@ -28,6 +28,7 @@ _PLAIN = (
 )
 _FILLED = {
     "chart.at": ("time", "values"),
+    "stage.building": ("robot",),
     "stage.past": ("time",),
     "lens.name": ("law",),
     "readout.running": ("time", "speed"),

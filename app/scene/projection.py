@@ -8,7 +8,7 @@ import numpy as np
 import viser
 from viser.transforms import SO3
 
-from onpath.app.scene.stage import Stage
+from onpath.app.scene.stage import FIELD_OF_VIEW, Pose, Stage
 from onpath.models.systems.robots import Robot
 
 
@@ -19,11 +19,13 @@ class Seen:
     Attributes:
         height: that the canvas shows at the distance of the robots, [m].
         cameras: one for each robot, shape (k, 3, p + 1); see `projections`.
+        drawn: whether the picture does so already.
         above: the point of the output space that is nearest to a title's place, shape (p,), [m].
         arrow: length of the arrow of a force [m/N].
     """
 
     height: float
+    drawn: bool
     cameras: np.ndarray
     above: np.ndarray
     arrow: float
@@ -31,10 +33,28 @@ class Seen:
 
 def seen_by(camera: viser.CameraHandle, stage: Stage, robot: Robot) -> Seen:
     """How a camera shows the robots of a stage."""
-    distance = np.linalg.norm(np.subtract(camera.position, camera.look_at))
+    pose = Pose(np.asarray(camera.position), np.asarray(camera.look_at))
+    return _seen(True, pose, np.asarray(camera.wxyz), camera.fov, stage, robot)
+
+
+def seen_from(pose: Pose, stage: Stage, robot: Robot) -> Seen:
+    """How the robots of a stage will be shown by a camera that is placed there, upright."""
+    forward = pose.look_at - pose.position
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    down = np.cross(forward, right)
+    axes = [each / np.linalg.norm(each) for each in (right, down, forward)]
+    wxyz = SO3.from_matrix(np.column_stack(axes)).wxyz
+    return _seen(False, pose, wxyz, float(FIELD_OF_VIEW), stage, robot)
+
+
+def _seen(
+    drawn: bool, pose: Pose, wxyz: np.ndarray, fov: float, stage: Stage, robot: Robot
+) -> Seen:
+    distance = np.linalg.norm(pose.look_at - pose.position)
     return Seen(
-        height=float(2 * distance * np.tan(camera.fov / 2)),
-        cameras=projections(camera.position, camera.wxyz, camera.fov, stage.origins, robot),
+        drawn=drawn,
+        height=float(2 * distance * np.tan(fov / 2)),
+        cameras=projections(pose.position, wxyz, fov, stage.origins, robot),
         above=robot.output_at(stage.title),
         arrow=stage.force_scale,
     )

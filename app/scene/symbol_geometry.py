@@ -44,12 +44,15 @@ def symbol_lines(symbol: str, robot: Robot, motion: Motion) -> list[Array]:
     """What a symbol of a joint means on each robot, as points of the output space.
 
     Args:
-        symbol: one that has a meaning for the robot, see `has_meaning`.
+        symbol: one that has a meaning for the robot, see `has_meaning`; or "bars".
 
     Returns:
-        For each robot a line, or a joint, shape (k, p) with k = 1 for a joint, [m].
+        For each robot a line, a joint, or the ends of all bars, shape (k, p) with k = 1 for a
+        joint, [m].
     """
     bars = motion.counts.bars
+    if symbol == "bars":
+        return [robot.output_at(drawn[: 6 * bars].reshape(-1, 3)) for drawn in motion.drawn]
     function = _function(symbol, robot, bars)
     points = (
         np.array(function(drawn[: 6 * bars].reshape(-1, 3).T, motion.point(i, END))).T

@@ -13,6 +13,8 @@
   addEventListener("pointerdown", (event) => {
     inScene = event.target instanceof Element && event.target.matches("canvas[data-engine]");
     if (event.pointerType === "touch") fingers.add(event.pointerId);
+    // viser asks for it in a passive listener, in which it has no effect and browsers warn.
+    if (inScene) event.preventDefault = () => {};
   }, { capture: true });
   for (const end of ["pointerup", "pointercancel"]) {
     addEventListener(end, (event) => fingers.delete(event.pointerId), { capture: true });

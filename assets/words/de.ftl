@@ -541,6 +541,7 @@ caption-stopped = angehalten
 caption-at_end = am Ende: Zurücksetzen drücken
 caption-spoken = { $robot }: { $caption }.
 
+stage-building = { $robot }: das Bild wird aufgebaut …
 stage-paused = Die Zeit steht still
 stage-past = Rückblick auf { $time } s
 

@@ -456,6 +456,7 @@ caption-stopped = stopped
 caption-at_end = at the end: press Reset
 caption-spoken = { $robot }: { $caption }.
 
+stage-building = { $robot }: the picture is being built …
 stage-paused = Time stands still
 stage-past = Looking back at { $time } s
 

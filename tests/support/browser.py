@@ -128,8 +128,8 @@ class Tab:
         self._join(lambda: self.page.goto(address))
 
     def _heard(self, message: ConsoleMessage) -> None:
-        """Note what WebGL refuses to draw; the browser reports it as a warning."""
-        if "GL_INVALID" in message.text:
+        """Note what WebGL refuses to draw, and what has no effect; the browser only warns of it."""
+        if "GL_INVALID" in message.text or "preventDefault" in message.text:
             self.errors.append(message.text)
 
     def reload(self) -> None:

@@ -131,7 +131,8 @@ export class RemoteEngine implements Engine {
     private running = false
     private past: number | null = null
     private looked: { at: number | null; until: number } | null = null
-    private symbol: Light["symbol"] = "" // of joints, whose meaning is asked for
+    private pointed = "" // symbol of a lesson's text
+    private symbol: Light["symbol"] = "" // whose lines are asked for
     private symbolLines: { symbol: string; lines: readonly Vector[][] } = { symbol: "", lines: [] }
     private sending = 0 // timer of an instant to be looked at
     private socket: WebSocket | null = null
@@ -221,7 +222,13 @@ export class RemoteEngine implements Engine {
 
     /** Ask what a symbol means, and be told as long as the robots move; of joints, only the server knows. */
     light(symbol: string): void {
-        const asked = AT_JOINTS.find(each => each === symbol) ?? ""
+        this.pointed = symbol
+        this.askLines()
+    }
+
+    /** Without a picture of the robots, their bars are asked for, too. */
+    private askLines(): void {
+        const asked = AT_JOINTS.find(each => each === this.pointed) ?? (this.lab?.drawn === false ? "bars" : "")
         if (asked === this.symbol) return
         this.symbol = asked
         this.send({ is: "light", symbol: asked })
@@ -286,6 +293,7 @@ export class RemoteEngine implements Engine {
             this.tell("samples")
         } else if (message.is === "state") {
             this.lab = { ...this.lab, ...message } as StateMessage // the first one has everything
+            this.askLines()
             this.tell("state")
         } else if (message.is === "lesson") {
             this.lesson = message

@@ -81,8 +81,8 @@ export interface Skip {
 /** Tell where a symbol is found on the robots, until another one is asked for. */
 export interface Light {
     is: "light"
-    /** empty to be told nothing more. */
-    symbol: "delta" | "q_1" | "q_2" | "rho" | ""
+    /** "bars" for the ends of all bars, two for each; empty to be told nothing more. */
+    symbol: "delta" | "q_1" | "q_2" | "rho" | "" | "bars"
 }
 
 /** Tell more of each sample, also of the past, until another one comes. */
@@ -377,6 +377,10 @@ export interface StateMessage {
     arrow: number
     /** why the lab takes no commands, if the teacher has stopped it; else empty. */
     frozen: string
+    /** displayed name of the kind of robot. */
+    machine: string
+    /** whether the picture shows these robots, as `cameras` tells. */
+    drawn: boolean
     /** that time waits for what takes long; else empty. */
     waits: string
     /** whether commands are taken: not if a teacher looks at the lab of a student. */

@@ -1,4 +1,7 @@
-// Where titles stand over the robots' picture.
+// Where something is over the robots' picture.
+
+import type { Vector } from "./engine"
+import type { Point } from "./figure_data"
 
 /** A robot's part of the picture, [px]. */
 export interface Share {
@@ -18,6 +21,12 @@ export function shares(middles: readonly number[], width: number): Share[] {
         const at = order.indexOf(i), left = borders[at]!, right = borders[at + 1]!
         return { left, width: right - left, middle: within(middle, left, right) - left }
     })
+}
+
+/** Where a camera shows a point: to the right and down from the middle, as shares of the picture's height. */
+export function projected(camera: readonly (readonly number[])[], point: Vector): Point {
+    const [across, down, depth] = camera.map(row => point.reduce((sum, each, k) => sum + row[k]! * each, row[point.length]!))
+    return [across! / depth!, down! / depth!]
 }
 
 function within(value: number, low: number, high: number): number {

@@ -12,6 +12,7 @@ import { Downloads } from "../parts/downloads"
 import { Lens } from "../parts/lens"
 import { OverStage } from "../parts/over_stage"
 import { Strip } from "../parts/strip"
+import { Sketch } from "../parts/sketch"
 import { SymbolOverlay } from "../parts/symbol_overlay"
 import { Transport } from "../parts/transport"
 import { Voice } from "../parts/voice"
@@ -32,6 +33,7 @@ class Face {
     private readonly strip: Strip
     private readonly lenses: Lens[]
     private readonly overlay: SymbolOverlay
+    private readonly sketch: Sketch
     private readonly numbers: HTMLElement[]
     private readonly readings: HTMLElement[]
     private readonly stage: OverStage
@@ -55,11 +57,12 @@ class Face {
         this.strip = new Strip(texts, engine, signal, "onpath-rows")
         this.lenses = indices.map(i => new Lens(texts, engine, i, signal))
         this.overlay = new SymbolOverlay(engine)
+        this.sketch = new Sketch(engine, signal)
         this.numbers = indices.map(() => made("b", "number"))
         this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
-        this.stage = new OverStage(engine, texts, this.overlay.element)
+        this.stage = new OverStage(engine, texts, this.sketch.element, this.overlay.element)
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo, this.strip.menu.element)
@@ -179,6 +182,7 @@ class Face {
         const { engine, strip, lenses, texts } = this
         strip.draw(now)
         this.overlay.draw()
+        this.sketch.draw()
         for (const lens of lenses) {
             lens.scale = this.height / engine.lab!.height / lens.sheet.zoom || lens.scale
             lens.draw(now)

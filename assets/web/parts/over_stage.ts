@@ -1,10 +1,13 @@
-// What lies over the robots' picture: each robot's title, what it does now, and its lens; and whether time stands still.
+// What lies over the robots' picture: each robot's title, what it does now, and its lens; and what one waits for.
 
 import { made, tell } from "../core/dom"
 import { shown } from "../core/engine"
-import { shares } from "../core/placing"
+import { projected, shares } from "../core/placing"
 import { said, written, type Texts } from "../core/words"
 import type { RemoteEngine } from "../channel/channel"
+
+/** Of quality.js, which comes before this script. */
+declare const webgl: { works: boolean }
 
 export class OverStage {
     readonly element: HTMLElement
@@ -44,8 +47,10 @@ export class OverStage {
             tell(this.captions[i]!.firstElementChild as HTMLElement, past === null ? caption : "")
         })
         const time = written(texts, shown(engine).time, 1)
-        const why = past !== null ? said(texts, "stage.past", { time }) : engine.lab!.waits || (running ? "" : said(texts, "stage.paused"))
-        tell(this.still, why)
+        const { drawn, machine, waits } = engine.lab!
+        const building = drawn || !webgl.works ? "" : said(texts, "stage.building", { robot: machine })
+        tell(this.still, building || waits || (past !== null ? said(texts, "stage.past", { time }) : running ? "" : said(texts, "stage.paused")))
+        this.element.classList.toggle("undrawn", !drawn)
         this.arrange()
     }
 
@@ -53,7 +58,7 @@ export class OverStage {
     arrange(): void {
         const { width, height } = this
         const { cameras, above } = this.engine.lab!
-        const middles = cameras.map(([across, , depth]) => width / 2 + (height * applied(across!, above)) / applied(depth!, above))
+        const middles = cameras.map(camera => width / 2 + height * projected(camera, above)[0])
         const key = JSON.stringify([width, middles.map(Math.round)])
         if (key === this.placed) return
         this.placed = key
@@ -66,8 +71,4 @@ export class OverStage {
             style.setProperty("--op-after", `${share.width - share.middle}fr`)
         })
     }
-}
-
-function applied(row: readonly number[], point: readonly number[]): number {
-    return point.reduce((sum, each, k) => sum + row[k]! * each, row[point.length]!)
 }

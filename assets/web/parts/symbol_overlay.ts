@@ -3,6 +3,7 @@
 import { shown, type SideSample, type Vector } from "../core/engine"
 import type { Point } from "../core/figure_data"
 import { Sheet, tones } from "../core/ink"
+import { projected } from "../core/placing"
 import { drawShapes, shapesOf } from "../core/symbols"
 import type { RemoteEngine } from "../channel/channel"
 
@@ -34,8 +35,8 @@ export class SymbolOverlay {
         const { engine: { path, lab }, sheet: { width, height } } = this
         const camera = lab!.cameras[side]!
         const project = (point: Vector): Point => {
-            const [x, y, away] = camera.map(row => point.reduce((sum, each, k) => sum + each * row[k]!, row[point.length]!))
-            return [width / 2 + (x! / away!) * height, height / 2 + (y! / away!) * height]
+            const [x, y] = projected(camera, point)
+            return [width / 2 + x * height, height / 2 + y * height]
         }
         const metre = height / lab!.height // [px]
         const isFlat = sample.tip.length < 3

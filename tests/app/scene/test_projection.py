@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from viser.transforms import SO3
 
-from onpath.app.scene.projection import projections
+from onpath.app.scene.projection import projections, seen_from
+from onpath.app.scene.stage import FIELD_OF_VIEW, Insets, view_of
 from onpath.app.scene.stage_catalogue import stage_of
 from onpath.models.systems.catalogue import ROBOTS
 
@@ -30,3 +31,28 @@ def test_a_point_is_projected_along_the_ray_through_it(name):
             np.testing.assert_allclose(
                 position + turn.as_matrix() @ seen, origin + robot.position(y), atol=1e-12
             )
+
+
+@settings(max_examples=20, deadline=None)
+@given(
+    name=st.sampled_from(list(ROBOTS)),
+    size=st.tuples(st.integers(300, 2600), st.integers(250, 1500)),
+)
+def test_titles_and_bars_are_known_before_the_picture_is(name, size):
+    """Before its camera is in place, a picture is told to show what it then shows."""
+    robot = ROBOTS[name].make(ROBOTS[name].parameters())
+    stage = stage_of(robot)
+    pose = view_of(stage, size, Insets())
+    seen = seen_from(pose, stage, robot)
+    forward = (pose.look_at - pose.position) / np.linalg.norm(pose.look_at - pose.position)
+    scale = 1 / (2 * np.tan(FIELD_OF_VIEW / 2))
+    right = np.cross(forward, [0.0, 0.0, 1.0])
+    right /= np.linalg.norm(right)
+    for base, camera in zip(stage.origins, seen.cameras, strict=True):
+        across, down, depth = camera @ [*seen.above, 1.0]
+        way = base + robot.position(seen.above) - pose.position
+        assert np.isclose(across / depth, scale * (way @ right) / (way @ forward), atol=1e-9)
+        up = scale * (way @ np.cross(right, forward)) / (way @ forward)
+        assert np.isclose(down / depth, -up, atol=1e-9)
+        assert abs(across / depth) < 0.5 * size[0] / size[1]  # over the picture
+    assert not seen.drawn

@@ -103,3 +103,12 @@ def test_the_joints_of_a_robot_from_a_file_are_shown(tmp_path: Path) -> None:
         for i, symbol in enumerate(("q_1", "q_2")):
             line, _ = meant(symbol, robot, q)
             assert line == pytest.approx(origins(q).full().T[[i]], abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_bars_are_told_as_they_are_drawn(name: str) -> None:
+    robot = ROBOTS[name].make(ROBOTS[name].parameters())
+    for q in poses(robot)[:3]:
+        told, ends = meant("bars", robot, q)
+        flat = robot.position(robot.output_at(ends))  # of a robot in a plane, in that plane
+        np.testing.assert_allclose(told, flat, atol=1e-12)
