@@ -139,7 +139,7 @@ class Page:
             words=self._words_for(snapshot),
             captions=self._scene.captions.shown,
             said=self._narration.said,
-            seen=self._seen(),
+            seen=self._seen(snapshot),
         )
 
     def serve(self, request: Request, snapshot: PageSnapshot, tell: Tell) -> None:
@@ -163,22 +163,22 @@ class Page:
         """Number of updates sent to the browser."""
         return self._channel.frames
 
-    def _seen(self) -> Seen:
+    def _seen(self, snapshot: PageSnapshot) -> Seen:
         """How the picture shows the robots, or how it will as soon as its camera is in place."""
-        camera, stage = self._client.camera, self._scene.stage
-        if not self._stands:
-            width, height = max(camera.image_width, 1), max(camera.image_height, 1)
-            pose = view_of(stage, (width, height), self._insets(height))
-            off = np.linalg.norm(camera.position - pose.position)
-            reach = np.linalg.norm(pose.look_at - pose.position)
-            self._stands = bool(off < NEAR * reach) or not self._settling
-            if not self._stands:
-                return seen_from(pose, stage, self._robot)
-        return seen_by(camera, stage, self._robot)
+        camera = self._client.camera
+        if self._stands and not self.is_outdated:
+            return seen_by(camera, self._scene.stage, self._robot)
+        robot = robot_of(snapshot)
+        stage = stage_of(robot)
+        width, height = max(camera.image_width, 1), max(camera.image_height, 1)
+        pose = view_of(stage, (width, height), self._insets(height))
+        off, away = (np.linalg.norm(x - pose.position) for x in (camera.position, pose.look_at))
+        self._stands = bool(off < NEAR * away) or not self._settling
+        return seen_from(pose, stage, robot)
 
     def _renew(self, snapshot: PageSnapshot | Motion) -> None:
         """Rebuild the page; nothing is shown until it is complete."""
-        self.is_outdated = True
+        self.is_outdated, self._stands = True, False
         if isinstance(snapshot, PageSnapshot):
             self._building = True
             self._rebuilds.submit(lambda: self._rebuild(snapshot))

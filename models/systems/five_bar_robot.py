@@ -25,6 +25,7 @@ LENGTHS = (
 )
 DRAWING = Drawing(
     box=((-0.21, -0.03, -0.13), (0.31, 0.03, 0.36)),
+    title=(0.07, 0.0, 0.335),
     angles=ANGLES,
     lengths=LENGTHS,
     elbow=1,

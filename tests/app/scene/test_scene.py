@@ -322,7 +322,7 @@ def test_no_elbow_leaves_its_half_while_one_pulls(angle: float, far: float, begu
     width = float(np.ptp(RIGID.origins[:, 0]))
     at = (0.05 + far) * np.array([np.cos(angle), np.sin(angle)])
     do(lab, c.Grab(RIGHT, lab.simulation.robot.frame.lift(at)))
-    middle = RIGID.title[0]
+    middle = (RIGID.low + RIGID.high)[0] / 2
     for _ in range(30):
         run(lab, 0.1)
         for each in take_page_snapshot(lab, 1.0).robots.values():
