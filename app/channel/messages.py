@@ -366,10 +366,12 @@ class FormNeed(Struct, frozen=True, omit_defaults=True):
 
     Attributes:
         of: none: any but 0, "off" and false.
+        others: names of fields of which each suffices in its place.
     """
 
     name: str
     of: tuple[FieldValue, ...] = ()
+    others: tuple[str, ...] = ()
 
 
 class FormOption(Struct, frozen=True, omit_defaults=True, kw_only=True):
@@ -416,7 +418,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     needs: tuple[FormNeed, ...] = ()
     default: FieldValue | None = None
     mark: FieldValue | None = None
-    act: SentCommand | None = None
+    act: Mapping[str, Any] | None = None
     tone: str = ""
     section: str = ""
 
@@ -457,10 +459,16 @@ class ValuesMessage(Struct, frozen=True, omit_defaults=True, tag_field="is", tag
 
     Attributes:
         refused: why the last value of a setting was refused; empty: it was not.
+        heard: of each setting of the page, the number of its last message that counts here.
     """
 
     values: dict[str, FieldValue]
     refused: dict[str, str] = {}
+    heard: dict[str, int] = {}
+
+
+FORMS: tuple[type[Struct], ...] = (FormMessage, ValuesMessage)
+"""Messages that the data of pages without a server have, too."""
 
 
 class FileMessage(Struct, frozen=True, tag_field="is", tag="file"):

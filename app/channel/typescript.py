@@ -1,5 +1,7 @@
 """Makes assets/web/channel/messages.ts: the types of all messages, from messages.py.
 
+Those of forms, which pages without a server have, too, are in assets/web/core/form_data.ts.
+
 Run `python -m onpath.app.channel.typescript` after a change of messages or commands.
 """
 
@@ -8,6 +10,7 @@ from __future__ import annotations
 import re
 import textwrap
 import typing
+from collections.abc import Mapping, Sequence
 from inspect import getdoc
 from typing import Any
 
@@ -19,11 +22,15 @@ from onpath.app.lab.commands.command_codec import command_structs
 from onpath.app.viser_adapter.data_channel import SUBPROTOCOL
 from onpath.assets import asset_path
 
-FILE = "web/channel/messages.ts"
+FILE, FORMS = "web/channel/messages.ts", "web/core/form_data.ts"
 WIDTH = 120
 HEAD = """\
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
 // app/channel/messages.py and app/lab/commands: change them there.
+"""
+HEAD_OF_FORMS = """\
+// The settings that a place shows, as data; made by app/channel/typescript.py from
+// app/channel/messages.py: change them there.
 """
 CHANGES = """\
 /** A message with only the fields that have changed. */
@@ -46,9 +53,22 @@ PLAIN: dict[type[inspect.Type], str] = {
 }
 
 
-def typescript() -> str:
-    """The text of the file."""
-    page, lab = _Writer(reads=True), _Writer(reads=False)
+def files() -> dict[str, str]:
+    """The texts of the files, by their names in assets."""
+    forms = _Writer(reads=False)
+    own = [forms.type(each) for each in inspect.multi_type_info(messages.FORMS)]
+    head = [HEAD_OF_FORMS, *forms.interfaces]
+    return {FORMS: "\n".join(head), FILE: _messages_file({"../core/form_data": tuple(own)})}
+
+
+def _messages_file(elsewhere: dict[str, tuple[str, ...]]) -> str:
+    """The text of `FILE`.
+
+    Args:
+        elsewhere: further types that are imported, by file.
+    """
+    imported = {**elsewhere, **IMPORTED}
+    page, lab = _Writer(reads=True), _Writer(reads=False, elsewhere=elsewhere)
     commands = [page.command(each) for each in inspect.multi_type_info(command_structs())]
     from_page = [page.type(each) for each in _kinds(messages.PageMessage)]
     to_page = [lab.type(each) for each in _kinds(messages.LabMessage)]
@@ -57,7 +77,7 @@ def typescript() -> str:
         HEAD,
         "".join(
             f'import type {{ {", ".join(names)} }} from "{file}"\n'
-            for file, names in IMPORTED.items()
+            for file, names in imported.items()
         ),
         f'export const PROTOCOL = "{SUBPROTOCOL}"\n',
         *page.interfaces,
@@ -88,10 +108,12 @@ class _Writer:
 
     Args:
         reads: whether Python reads the messages: it then fills in what has a default.
+        elsewhere: interfaces that are imported, by file.
     """
 
-    def __init__(self, reads: bool) -> None:
+    def __init__(self, reads: bool, elsewhere: Mapping[str, Sequence[str]] = {}) -> None:
         self._reads, self._known = reads, dict[str, str]()
+        self._elsewhere = {name for names in elsewhere.values() for name in names}
 
     @property
     def interfaces(self) -> list[str]:
@@ -131,7 +153,7 @@ class _Writer:
 
     def _interface(self, kind: inspect.StructType | inspect.DataclassType) -> str:
         name = kind.cls.__name__
-        if name in self._known:
+        if name in self._known or name in self._elsewhere:
             return name
         about, docs = _described(kind.cls)
         lines, fills = list[str](), self._reads
@@ -172,4 +194,5 @@ def _comment(text: str) -> list[str]:
 
 
 if __name__ == "__main__":
-    asset_path(FILE).write_text(typescript(), "utf-8")
+    for name, text in files().items():
+        asset_path(name).write_text(text, "utf-8")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
-from onpath.app.channel.messages import FieldValue, FormField, FormOption
+from onpath.app.channel.messages import FieldValue, FormField, FormNeed, FormOption
 from onpath.lessons.labels import option_label, parameter_help, parameter_label, parameter_unit
 from onpath.lessons.words import Words
 from onpath.models.control.laws.registry import LAWS, law_named
@@ -27,28 +28,64 @@ def setting_field(
     *,
     default: FieldValue,
     mark: FieldValue | None = None,
+    options: Sequence[Any] = (),
     section: str = "",
 ) -> FormField:
-    """The field of a declared setting."""
-    choice = bool(spec.options)
+    """The field of a declared setting.
+
+    Args:
+        options: those of a choice that a page has; by default all.
+    """
+    unit, factor = spec.shown_in or (parameter_unit(name, spec, words), 1.0)
+    offered = options or (spec.options if spec.kind == "choice" else ())
     return FormField(
         name=name,
-        kind="choice" if choice else "number",
+        kind=spec.kind,
         label=parameter_label(name, spec, words),
-        unit=parameter_unit(name, spec, words),
+        symbol=spec.symbol,
+        unit=unit,
         help=parameter_help(name, spec, words),
         low=spec.low,
         high=spec.high,
         step=spec.step,
+        factor=factor,
+        scale=spec.scale,
         on=spec.on,
         options=tuple(
-            FormOption(value=option, label=option_label(name, option, words))
-            for option in spec.options
+            FormOption(value=each, label=option_label(name, each, words)) for each in offered
+        ),
+        needs=tuple(
+            FormNeed(name=need.name, of=need.of, others=need.others) for need in spec.needs
         ),
         default=default,
         mark=mark if mark != default else None,
         section=section,
     )
+
+
+def drawing_field(name: str, words: Words, mark: bool | None = None) -> FormField:
+    """The field of something that is drawn besides the robots."""
+    key = f"show.{name}"
+    return FormField(
+        name=name,
+        kind="switch",
+        label=words(key),
+        help=words(f"{key}_hint"),
+        default=False,
+        mark=mark or None,
+    )
+
+
+def choice_field(
+    name: str, label: str, options: Mapping[str, FieldValue], *, default: FieldValue
+) -> FormField:
+    """The field of a choice among things with names of their own: paths, laws.
+
+    Args:
+        options: label -> value.
+    """
+    offered = tuple(FormOption(value=value, label=text) for text, value in options.items())
+    return FormField(name=name, kind="choice", label=label, options=offered, default=default)
 
 
 _PLAIN = (*("form.changed", "form.is_on", "form.off", "form.use"),)

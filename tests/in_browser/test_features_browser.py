@@ -69,7 +69,7 @@ ROWS = {
     "hold back along the path, pull, pause, step, reset": Row(said=PARTS),
     "hold across the path": Row(names=(SETTINGS["hold_direction"].spec.label,)),
     "speed, gains, and other numbers of the loop's settings": Row(
-        (".slider input",), names=_labels("K1", "K2")
+        (".form input",), names=_labels("K1", "K2")
     ),
     "parameters that need another loop (torque limit, delay, modes)": Row(
         names=_labels("torque_limit", "delay")
@@ -80,7 +80,7 @@ ROWS = {
     "points added and removed, freehand strokes, undo": Row(
         said=("design.add", "design.remove", "design.draw", "design.undo")
     ),
-    "poles, in words and numbers": Row((".poles span",)),
+    "poles, in words and numbers": Row((".form [data-kind=note]",)),
     "distance over time": Row((".plot canvas",), ("chart.title",)),
     "a lens on each end-point": Row((".lens canvas",)),
     "slow motion": Row((".transport select",)),

@@ -492,11 +492,11 @@ def test_a_law_is_chosen_for_each_robot_and_its_poles_are_the_lab_s(
     for channel in channels:
         said = ENGLISH.sentence(channel.behaviour()).replace("-", "−")
         poles = channel.pole_words().replace("-", "−")
-        assert f"{said}; poles {poles} 1/s" in page.locator(".poles").inner_text()
+        assert page.get_by_text(f"{said}; poles {poles} 1/s").is_visible()
     slow = page.get_by_role("slider", name="K5")
     slow.focus()
     slow.press("Home")
-    wait_for(lambda: "not stable" in page.locator(".poles").inner_text(), WAIT)
+    page.get_by_text("not stable").wait_for()
     page.get_by_role("combobox", name="Law, left").select_option(label="Trajectory tracking")
     page.get_by_role("combobox", name="Law, right").select_option(label="Trajectory tracking")
     names = page.locator(".title").all_inner_texts()

@@ -7,22 +7,23 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import Any
 
+from onpath.app.channel.messages import FormField
 from onpath.app.exports.site.step_actions import Act, link_acts, script_acts
 from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
 from onpath.app.exports.standalone.figure_choice import FigureChoice, chosen
 from onpath.app.exports.standalone.figure_data import (
     changes_data,
     figure_data,
-    slider_data,
-    spec_data,
     stop_texts,
 )
+from onpath.app.exports.standalone.figure_form import figure_form
 from onpath.app.exports.standalone.setting_places import (
     Unsupported,
     Used,
     page_values,
     setting_places,
 )
+from onpath.app.view.forms import drawing_field, setting_field
 from onpath.lessons.action_schema import Action, SceneMark, Script, StepSetup
 from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
@@ -181,14 +182,14 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
         for law in choice.every_law
     ]
     changes = changes_data(choice, figure.used)
-    views = [view_data(name, words) for name in figure.views]
+    views = [view_field(name, value, words) for name, value in figure.views.items()]
     return {
         **data,
         "laws": [
             {**law, "stops": texts, **names}
             for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
         ],
-        "sliders": [*(slider_data(choice, name, words) for name in choice.sliders), *views],
+        "form": figure_form(choice, words, "step", views),
         "changes": changes | {"values": changes["values"] | figure.views},
         "drawings": drawings_data(choice, figure.drawings, figure.marks, words),
         "controls": choice.controls,
@@ -269,13 +270,16 @@ def _drawings(scene: StepSetup, figure: FigureChoice) -> tuple[str, ...]:
     return (*names, *larger, *zone)
 
 
-def view_data(name: str, words: Words) -> dict[str, Any]:
-    """The control of something in the picture."""
-    if name in SETTINGS:
-        return spec_data(name, SETTINGS[name].spec, words)
-    key = f"show.{name}"
-    label, text = words(key), words(f"{key}_hint")
-    return {"name": name, "kind": "switch", "label": label, "unit": "", "help": text, **NO_RANGE}
+def view_field(name: str, value: float | bool, words: Words) -> FormField:
+    """The field of something in the picture.
+
+    Args:
+        value: of the step.
+    """
+    if name not in SETTINGS:
+        return drawing_field(name, words, mark=bool(value))
+    setting = SETTINGS[name]
+    return setting_field(name, setting.spec, words, default=setting.default, mark=value)
 
 
 def _expanded(controls: Iterable[str]) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import gzip
 import math
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict
 from types import MappingProxyType
 from typing import Any
@@ -15,6 +15,7 @@ import numpy as np
 
 from onpath.app.exports.standalone.drawings import drawings_data
 from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.figure_form import figure_form
 from onpath.app.exports.standalone.figure_module import (
     design_of,
     figure_module,
@@ -23,18 +24,12 @@ from onpath.app.exports.standalone.figure_module import (
 )
 from onpath.app.exports.standalone.figure_words import figure_words
 from onpath.app.exports.standalone.loop_variants import variants_of
-from onpath.app.exports.standalone.setting_places import Used, page_values, setting_places
+from onpath.app.exports.standalone.setting_places import Used, setting_places
 from onpath.app.lab.path_editor import BLEND, HALVINGS
 from onpath.app.lab.plot_rows import row_data
 from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.scene.captions import FULL, OFF, RETURNS
-from onpath.lessons.labels import (
-    parameter_help,
-    parameter_label,
-    parameter_unit,
-    path_label,
-    value_label,
-)
+from onpath.lessons.labels import path_label
 from onpath.lessons.sides import law_text, law_titles
 from onpath.lessons.words import Words
 from onpath.models.arrays import Array
@@ -59,7 +54,6 @@ from onpath.models.standalone.fit import FINE, PIECE
 from onpath.models.standalone.poles import BEHAVIOURS, SLOW, STEPS, roots_scan
 from onpath.models.systems.efforts import efforts
 from onpath.models.systems.law_parameters import LEVEL_SET
-from onpath.models.systems.parameter_specs import Spec
 from onpath.models.systems.parameters import time_step
 from onpath.models.systems.robots import Robot
 
@@ -107,12 +101,11 @@ def figure_data(
         "drawings": drawings_data(figure, (), (), words),
         "loops": loops_data(figure),
         "changes": changes_data(figure),
-        "choices": [figure.every_law.index(law) for law in _choices(figure)],
         "paths": [
             {"label": path_label(name, words), **path}
             for name, path in zip(curves, numbers["paths"], strict=True)
         ],
-        "sliders": [slider_data(figure, name, words) for name in figure.sliders],
+        "form": figure_form(figure, words),
         "controls": figure.controls,
         "front": front_of(robot).tolist(),
         "box": numbers["box"],
@@ -194,11 +187,6 @@ def _sides(figure: FigureChoice) -> list[dict[str, Any]]:
     ]
 
 
-def _choices(figure: FigureChoice) -> tuple[str, ...]:
-    """The laws from which a reader may choose."""
-    return figure.every_law if figure.choices else ()
-
-
 def _laws(figure: FigureChoice, words: Words) -> list[dict[str, Any]]:
     titles, curve = law_titles(figure.every_law, words), next(iter(figure.paths.values()))
     return [
@@ -245,28 +233,6 @@ def _path(figure: FigureChoice, name: str, curve: Curve) -> dict[str, Any]:
         "settings": figure.settings(figure.planned, curve).tolist(),
         "points": design.points.tolist() if figure.edits else [],
         "fit": fit_name(design),
-    }
-
-
-def slider_data(figure: FigureChoice, name: str, words: Words) -> dict[str, Any]:
-    """A control of a parameter: its words, and its range or options."""
-    spec = specs(type(figure.parameters))[name]
-    return spec_data(name, spec, words, page_values(figure, name, {}) if spec.options else ())
-
-
-def spec_data(name: str, spec: Spec, words: Words, options: Sequence[Any] = ()) -> dict[str, Any]:
-    """A control of something that is declared."""
-    low_on_grid = spec.step * math.ceil(spec.low / spec.step) if spec.step else 0.0
-    return {
-        "name": name,
-        "kind": "choice" if options else "number",
-        "label": parameter_label(name, spec, words),
-        "unit": parameter_unit(name, spec, words),
-        "help": parameter_help(name, spec, words),
-        "low": low_on_grid if spec.low < 0 else spec.low,  # so that 0 is one of the steps
-        "high": spec.high,
-        "step": spec.step,
-        "options": [{"value": each, "label": value_label(name, each, words)} for each in options],
     }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from onpath.app.view.forms import form_words
 from onpath.lessons.sides import law_titles
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.trajectory import Trajectory
@@ -25,7 +26,7 @@ PLAIN = (
     *("run.rate", "past.go_on", "transport.go_on_hint", "transport.back", "transport.back_hint"),
     *("run.hold_both", "run.hold", "run.let_both_go", "run.let_go", "run.hold_hint"),
     *("run.run", "run.pause", "run.run_hint", "run.step", "run.reset", "key.reset", "key.right"),
-    *("standalone.path", "standalone.law", "standalone.late"),
+    "standalone.late",
     *("standalone.coincide", "standalone.drag_hint"),
     *("gains.across", "gains.along"),
     *(f"side.{side}" for side in SIDES),
@@ -77,4 +78,4 @@ def figure_words(words: Words) -> dict[str, str]:
     messages["error.path_too_short"] = words(
         "error.path_too_short", length="{length}", least=shortest
     )
-    return messages | {"point": words("report.point")}
+    return messages | form_words(words)

@@ -1,6 +1,7 @@
 // The messages of the channel between a page and its lab, made by app/channel/typescript.py from
 // app/channel/messages.py and app/lab/commands: change them there.
 
+import type { FormMessage, ValuesMessage } from "../core/form_data"
 import type { RowData } from "../core/engine"
 import type { ChartData, Curves, StepData } from "../core/lesson_data"
 import type { Notes } from "../lessons/notes"
@@ -440,86 +441,6 @@ export interface MeasuredMessage {
     verdicts: Record<string, Verdict[]>
     /** while a script runs: the curves so far of the predicted quantity, three times a second; else null. */
     truth: Curves | null
-}
-
-/** A value that may be chosen. */
-export interface FormOption {
-    value: number | string | boolean
-    label: string
-    help?: string
-    /** an outline: a path of SVG in a square from -50 to 50, up is negative. */
-    picture?: string
-}
-
-/** A condition under which a field acts: another one has one of these values. */
-export interface FormNeed {
-    name: string
-    /** none: any but 0, "off" and false. */
-    of?: (number | string | boolean)[]
-}
-
-/** A row of a form. Its value is told by its name; a note's is what it says. */
-export interface FormField {
-    name: string
-    kind: "button" | "choice" | "note" | "number" | "switch" | "text"
-    label: string
-    symbol?: string
-    unit?: string
-    /** what one will see, in a sentence. */
-    help?: string
-    /** range of a number. */
-    low?: number
-    /** range of a number. */
-    high?: number
-    /** range of a number. */
-    step?: number
-    /** how many of `unit` make one unit of the value. */
-    factor?: number
-    scale?: "linear" | "log"
-    /** the number to which a switch sets it, if 0 is off. */
-    on?: number | null
-    options?: FormOption[]
-    needs?: FormNeed[]
-    /** to which one goes back; None: there is no way back. */
-    default?: number | string | boolean | null
-    /** the value of a lesson's step. */
-    mark?: number | string | boolean | null
-    /** the command that a button sends. */
-    act?: Command | null
-    /** of a note or a button: "main", "warning" or none. */
-    tone?: string
-    /** a heading above all fields of the same section. */
-    section?: string
-}
-
-/** Fields that belong together. */
-export interface FormGroup {
-    name: string
-    title: string
-    fields: FormField[]
-    /** "first": seen at once; "deeper": to be opened. */
-    level?: "deeper" | "first"
-    /** names of the fields whose values make its line while it is closed. */
-    states?: string[]
-    /** its line while nothing in it is on. */
-    rest?: string
-}
-
-/** All fields of a place. */
-export interface FormMessage {
-    is: "form"
-    place: "figure" | "lab" | "step"
-    groups: FormGroup[]
-    /** what the place lacks, in one line; empty if nothing. */
-    lacks?: string
-}
-
-/** Values of fields: all of them at first, then those that have changed. */
-export interface ValuesMessage {
-    is: "values"
-    values: Record<string, number | string | boolean>
-    /** why the last value of a setting was refused; empty: it was not. */
-    refused?: Record<string, string>
 }
 
 /** How far the server is with a file of the page. */

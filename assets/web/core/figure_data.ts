@@ -1,6 +1,7 @@
 // The data that Python puts into the page: see app/exports/standalone/figure_data.py.
 
 import type { RowData } from "./engine"
+import type { FormMessage } from "./form_data"
 
 /** Index of the first number in a flat vector, and how many there are. */
 export type Place = [number, number]
@@ -37,10 +38,6 @@ export interface PathData extends Texts<"label" | "kind" | "fit"> {
 
 /** The value of a parameter: a number, or one of some options; or whether something is shown. */
 export type Setting = number | string | boolean
-
-/** A control of a parameter: a number within a range, or one of the options, if there are any. */
-export type SliderData = Texts<"name" | "label" | "unit" | "help"> & Numbers<"low" | "high" | "step"> &
-    { kind: "number" | "choice" | "switch"; options: { value: Setting; label: string }[] }
 
 /** The parameters that may change: their first values, and where they act in the settings of the loops. */
 export interface ChangesData {
@@ -91,10 +88,9 @@ export interface FigureData extends Texts<"language" | "module"> {
     drawings: DrawingsData
     loops: LoopsData
     changes: ChangesData
-    /** Laws from which readers may choose. */
-    choices: number[]
     paths: PathData[]
-    sliders: SliderData[]
+    /** The settings that readers may change. */
+    form: FormMessage
     controls: string[]
     /** Directions to the right and up in the plane of the path, as in `front_of` in models. */
     front: [number[], number[]]

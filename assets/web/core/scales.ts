@@ -28,8 +28,9 @@ export class Scale {
 
     /** The number at a place of the slider: a multiple of a step. */
     at(place: number): number {
+        if (place <= 0 || place >= 1) return place <= 0 ? this.low : this.high
         const [low, high] = [this.bent(this.low), this.bent(this.high)]
-        return this.rounded(this.straight(low + Math.min(Math.max(place, 0), 1) * (high - low)))
+        return this.rounded(this.straight(low + place * (high - low)))
     }
 
     /** The nearest multiple of the step at this number. */

@@ -1,22 +1,22 @@
 // Builds a figure in a page, and runs its time.
 
-import { isTyped, keyOf, made, tell } from "../core/dom"
+import { made, tell } from "../core/dom"
 import type { Point } from "../core/figure_data"
 import { said, withoutNumbers } from "../core/words"
 import { notes, spoken } from "../simulation/captions"
 import { LocalEngine } from "../simulation/local"
 import type { Simulation } from "../simulation/simulation"
+import { Form } from "../parts/form"
 import { Lens } from "../parts/lens"
 import { Strip } from "../parts/strip"
+import { Transport } from "../parts/transport"
 import { View } from "../parts/view"
-import { Controls } from "./controls"
+import { hearKeys } from "./figure_keys"
+import { LocalSettings } from "./settings"
 
 const SILENCE = 3000 // [ms], at least, between two announcements of the same kind
 const LATE = 0.15 // [s] lost lately, above which the page says that time runs late
 const TRACE = 4 // [s], of the tips' traces
-const PULL = 0.03 // [m], by which a key pulls
-const FURTHER = 0.005 // [m], by which a key pulls further in a lesson, as in the lab
-const PULLS: Record<string, Point> = { a: [-1, 0], d: [1, 0], w: [0, 1], s: [0, -1] }
 
 export class Figure {
     readonly engine = new LocalEngine(this.simulation, !this.inLesson)
@@ -29,8 +29,9 @@ export class Figure {
     private readonly live = made("p", "live")
     private readonly note = made("p", "note")
     private readonly late = made("p", "late") // which moves nothing when it comes and goes
-    private readonly poles = made("p", "poles")
-    readonly controls = new Controls(this.simulation, this, this.ended)
+    readonly transport = new Transport(this.data, this.engine, this.data.controls, this.ended)
+    /** The settings that one may change; a page may put it elsewhere. */
+    readonly form = new Form(this.data.form, new LocalSettings(this.simulation, () => this.changed()), this.ended)
     private pending: (() => void) | null = null // a drag to be handled before the next picture
     private stale = true
     private kind = ""
@@ -47,7 +48,7 @@ export class Figure {
         this.live.setAttribute("role", "status")
         into.replaceChildren(...this.parts())
         for (const view of this.views) this.grabs(view)
-        if (this.data.controls.includes("pull")) this.keys()
+        hearKeys(this, inLesson, ended)
         this.engine.on(() => (this.stale = true), ended)
         this.changed()
         requestAnimationFrame(() => this.frame())
@@ -64,7 +65,7 @@ export class Figure {
             view.larger = Number(simulation.values["larger"] ?? 1)
             view.drawings.shown = shown
         }
-        this.poles.replaceChildren(...simulation.lines().map(line => made("span", "", line)))
+        this.form.update()
         this.titles.forEach((element, i) => {
             const law = (element.textContent = simulation.title(i))
             element.title = simulation.sides[i]!.does().text
@@ -84,13 +85,12 @@ export class Figure {
     readonly advance = (ticks: number) => this.simulation.advance(ticks)
 
     private parts(): HTMLElement[] {
-        const { data, controls } = this
+        const { data, transport } = this
         const robots = this.views.map((view, i) => {
             const heading = made("h2", `title side${this.engine.texts[i]!.side}`, this.titles[i]!, " ", this.captions[i]!)
             view.canvas.setAttribute("role", "img")
             return made("section", "robot", heading, made("div", "seen", view.canvas, this.lenses[i]!.element))
         })
-        const { transport } = controls
         const strip = data.controls.includes("plot") ? [this.strip.element] : []
         if (strip.length) transport.element.append(this.strip.menu.element)
         return [
@@ -98,8 +98,7 @@ export class Figure {
             this.note,
             made("div", "bar", transport.element, this.late),
             ...strip,
-            controls.element,
-            ...(data.controls.includes("poles") ? [this.poles] : []),
+            ...(this.inLesson ? [] : [this.form.element]), // a step has it in its card
             this.live,
         ]
     }
@@ -184,23 +183,5 @@ export class Figure {
                 act(null)
                 grabbed = null
             })
-    }
-
-    /** Keys pull: while one is pressed, or in a lesson a little further each time, until X lets go. */
-    private keys(): void {
-        const { simulation, inLesson, ended: signal } = this
-        let pulling = "" // the key that pulls
-        addEventListener("keydown", event => {
-            const key = keyOf(event), direction = PULLS[key]
-            if (isTyped(event) || (event.repeat && !inLesson)) return
-            if (inLesson && key === "x") simulation.pull(null)
-            if (!direction) return
-            pulling = key
-            const [x, y] = (inLesson && simulation.sides.find(side => side.pulledBy)?.pulledBy) || [0, 0]
-            const step = inLesson ? FURTHER : PULL
-            simulation.pull([x + step * direction[0], y + step * direction[1]])
-        }, { capture: true, signal }) // also while a slider has the focus
-        addEventListener("keyup", event => !inLesson && keyOf(event) === pulling && simulation.pull(null), { capture: true, signal })
-        addEventListener("blur", () => simulation.pull(null), { signal })
     }
 }

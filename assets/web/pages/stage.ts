@@ -42,6 +42,7 @@ export class Stage {
 
     close(): void {
         this.ended.abort()
+        this.figure.form.element.remove()
         this.into.replaceChildren()
     }
 
@@ -54,27 +55,29 @@ export class Stage {
         this.figure.engine.act({ do: "run", on })
     }
 
-    /** Perform a link's actions; sliders follow. */
+    /** Perform a link's actions; the form follows. */
     act(actions: Action[]): void {
         for (const action of actions) {
             if (action.run !== undefined) this.run(action.run)
             else this.simulation.act(action)
-            if (action.reset || action.path !== undefined || action.laws) this.figure.changed()
         }
-        this.figure.controls.tell()
+        this.figure.changed()
     }
 
     /** Play a script from the step's beginning; `ended` gets whether all of it was played, or a reset came. */
     play(script: Script, ended: (whole: boolean) => void): void {
         const { simulation, figure } = this
         const go = (rate: number) => figure.engine.act({ do: "rate", rate })
-        simulation.play(script, action => action.rate && go(action.rate), whole => {
+        const told = (action: Action) => {
+            if (action.rate) go(action.rate)
+            figure.form.update()
+        }
+        simulation.play(script, told, whole => {
             go(1)
             if (whole) this.run(false)
             ended(whole)
         })
         figure.changed()
-        this.figure.controls.tell()
         this.run(true)
     }
 }

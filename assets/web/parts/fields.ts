@@ -1,7 +1,7 @@
 // The rows of a form: a setting each, or a button, or a note. While a hand is on a row, it shows what the hand wants.
 
 import { made, tell } from "../core/dom"
-import type { FormField, FormOption } from "../channel/messages"
+import type { FormField, FormOption } from "../core/form_data"
 import { Scale, typedNumber } from "../core/scales"
 import { said, written, type Texts } from "../core/words"
 
@@ -51,8 +51,8 @@ export abstract class Row {
     private last = -Infinity // touch
     private readonly refusal = made("p", "refusal")
     private readonly back = made("button", "back")
-    private resting = 0 // timers
-    private telling = 0
+    private resting: ReturnType<typeof setTimeout> | undefined
+    private telling: ReturnType<typeof setTimeout> | undefined
 
     constructor(public field: FormField, protected readonly form: RowForm, protected readonly signal: AbortSignal) {
         this.element = made("div", "field")
@@ -106,7 +106,7 @@ export abstract class Row {
         const refused = this.refused || host.refused(field.name)
         if (wanted !== null && !this.holds && same(wanted, value)) this.wanted = null
         const differs = !refused && this.wanted !== null && !this.holds
-        if (differs) this.telling ||= window.setTimeout(() => this.forget(), TOLD)
+        if (differs) this.telling ??= setTimeout(() => this.forget(), TOLD)
         this.element.classList.toggle("differs", differs)
         tell(this.refusal, differs ? said(host.texts, "form.differs", { value: this.words(wanted!) }) : refused)
         for (const input of this.inputs) {
@@ -117,7 +117,7 @@ export abstract class Row {
     }
 
     private forget(): void {
-        this.telling = 0
+        this.telling = undefined
         if (this.holds) return
         this.wanted = null
         this.update()
@@ -154,7 +154,7 @@ export abstract class Row {
         this.down = down
         this.last = performance.now()
         clearTimeout(this.resting)
-        if (!down && this.wanted !== null) this.resting = window.setTimeout(() => this.form.changed(), RESTS + 1)
+        if (!down && this.wanted !== null) this.resting = setTimeout(() => this.form.changed(), RESTS + 1)
     }
 
     /** The name with its unit, as a screen reader says it. */
@@ -164,10 +164,10 @@ export abstract class Row {
     }
 
     protected title(of: HTMLElement): void {
-        const { label, symbol, unit, help = "" } = this.field
-        const own = symbol && !label.startsWith(symbol) ? [made("i", "symbol", symbol), ` ${label}`] : [label]
-        of.replaceChildren(...own, ...(unit ? [" ", made("span", "unit", unit)] : []))
-        of.title = help
+        const { symbol = "", unit, help = "" } = this.field
+        const typed = `${plain(symbol)} `, label = symbol && this.field.label.startsWith(typed) ? this.field.label.slice(typed.length) : this.field.label
+        of.replaceChildren(...(symbol ? [made("i", "symbol", symbol), " "] : []), label, ...(unit ? [" ", made("span", "unit", unit)] : []))
+        this.element.title = help
     }
 
     /** Put the parts of the row together, with its way back and its refusal. */
@@ -253,7 +253,6 @@ class NumberRow extends Row {
         slider.ariaLabel = box.ariaLabel = label
         if (this.toggle) this.toggle.ariaLabel = field.label
         for (const element of this.inputs) describe(element, field.help)
-        slider.title = field.help ?? ""
         for (const [mark, value] of [[marks[0]!, field.default], [marks[1]!, field.mark]] as const) {
             mark.hidden = typeof value !== "number" || (this.toggle !== null && value === 0)
             if (!mark.hidden) mark.style.setProperty("--at", this.scale.place(this.inUnits(value!)).toFixed(4))
@@ -371,7 +370,6 @@ class ChoiceRow extends Row {
         const { select, field } = this
         this.title(this.heading)
         select.ariaLabel = field.label
-        select.title = field.help ?? ""
         describe(select, field.help)
         const options = field.options ?? [], offered = JSON.stringify(options)
         if (offered === this.offered) return // a menu stays open
@@ -476,7 +474,7 @@ class ButtonRow extends Row {
     protected name(): void {
         const { button, field } = this
         tell(button, field.label)
-        button.title = field.help ?? ""
+        this.element.title = field.help ?? ""
         button.classList.toggle("main", field.tone === "main")
         describe(button, field.help)
     }
@@ -597,6 +595,11 @@ function switchInput(id: string): HTMLInputElement {
     const input = Object.assign(made("input", "switch"), { type: "checkbox", id })
     input.setAttribute("role", "switch")
     return input
+}
+
+/** A symbol as one types it: K1 for K₁. */
+function plain(symbol: string): string {
+    return symbol.replaceAll(/[₀-₉]/g, digit => String("₀₁₂₃₄₅₆₇₈₉".indexOf(digit)))
 }
 
 function describe(element: HTMLElement, text = ""): void {

@@ -87,6 +87,14 @@ export class StepView {
         return Boolean(this.notes.played[String(this.index)]) || !this.page.steps[this.index]!.script
     }
 
+    /** Put the settings that the step needs below the text of its first task, or below all its text. */
+    offer(form: HTMLElement): void {
+        const task = this.page.steps[this.index]!.blocks.findIndex(block => block.kind === "task")
+        const text = task >= 0 && this.block(task)?.firstElementChild
+        if (text) text.after(form)
+        else this.places.section.querySelector(".words")!.append(form)
+    }
+
     /** Put the board into the strip below the robots or, on a narrow page, below its question. */
     place(): void {
         const { board } = this.form ?? {}

@@ -22,7 +22,7 @@ from onpath.app.channel.messages import (
     encoded_changes,
 )
 from onpath.app.channel.reading import NoPageMessage, read_message
-from onpath.app.channel.typescript import FILE, typescript
+from onpath.app.channel.typescript import files
 from onpath.app.lab.commands import Hold
 from onpath.app.lab.commands.command_codec import LONGEST, MOST_WHY
 from onpath.app.lab.lab import Command
@@ -45,7 +45,8 @@ SENT = [
 
 def test_the_types_of_the_pages_script_are_those_of_the_messages() -> None:
     """Else: `python -m onpath.app.channel.typescript`."""
-    assert asset_path(FILE).read_text("utf-8") == typescript()
+    for name, text in files().items():
+        assert asset_path(name).read_text("utf-8") == text
 
 
 @pytest.mark.parametrize("union", [PageMessage, messages.LabMessage])

@@ -12,7 +12,8 @@ import pytest
 import onpath
 from onpath.app.cli.main import run_command
 from onpath.app.exports.standalone.figure_choice import chosen
-from onpath.app.exports.standalone.figure_data import slider_data
+from onpath.app.exports.standalone.figure_data import changes_data
+from onpath.app.exports.standalone.figure_form import setting_of
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.setups.capture import capture
@@ -95,5 +96,6 @@ def test_it_is_exported_with_sliders_for_its_gains(tmp_path: Path) -> None:
     assert "Sliding mode" in file.read_text("utf-8")
     figure = chosen("five_bar", (LAW,), {"circle": circle(0.05)}, {"reach": 3.0})
     assert {"boundary", "reach"} <= {*figure.sliders}
-    german = slider_data(figure, "reach", Words("de"))
-    assert (german["label"], german["value"]) == ("Reach", 3.0) and german["place"] > 0
+    german = setting_of(figure, "reach", Words("de"))
+    assert (german.label, german.default) == ("Reach", 3.0)
+    assert changes_data(figure)["places"]["reach"] > 0

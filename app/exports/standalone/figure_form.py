@@ -1,0 +1,80 @@
+"""What a reader of a figure may set, as a form for its page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, Literal
+
+import msgspec
+
+from onpath.app.channel.messages import FormField, FormGroup, FormMessage
+from onpath.app.exports.standalone.figure_choice import FigureChoice
+from onpath.app.exports.standalone.setting_places import page_values
+from onpath.app.view.forms import choice_field, setting_field
+from onpath.lessons.labels import path_label
+from onpath.lessons.sides import law_titles
+from onpath.lessons.words import Words
+from onpath.models.control.settable import specs, value_of
+from onpath.models.control.sides import RIGHT, SIDES
+
+
+def figure_form(
+    figure: FigureChoice,
+    words: Words,
+    place: Literal["figure", "step"] = "figure",
+    more: Iterable[FormField] = (),
+) -> dict[str, Any]:
+    """The form as data for JSON.
+
+    Args:
+        place: in a step, the figure's values are marked, and one goes back to them.
+        more: further fields.
+    """
+    fields = [setting_of(figure, name, words, place) for name in figure.sliders]
+    if "poles" in figure.controls:
+        fields.append(FormField(name="poles", kind="note", label=""))
+    choices = (*_choices_of_path(figure, words), *_choices_of_law(figure, words))
+    group = FormGroup(
+        name="figure", title=words("lesson.controls"), fields=(*choices, *fields, *more)
+    )
+    form = FormMessage(place=place, groups=(group,) if group.fields else ())
+    return msgspec.to_builtins(form)
+
+
+def setting_of(figure: FigureChoice, name: str, words: Words, place: str = "figure") -> FormField:
+    """The field of a parameter or gain, with the options that the page has."""
+    parameters, spec = figure.parameters, specs(figure.parameters)[name]
+    usual = parameters if place == "figure" else type(parameters)()
+    return setting_field(
+        name,
+        spec,
+        words,
+        default=value_of(usual, name),
+        mark=value_of(parameters, name),
+        options=page_values(figure, name, {}) if spec.options else (),
+    )
+
+
+def _choices_of_path(figure: FigureChoice, words: Words) -> list[FormField]:
+    if len(figure.paths) < 2 or "path" not in figure.controls:
+        return []
+    options = {path_label(name, words): i for i, name in enumerate(figure.paths)}
+    return [choice_field("path", words("standalone.path"), options, default=0)]
+
+
+def _choices_of_law(figure: FigureChoice, words: Words) -> list[FormField]:
+    if not figure.choices:
+        return []
+    titles = law_titles(figure.every_law, words)
+    offered = dict.fromkeys((*figure.laws, *figure.choices))
+    options = {titles[law]: figure.every_law.index(law) for law in offered}
+    label, sides = words("standalone.law"), SIDES if len(figure.laws) > 1 else (RIGHT,)
+    return [
+        choice_field(
+            side,
+            label if len(sides) == 1 else f"{label}, {words(f'side.{side}')}",
+            options,
+            default=figure.every_law.index(law),
+        )
+        for side, law in zip(sides, figure.laws, strict=True)
+    ]

@@ -1,0 +1,39 @@
+// The settings of a page without a server: what its form shows is the simulation's.
+
+import type { FormField } from "../core/form_data"
+import type { FigureData } from "../core/figure_data"
+import type { FormHost, Value } from "../parts/fields"
+import type { Side } from "../simulation/side"
+import type { Simulation } from "../simulation/simulation"
+
+const SIDES = ["left", "right"]
+
+export class LocalSettings implements FormHost {
+    readonly texts: FigureData = this.simulation.data
+
+    /** `changed` is called after each change. */
+    constructor(private readonly simulation: Simulation, private readonly changed: () => void) {}
+
+    value(name: string): Value | undefined {
+        const { simulation } = this, side = this.side(name)
+        if (side) return side.law
+        if (name === "path") return simulation.path
+        return name === "poles" ? simulation.lines().join("\n") : simulation.values[name]
+    }
+
+    set(name: string, value: Value): void {
+        const { simulation } = this, side = this.side(name)
+        if (side) side.change(Number(value))
+        else if (name === "path") simulation.choose(Number(value))
+        else simulation.set({ [name]: value })
+        this.changed()
+    }
+
+    act(_: FormField): void {}
+
+    refused(): string { return "" }
+
+    private side(name: string): Side | undefined {
+        return this.simulation.sides.find(each => SIDES[each.data.side] === name)
+    }
+}
