@@ -10,6 +10,7 @@ import pytest
 
 from onpath.app.lab.dry_runs.step_truth import computed_truth
 from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.words import ENGLISH
 from tests.support.site_export import LESSON, exported_site
 from tests.support.site_reader import WAIT, SiteReader
 from tests.support.waiting import wait_for
