@@ -439,5 +439,5 @@ def described(spec: Spec, default: Any) -> str:
 def _columns(spec: Spec, default: Any) -> tuple[str, str, str]:
     """Default, range or options, and unit."""
     if spec.options:
-        return str(default), ", ".join(map(str, spec.options)), ""
+        return str(default), ", ".join(map(str, spec.options)), spec.unit
     return f"{default:g}", f"{spec.low:g} to {spec.high:g}", spec.unit

@@ -1124,7 +1124,7 @@ parameter-profile_period-help = Periode des Sinus und von Halt und Fahrt; beim A
 parameter-target-label = Ziel
 parameter-target-help = wo er stehen bleiben soll, beim Auftrag Ort
 
-parameter-across-label = Quer heißt
+parameter-across-label = Quer gemessen
 parameter-across-help = was quer zur Bahn gemessen wird: der Abstand, oder s(y) wie im Artikel in m² (Ellipsen; auf der Kommandozeile auch Polynome, in m)
 parameter-across-option-distance = Abstand
 parameter-across-option-level_set = Niveaumenge
@@ -1132,12 +1132,12 @@ parameter-across-option-level_set = Niveaumenge
 parameter-torque_limit-label = Motorgrenze
 parameter-torque_limit-help = mehr geben die Motoren nicht her; 0: keine Grenze
 
-parameter-at_limit-label = An der Grenze
+parameter-at_limit-label = An der Motorgrenze
 parameter-at_limit-help = was geschieht, wenn eine Motorgrenze erreicht ist: Gesetze, die eine Beschleunigung verlangen, geben erst die Geschwindigkeit längs der Bahn auf, dann die Bahn; langsamer: und Bahnfolge und eingetippte Gesetze verlangen nur eine Geschwindigkeit, die die ganze Bahn zulässt; abschneiden: keins von beiden
 parameter-at_limit-option-across_first = quer zuerst
 parameter-at_limit-option-slow_down = langsamer
 parameter-at_limit-option-cut = abschneiden
-parameter-at_limit_for-label = Gibt nach
+parameter-at_limit_for-label = Gesetze, die nachgeben
 parameter-at_limit_for-help = welche Gesetze an einer Motorgrenze Geschwindigkeit längs der Bahn aufgeben: alle, die eine Beschleunigung verlangen, oder nur Bahnfolgeregelung und eingetippte Gesetze
 parameter-at_limit_for-option-all = alle Gesetze
 parameter-at_limit_for-option-path_following = nur Bahnfolge
@@ -1206,33 +1206,33 @@ parameter-strain_noise-label = Rauschen der Dehnmessstreifen
 parameter-strain_noise-help = Standardabweichung der Durchbiegung an der Spitze, wie die Dehnmessstreifen sie messen
 
 parameter-control_rate-label = Reglertakt
-parameter-control_rate-help = wie oft der Regler eingreift, Hz. Die Pole bei den Verstärkungen gelten für eine Beschleunigung, die dazwischen gehalten wird; gehalten wird das Drehmoment, sodass das größte K2 bei 50 und 100 Hz um 1 bis 3 % über ihrem liegt
+parameter-control_rate-help = wie oft der Regler eingreift. Die Pole bei den Verstärkungen gelten für eine Beschleunigung, die dazwischen gehalten wird; gehalten wird das Drehmoment, sodass das größte K2 bei 50 und 100 Hz um 1 bis 3 % über ihrem liegt
 
-parameter-error_inertia-label = Fehler der Trägheit
+parameter-error_inertia-label = Fehler: Trägheit
 parameter-error_inertia-help = um so viel liegen die Trägheiten a1, a2 und a3 im Modell des Reglers daneben
 
 parameter-rise-label = Höhe der Bahn
 parameter-rise-help = um so viel steigt und fällt die Bahn, zweimal je Umlauf: ein Sattel
 
-parameter-error_inertias-label = Fehler der Trägheit
+parameter-error_inertias-label = Fehler: Trägheit
 parameter-error_inertias-help = um so viel liegen die Trägheiten a1, a2, a3 und k im Modell des Reglers daneben
 
-parameter-error_weights-label = Fehler im Gewicht
+parameter-error_weights-label = Fehler: Gewicht
 parameter-error_weights-help = um so viel liegen die Gewichte g2 und g3 im Modell des Reglers daneben
 
-parameter-error_gravity-label = Fehler im Gewicht
+parameter-error_gravity-label = Fehler: Gewicht
 parameter-error_gravity-help = um so viel liegen die Gewichte im Modell des Reglers daneben
 
-parameter-error_M11-label = Fehler in M11
+parameter-error_M11-label = Fehler: Trägheit, Motor 1
 parameter-error_M11-help = um so viel liegt M11, das Trägheitsmoment an Motor 1, im Modell des Reglers daneben
 
-parameter-error_M22-label = Fehler in M22
+parameter-error_M22-label = Fehler: Trägheit, Motor 2
 parameter-error_M22-help = um so viel liegt M22, das Trägheitsmoment an Motor 2, im Modell des Reglers daneben
 
-parameter-error_b1-label = Fehler in b1
+parameter-error_b1-label = Fehler: Reibung, Motor 1
 parameter-error_b1-help = um so viel liegt b1, die Reibung an Motor 1, im Modell des Reglers daneben
 
-parameter-error_b2-label = Fehler in b2
+parameter-error_b2-label = Fehler: Reibung, Motor 2
 parameter-error_b2-help = um so viel liegt b2, die Reibung an Motor 2, im Modell des Reglers daneben
 
 parameter-counterweights_removed-label = Gegengewichte ab
@@ -1278,7 +1278,7 @@ parameter-output-option-composite = zusammengesetzt
 parameter-tip_damping-label = Spitze dämpfen
 parameter-tip_damping-help = Dämpfungsgrad, den die Hüfte dem Balken gibt
 
-parameter-tip_prediction-label = Vorausschau
+parameter-tip_prediction-label = Vorhersage der Spitze
 parameter-tip_prediction-help = wie schnell die Durchbiegung vorhergesehen wird
 
 parameter-tip_shaping-label = Sanftes Tempo
@@ -1304,13 +1304,13 @@ parameter-frequency-help = erste Frequenz des eingespannten Balkens
 parameter-zeta-label = Dämpfung ζ
 parameter-zeta-help = Dämpfungsgrad jeder Mode
 
-parameter-error_J0-label = Fehler in J0
+parameter-error_J0-label = Fehler: Trägheit der Hüfte
 parameter-error_J0-help = um so viel liegt das Trägheitsmoment J0 der Hüfte im Modell des Reglers daneben
 
-parameter-error_rho-label = Fehler in ρ
+parameter-error_rho-label = Fehler: Masse des Balkens
 parameter-error_rho-help = um so viel liegt ρ, die Masse je Länge des Balkens, im Modell des Reglers daneben
 
-parameter-error_omega1-label = Fehler der Frequenz
+parameter-error_omega1-label = Fehler: erste Frequenz
 parameter-error_omega1-help = um so viel liegt die erste Frequenz im Modell des Reglers daneben
 
 report-title = Bericht über meine Lektionen

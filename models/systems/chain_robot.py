@@ -82,10 +82,10 @@ class ChainParameters(Parameters):
         compiles=True,
     )
     error_inertia: float = model_error(
-        "Error in inertia", "the controller's masses and inertias are off by this"
+        "Inertia error", "the controller's masses and inertias are off by this"
     )
     error_gravity: float = model_error(
-        "Error in gravity", "the controller's weights are off by this", on=10.0
+        "Weight error", "the controller's weights are off by this", on=10.0
     )
     payload: float = unknown_payload((0, 3, 0.05), on=0.2)
 

@@ -13,16 +13,26 @@ class FiveBarParameters(Parameters):
     """Parameters of the rigid five-bar: model errors, removed counterweights, payload."""
 
     error_M11: float = model_error(
-        "Error in M11", "the controller's M11, the inertia at motor 1, is off by this"
+        "Inertia error, motor 1",
+        "the controller's M11, the inertia at motor 1, is off by this",
+        symbol="M₁₁",
     )
     error_M22: float = model_error(
-        "Error in M22", "the controller's M22, the inertia at motor 2, is off by this"
+        "Inertia error, motor 2",
+        "the controller's M22, the inertia at motor 2, is off by this",
+        symbol="M₂₂",
     )
     error_b1: float = model_error(
-        "Error in b1", "the controller's b1, the friction of motor 1, is off by this", on=50.0
+        "Friction error, motor 1",
+        "the controller's b1, the friction of motor 1, is off by this",
+        on=50.0,
+        symbol="b₁",
     )
     error_b2: float = model_error(
-        "Error in b2", "the controller's b2, the friction of motor 2, is off by this", on=50.0
+        "Friction error, motor 2",
+        "the controller's b2, the friction of motor 2, is off by this",
+        on=50.0,
+        symbol="b₂",
     )
     counterweights_removed: float = number(
         0.0,

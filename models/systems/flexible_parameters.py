@@ -187,15 +187,23 @@ class FlexibleParameters(Parameters):
     )
     payload: float = unknown_payload((0, 0.1, 0.005), on=0.02, compiles=True)
     error_M11: float = model_error(
-        "Error in M11", "the controller's M11, the inertia at motor 1, is off by this"
+        "Inertia error, motor 1",
+        "the controller's M11, the inertia at motor 1, is off by this",
+        symbol="M₁₁",
     )
     error_M22: float = model_error(
-        "Error in M22", "the controller's M22, the inertia at motor 2, is off by this"
+        "Inertia error, motor 2",
+        "the controller's M22, the inertia at motor 2, is off by this",
+        symbol="M₂₂",
     )
-    error_J0: float = model_error("Error in J0", "the controller's waist inertia J0 is off by this")
+    error_J0: float = model_error(
+        "Inertia error, waist", "the controller's waist inertia J0 is off by this", symbol="J₀"
+    )
     error_rho: float = model_error(
-        "Error in ρ", "the controller's ρ, the mass per length of the link, is off by this"
+        "Mass error, link",
+        "the controller's ρ, the mass per length of the link, is off by this",
+        symbol="ρ",
     )
     error_omega1: float = model_error(
-        "Error in frequency", "the controller's first frequency is off by this", on=10.0
+        "Frequency error", "the controller's first frequency is off by this", on=10.0, symbol="ω₁"
     )

@@ -132,7 +132,7 @@ class LawParameters:
         "what to measure across the path: the distance, or the paper's s(y) in m² (ellipses; on the"
         " command line also polynomials, in m)",
         group="gains",
-        label="Across is",
+        label="Measured across",
         compiles=True,
     )
     own_gains: tuple[tuple[str, float], ...] = ()

@@ -129,13 +129,20 @@ def number(
 
 
 def choice(
-    default: Any, options: tuple[Any, ...], text: str, *, group: str, label: str, **more: Any
+    default: Any,
+    options: tuple[Any, ...],
+    text: str,
+    *,
+    group: str,
+    label: str,
+    unit: str = "",
+    **more: Any,
 ) -> Any:
     """A dataclass field for one of `options`; see `number`."""
     spec = Spec(
         group=group,
         label=label,
-        unit="",
+        unit=unit,
         low=0.0,
         high=0.0,
         step=0.0,
@@ -164,9 +171,10 @@ def wanted_speed(default: float, bounds: tuple[float, float, float]) -> Any:
     return number(default, "rad/s", bounds, text, group="task", label="Speed")
 
 
-def model_error(label: str, text: str, on: float = 30.0) -> Any:
+def model_error(label: str, text: str, on: float = 30.0, symbol: str = "") -> Any:
     """A dataclass field for the error of a number in the controller's model, [%]."""
-    return number(0.0, "%", (-50, 50, 1), text, group="realism", label=label, on=on)
+    bounds = (-50, 50, 1)
+    return number(0.0, "%", bounds, text, group="realism", label=label, on=on, symbol=symbol)
 
 
 def unknown_payload(bounds: tuple[float, float, float], on: float, **more: Any) -> Any:

@@ -50,7 +50,7 @@ class Parameters(LawParameters):
         " path before the path; slow_down: and path following and typed laws ask only for a speed"
         " that the whole path allows; cut: neither",
         group="realism",
-        label="At the limit",
+        label="At the torque limit",
         needs=(Need("torque_limit"),),
         compiles=True,
     )
@@ -60,7 +60,7 @@ class Parameters(LawParameters):
         "which laws give up speed along the path at a torque limit: all that command an"
         " acceleration, or path following and typed laws alone",
         group="realism",
-        label="Given up by",
+        label="Laws that give way",
         needs=(Need("torque_limit"), Need("at_limit", ("across_first", "slow_down"))),
         compiles=True,
     )
@@ -139,11 +139,12 @@ class Parameters(LawParameters):
     control_rate: int = choice(
         1000,
         (50, 100, 200, 250, 500, 1000, 2000),
-        "how often the controller acts, Hz. The poles beside the gains are those of an acceleration"
+        "how often the controller acts. The poles beside the gains are those of an acceleration"
         " that is held in between; torque is held, so that at 50 and 100 Hz the largest K2 is 1 to"
         " 3 % above theirs",
         group="realism",
         label="Control rate",
+        unit="Hz",
     )
     look_ahead: str = choice(
         "half_tick",

@@ -111,10 +111,10 @@ class SpatialParameters(Parameters):
 
     rise: float = path_rise()
     error_inertias: float = model_error(
-        "Error in inertia", "the controller's inertias a1, a2, a3 and k are off by this"
+        "Inertia error", "the controller's inertias a1, a2, a3 and k are off by this"
     )
     error_weights: float = model_error(
-        "Error in gravity", "the controller's weights g2 and g3 are off by this", on=10.0
+        "Weight error", "the controller's weights g2 and g3 are off by this", on=10.0
     )
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 

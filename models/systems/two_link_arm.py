@@ -95,10 +95,10 @@ class TwoLinkParameters(Parameters):
     """Additional parameters of the arm: model errors and payload."""
 
     error_inertia: float = model_error(
-        "Error in inertia", "the controller's inertias a1, a2 and a3 are off by this"
+        "Inertia error", "the controller's inertias a1, a2 and a3 are off by this"
     )
     error_gravity: float = model_error(
-        "Error in gravity", "the controller's weights g1 and g2 are off by this", on=10.0
+        "Weight error", "the controller's weights g1 and g2 are off by this", on=10.0
     )
     payload: float = unknown_payload((0, 0.3, 0.01), on=0.1)
 

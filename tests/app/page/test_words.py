@@ -35,7 +35,7 @@ from onpath.lessons.record import PLOTS
 from onpath.lessons.vocabulary.names import CONTROLS
 from onpath.lessons.words import ELSEWHERE, ENGLISH, Words
 from onpath.models import systems
-from onpath.models.closed_loop.lab_settings import SETTINGS
+from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
 from onpath.models.control.laws.own import MEANINGS, SPACE_MEANINGS
 from onpath.models.control.laws.registry import LAWS
 from onpath.models.control.poles import channels
@@ -302,7 +302,11 @@ def test_what_stands_in_models_is_translated(words: Words) -> None:
 def test_every_robot_has_labels_in_every_language(words: Words) -> None:
     for entry in ROBOTS.values():
         assert robot_label(entry.name, words)
-        for name, spec in specs(entry.parameters).items():
+        labels = [
+            parameter_label(n, spec, words) for n, spec in lab_specs(entry.parameters).items()
+        ]
+        assert sorted(set(labels)) == sorted(labels)  # no name is used twice
+        for name, spec in lab_specs(entry.parameters).items():
             assert parameter_label(name, spec, words) and parameter_help(name, spec, words)
             shown = [option_label(name, option, words) for option in spec.options]
             assert len(set(shown)) == len(shown)
