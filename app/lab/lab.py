@@ -122,11 +122,6 @@ class Lab:
         return self.lessons.words
 
     @property
-    def draws_phase(self) -> bool:
-        """Whether a phase plane is drawn, because of the open step or of a user's choice."""
-        return self.simulation.settings.phase or "phase" in self.lessons.plots
-
-    @property
     def locked(self) -> Message | None:
         """Why time must not run now; None if it may."""
         return self.lessons.locked

@@ -52,7 +52,6 @@ class LessonRun(LessonState):
 
     Attributes:
         before: set-up of the lab before a lesson was opened.
-        plots: names of the open step's plots.
     """
 
     def __init__(self, course: Course, progress: Progress | None = None) -> None:
@@ -62,7 +61,6 @@ class LessonRun(LessonState):
         self._player: ScriptPlayer[Any] | None = None  # of the step's demonstration
         self._trace: Trace | None = None  # of the quantity during the demonstration
         self.before: Setup | None = None
-        self.plots: tuple[str, ...] = ()
         self._rate: float | None = None  # before a demonstration that changes it
 
     @property
@@ -151,7 +149,6 @@ class LessonRun(LessonState):
         """
         self.check_within("", 0)
         self.progress = replace(self.progress, lesson="", route="", ended=False)
-        self.plots = ()
         self._begin_again(lab, running=lab.simulation.running)
         if self.before is not None:
             lab.set_up(self.before)
@@ -289,7 +286,6 @@ class LessonRun(LessonState):
             self.progress = replace(self.progress, ended=True)
         self.note(step=index, seen=max(self.notes.seen, index + 1))
         lab.simulation.editor.forget_edits()  # an undo would bring the path of another step back
-        self.plots = lesson.scene_at(index).plots
         self._begin_again(lab, lesson.scene_at(index).running)
 
     def _begin_again(self, lab: LessonLab, running: bool) -> None:

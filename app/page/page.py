@@ -365,7 +365,7 @@ class Page:
         """
         folds = self._wants_folded
         if (step := self._step) is not None:
-            folds = self._low or step.is_empty or (folds and not step.has_plots)
+            folds = folds or self._low or step.is_empty
         stands = self.has_script and self._settling < SETTLING - STANDS
         if folds != self._folded and stands:
             self._folded = folds

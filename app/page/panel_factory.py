@@ -27,7 +27,6 @@ from onpath.app.page.panels.show_panel import ShowPanel
 from onpath.app.page.panels.start_panel import StartPanel
 from onpath.app.page.panels.wall_panel import WallPanel
 from onpath.app.page.panels.widgets import ParameterWidgets, Post, on_press
-from onpath.app.page.plots import MORE, MorePlots, add_plot
 from onpath.app.scene.pointer_projection import plane_coordinates
 from onpath.app.scene.scene import Scene
 from onpath.lessons.action_schema import StepSetup
@@ -46,13 +45,12 @@ FREE = (
     "wall",
     "start",
     "show",
-    "plots",
     "compare",
     "export",
     "keep",
     "copy",
 )
-IN_STRIP = ("hold", "past")
+IN_STRIP = ("hold", "past", "plots")
 """Controls of a lesson's step that the strip has; see assets/web/pages/lab.ts."""
 
 
@@ -103,9 +101,8 @@ class PanelFactory:
         on_press(self._gui.add_button(text, color="gray", icon=icon), self._reset_view)
 
     def of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        """Build the controls of a lesson's step, with its plots in sight below the sliders."""
-        sliders, plots = self._add_sliders(scene, first), self._plots_of_step(scene, first)
-        return sliders + plots + self._add_others(scene, first)
+        """Build the controls of a lesson's step."""
+        return self._add_sliders(scene, first) + self._add_others(scene, first)
 
     def _add_sliders(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
         names = [name for name in scene.controls if name in first.values and name not in CONTROLS]
@@ -118,20 +115,6 @@ class PanelFactory:
         self._scene.mouse.path_first = "editor" in scene.controls
         names = [name for name in scene.controls if name in CONTROLS and name not in IN_STRIP]
         return [part for name in names for part in self._add(name, first, True)]
-
-    def _plots_of_step(self, scene: StepSetup, first: PageSnapshot) -> list[Part]:
-        fields, large = first.key.fields, first.key.presenting
-        plots = [MORE[name] for name in scene.plots if MORE[name].field in dict(fields)]
-        return [
-            add_plot(
-                gui=self._gui,
-                words=self._words,
-                fields=fields,
-                plot=plot,
-                large=large,
-            )
-            for plot in plots
-        ]
 
     def show(self) -> Part:
         """Build the folder "Show" alone, open."""
@@ -148,12 +131,6 @@ class PanelFactory:
             "path": lambda: PathChoice(gui, words, post, first),
             "editor": lambda: self._editor(first, expanded),
             "gains": lambda: GainsPanel(gui, words, post, first),
-            "plots": lambda: MorePlots(
-                gui=gui,
-                words=words,
-                fields=first.key.fields,
-                post=post,
-            ),
             "compare": lambda: ComparePanel(gui, words, first, exporter.compare),
             "export": lambda: _silent(add_exports(gui, words, exporter)),
             "keep": lambda: KeepPanel(gui, words, post, exporter=exporter, context=self._context),

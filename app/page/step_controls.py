@@ -1,4 +1,4 @@
-"""The controls and plots of the open lesson step, rebuilt whenever another step is opened."""
+"""The controls of the open lesson step, rebuilt whenever another step is opened."""
 
 from __future__ import annotations
 
@@ -24,8 +24,7 @@ class StepControls:
         change: changes widgets in another thread; see `RebuildThread.change`.
 
     Attributes:
-        has_plots: whether the open step has plots.
-        is_empty: whether it has neither plots nor controls.
+        is_empty: whether the open step has no controls.
     """
 
     def __init__(
@@ -59,8 +58,7 @@ class StepControls:
             self._folder.remove()
             self._folder = None
         self._scene = scene
-        self.has_plots = bool(scene.plots)
-        self.is_empty = not self.has_plots and not set(scene.controls) - set(IN_STRIP)
+        self.is_empty = not set(scene.controls) - set(IN_STRIP)
         with self._tab:
             self._folder = self._gui.add_folder(self._words("lesson.controls"))
         with self._folder:

@@ -730,12 +730,7 @@ show-rank_alpha = Mit α = { $alpha } und geradem Balken.
 
 plots-menu = Verläufe
 plots-menu_hint = Welche Größen gezeigt werden
-plots-more = Weitere Verläufe
-plots-show = Zeigen
-plots-show_hint = Über die letzten 10 s
-plots-none = keinen
 plots-theta_ref = Sollwert von θ
-plots-time = t [s]
 
 plot-phase = Phasenebene (ξ₁, ξ₂)
 plot-phase_name = Phasenebene: ξ₂ über ξ₁ beider Roboter in den letzten 3 Sekunden. Der Ursprung ist die Bahn.
@@ -751,7 +746,6 @@ plot-deflection = Durchbiegung der Spitze
 plot-energy = innere Energie
 plot-force = Kraft
 
-axis-phase = Phasenebene: ξ₂ über ξ₁, die letzten 3 s
 axis-distance = Abstand von der Bahn [mm]
 axis-speed = Geschwindigkeit [mm/s]
 axis-torques = Drehmoment [N m]

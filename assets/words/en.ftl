@@ -645,12 +645,7 @@ show-rank_alpha = With α = { $alpha } and a straight link.
 
 plots-menu = Plots
 plots-menu_hint = Which quantities are plotted
-plots-more = More plots
-plots-show = Show
-plots-show_hint = Over the last 10 s
-plots-none = none
 plots-theta_ref = wanted θ
-plots-time = t [s]
 
 plot-phase = phase plane (ξ₁, ξ₂)
 plot-phase_name = Phase plane: ξ₂ over ξ₁ of both robots in the last 3 seconds. The origin is the path.
@@ -666,7 +661,6 @@ plot-deflection = deflection of the tip
 plot-energy = internal energy
 plot-force = force
 
-axis-phase = Phase plane: ξ₂ over ξ₁, the last 3 s
 axis-distance = distance from the path [mm]
 axis-speed = speed [mm/s]
 axis-torques = torque [N m]

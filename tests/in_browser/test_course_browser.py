@@ -12,6 +12,7 @@ pytest.importorskip("playwright")
 from playwright.sync_api import Browser, expect
 
 from onpath.app.exports.report import report
+from onpath.app.lab.plot_rows import row_data
 from onpath.app.server.lab_server import LabServer
 from onpath.lessons.progress import Notes
 from onpath.lessons.schema import (
@@ -94,11 +95,12 @@ def assert_shown(pupil: Pupil, step: Step) -> None:
     expect(shown).to_have_attribute("id", f"step-{pupil.index + 1}")
     questions = [b.question for b in step.blocks if isinstance(b, Asked)]
     assert missing(tab, *texts(step), *questions, *(task.text for task in step.tasks())) == []
-    plots = [plot for plot in pupil.lesson.scene_at(pupil.index).plots if plot != "phase"]
-    titles = tab.page.locator(".u-title").all_text_contents()
-    in_space = tab.simulation.robot.system.p == 3  # where a path has two directions across
-    kinds = {plot: "-space" if in_space and plot.startswith("across") else "" for plot in plots}
-    assert {ENGLISH(f"axis.{plot}{kind}") for plot, kind in kinds.items()} <= set(titles)
+    wanted = pupil.lesson.scene_at(pupil.index).plots
+    rows = row_data(tab.simulation.sample_layout.fields, False, ENGLISH)
+    named = {row["name"]: f"{row['label']} [{row['unit']}]" for row in rows}
+    named |= {"phase": ENGLISH("plot.phase_name")}
+    for plot in wanted:
+        expect(tab.page.get_by_role("img", name=named[plot], exact=True)).to_have_count(1)
 
 
 def assert_done(pupil: Pupil, step: Step) -> None:

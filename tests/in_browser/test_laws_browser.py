@@ -52,24 +52,6 @@ def test_a_law_is_chosen_while_the_robot_moves(tab: Tab) -> None:
     assert simulation.laws == {LEFT: "waiting_clock", RIGHT: "waiting_clock"}
 
 
-AXES = """() => Object.values(window.__viserTestpoints.uplots).map(({chart: {scales, data}}) =>
-    [scales.x.max, data[0].at(-1)])"""
-
-
-def test_the_time_axis_of_a_plot_ends_with_its_data(tab: Tab) -> None:
-    """Also if laws and time begin anew at once, as in a step of a lesson."""
-    tab.open("More plots")
-    tab.choose("Show", "torques")
-    wait_for(lambda: tab.simulation.time > 2.0)
-    for law in ("set_point", "waiting_clock", "trajectory_tracking"):
-        tab.ask(c.ChooseLaw(LEFT, law))
-        tab.ask(c.Reset())
-        wait_for(lambda: tab.simulation.time > 0.5)
-        expect(tab.page.locator(".u-legend").first).to_contain_text(LAWS[law].label)
-        axes = tab.page.evaluate(AXES)
-        assert axes and all(end == pytest.approx(last, rel=0.05) for end, last in axes)
-
-
 def test_the_menu_follows_the_lab_and_lists_what_suits_the_robot(tab: Tab) -> None:
     menu = tab.page.get_by_label("Law, right", exact=True).filter(visible=True).first
     expect(menu).to_have_value("Path following")

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.thorough
 LESSON = "01-path-or-timetable"
 FOLDERS = (
     *("Advanced", "Realism", "Path editor", "Show", "Wall", "Start"),
-    *("Keep and share", "Export", "More plots"),
+    *("Keep and share", "Export"),
 )
 expect.set_options(timeout=WAIT * 1e3)
 

@@ -43,7 +43,7 @@ CONTROLS = {
     "identify": "gains.identify",
     "start": "start.title",
     "wall": "wall.title",
-    "plots": "plots.more",
+    "plots": "plots.menu",
     "laws": "laws.left",
 }
 """Control of a scene -> key of its name on the page."""

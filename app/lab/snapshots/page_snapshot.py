@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -100,21 +100,6 @@ class LessonSnapshot:
     presenting: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class PlotSamples:
-    """Samples of the last seconds for the plots.
-
-    Attributes:
-        times: shape (n,), [s].
-        values: shape (n, robots, fields), fields as in `PageKey.fields`, in SI units.
-        across_since: time since which ξ has had its present unit, [s].
-    """
-
-    times: np.ndarray
-    values: np.ndarray
-    across_since: float = 0.0
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageSnapshot(Snapshot):
     """A lab at one instant: everything that its page shows.
@@ -122,13 +107,11 @@ class PageSnapshot(Snapshot):
     Attributes:
         parameters: of the robot and its controllers.
         joints: the right robot's joint coordinates, shape (n,), [rad].
-        run, edit, lesson, plots: state of these parts of the page.
+        run, edit, lesson: state of these parts of the page.
         settings: the lab's own settings.
         refused: see `Lab.refused`.
         wall_forces: between each end-point and the wall, by side, [N]; empty without a wall.
         places: of the robots on the path, for the poles of their laws.
-        phase: ξ₁ and ξ₂ of the last seconds in every frame, shape (n, robots, 2), SI; shape
-            (0, 0, 2) unless a phase plane is drawn.
         shared: the last share code made.
         nickname: the student's nickname in the class, or empty.
     """
@@ -138,14 +121,12 @@ class PageSnapshot(Snapshot):
     run: RunState
     edit: PathEdit
     lesson: LessonSnapshot
-    plots: PlotSamples
     shared: str
     nickname: str
     settings: LabSettings
     refused: dict[str, str]
     wall_forces: dict[str, float]
     places: LawPlaces
-    phase: np.ndarray = field(default_factory=lambda: np.zeros((0, 0, 2)))
 
     @property
     def values(self) -> dict[str, Any]:

@@ -24,7 +24,6 @@ from onpath.app.lab.snapshots.page_snapshot import (
     PageSnapshot,
     ParameterValues,
     PathEdit,
-    PlotSamples,
     RunState,
 )
 from onpath.app.lab.snapshots.robot_geometry import drawn_now, drawn_robots, robot_snapshots
@@ -44,11 +43,6 @@ from onpath.models.systems.robots import Robot
 TRACE = 1.6  # [s]
 TRACE_POINTS = 120
 CURVE_POINTS = 160
-PHASE_WINDOW, PHASE_POINTS = 3.0, 180  # [s]
-FIRST = 1e-6  # [s]
-NO_PHASE = np.zeros((0, 0, 2))
-PLOT_WINDOW = 10.0  # [s]
-PLOT_POINTS = 160
 DESIGN_POINTS = 32
 
 
@@ -105,14 +99,12 @@ def take_page_snapshot(
         ),
         edit=_path_edit(simulation),
         lesson=_lesson(lab),
-        plots=_plots(simulation, scene["time"], scene["key"], before),
         shared=lab.shared,
         nickname=nickname,
         wall_forces=wall_forces(simulation),
         settings=simulation.settings,
         refused=dict(lab.refused),
         places=law_places(simulation, scene["time"], before),
-        phase=_phase(lab, scene["time"]),
     )
 
 
@@ -224,17 +216,6 @@ def _traces(simulation: Simulation, time: float) -> Array:
     )
 
 
-def _phase(lab: Lab, time: float) -> Array:
-    """`PageSnapshot.phase`."""
-    simulation = lab.simulation
-    if not lab.draws_phase:
-        return NO_PHASE
-    xi, rate = (simulation.sample_layout.slices[name].start for name in ("xi", "xi_rate"))
-    since = max(time - PHASE_WINDOW, simulation.across_since, FIRST)  # at 0 nothing is measured yet
-    _, samples = simulation.history.samples(since, time, PHASE_POINTS, slice(xi, rate + 1))
-    return samples[..., [0, rate - xi]] if samples.size else NO_PHASE
-
-
 def _path_snapshot(
     simulation: Simulation, curve: Curve, key: PageKey, before: PageSnapshot | Motion | None
 ) -> PathSnapshot:
@@ -316,12 +297,3 @@ def _truth(lab: Lab) -> Truth | None:
     if found is None or (run.playing and not isinstance(found[1], Sketch)):
         return None
     return run.truth(lab.simulation)
-
-
-def _plots(
-    simulation: Simulation, time: float, key: PageKey, before: PageSnapshot | None
-) -> PlotSamples:
-    if before is not None and before.time == time and before.key == key:
-        return before.plots
-    times, values = simulation.history.samples(time - PLOT_WINDOW, time, PLOT_POINTS)
-    return PlotSamples(times, values, simulation.across_since)

@@ -215,20 +215,6 @@ def test_the_lab_compares_a_run_with_the_one_before(lab: Lab) -> None:
     assert "hold" in lab.lessons.notes.tasks, lab.lessons.verdicts
 
 
-def test_the_phase_plane_is_in_a_snapshot_only_when_it_is_drawn(lab: Lab) -> None:
-    run(lab, 0.5)
-    phase = take_page_snapshot(lab, 1.0).phase
-    assert phase.shape[1:] == (2, 2) and len(phase) > 25  # every frame
-    assert phase[0, :, 0] == pytest.approx([0.01, 0.01], abs=2e-3)  # from the start beside the path
-    own = lab.simulation.sample_layout.unpack(lab.simulation.history.samples(0.0, 1.0, 100)[1][-1])
-    np.testing.assert_allclose(phase[-1], np.column_stack([own["xi"], own["xi_rate"]]))
-    do(lab, c.CloseLesson())
-    run(lab, 0.2)
-    assert take_page_snapshot(lab, 1.0).phase.size == 0
-    do(lab, c.Set("phase", True))
-    assert take_page_snapshot(lab, 1.0).phase.size > 0
-
-
 @pytest.mark.parametrize(
     ("there", "back", "name"),
     [

@@ -13,7 +13,6 @@ from onpath.app.exports.replay import replay
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
 from onpath.app.lab.lesson_record import Beginning, record_of
-from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.notebook.simulate import ellipse, simulate
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.vocabulary.setups import scene_faults
@@ -107,14 +106,14 @@ def test_what_had_another_unit_is_in_no_plot_picture_or_task() -> None:
     run(lab, 0.5)
     values = record_of(lab.simulation, begin).values["follower"]
     assert "distance" in values and not {"across", "across_rate"} & set(values)
-    since = take_page_snapshot(lab, 1.0).plots.across_since
+    since = lab.simulation.across_since
     assert since == pytest.approx(0.5, abs=0.02)
     for parts in replay(lab.simulation.robot, lab.simulation.history.all()).values():
         assert len(parts) == 1 and parts[0].level_set
         lacks = np.isnan(parts[0].fields["xi"][:, 0])
         assert np.array_equal(lacks, parts[0].t < since - 1e-9)
     do(lab, c.Reset())
-    assert take_page_snapshot(lab, 1.0).plots.across_since == 0.0
+    assert lab.simulation.across_since == 0.0
 
 
 def test_a_table_tells_its_unit() -> None:

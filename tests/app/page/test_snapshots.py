@@ -193,10 +193,10 @@ def test_what_has_not_changed_is_shared_with_the_snapshot_before() -> None:
     lab.drain()
     lab.advance(FRAME)
     one = take_page_snapshot(lab, 1.0)
-    assert take_page_snapshot(lab, 1.0, one).plots is one.plots
+    assert take_page_snapshot(lab, 1.0, one).path is one.path
     lab.advance(FRAME)
     two = take_page_snapshot(lab, 1.0, one)
-    assert two.path is one.path and two.plots is not one.plots
+    assert two.path is one.path and two.motion is not one.motion
     lab.post(c.SelectPoint(2))
     lab.drain()
     assert take_page_snapshot(lab, 1.0, two).path.selected == 2

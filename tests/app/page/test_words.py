@@ -19,8 +19,8 @@ from jinja2 import Environment, nodes
 
 from onpath.app.lab import commands as c
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.plot_rows import ROWS
 from onpath.app.page.panels.keys import help_text
-from onpath.app.page.plots import MORE
 from onpath.app.page.teaching.teacher_panel import TeacherPanel
 from onpath.app.storage.records import NotKept
 from onpath.app.view.keys import KEYS
@@ -249,9 +249,9 @@ def test_every_key_is_used() -> None:
 
 @pytest.mark.parametrize("words", [Words(language) for language in languages()])
 def test_what_the_program_names_has_words(words: Words) -> None:
-    assert set(MORE) == set(PLOTS)
-    for name in MORE:
-        assert words(f"plot.{name}") and words(f"axis.{name}")
+    assert {row.name for row in ROWS} == {"distance", *PLOTS} - {"phase"}
+    for row in ROWS:
+        assert words(f"plot.{row.name}") and words(f"axis.{row.name}")
     for name in CONTROLS:
         assert name == "hold" or words(f"site.control.{name}")
     for key in KEYS:
