@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import singledispatch
 
 import msgspec
@@ -48,10 +48,19 @@ INSTANT = 1e-6  # [s], tolerance of durations, shorter than any tick
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a check is satisfied, and a sentence with the measured and the required value."""
+    """Whether a check is satisfied, and a sentence with the measured and the required value.
+
+    Attributes:
+        share: of the time that it must last, from 0 to 1; None if it has no duration.
+        begun: whether anything has been done in this run that it could judge.
+        broken: when it was missed for good in this run, [s]; None if it was not.
+    """
 
     passed: bool
     words: str
+    share: float | None = None
+    begun: bool = True
+    broken: float | None = None
 
 
 def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
@@ -59,8 +68,9 @@ def judge(task: Task, record: Record, words: Words) -> list[Verdict]:
 
     A check without words, such as an `Only` that holds, is left out.
     """
+    begun = any(event.run == record.run for event in record.happenings)
     verdicts = [verdict(check, record, words) for check in task.check]
-    return [each for each in verdicts if each.words]
+    return [replace(each, begun=begun) for each in verdicts if each.words]
 
 
 def way_of(task: Task, record: Record) -> int:
@@ -85,14 +95,17 @@ def _(check: Bound, record: Record, words: Words) -> Verdict:
     if record.stopped(check.robot):
         return Verdict(False, words("check.stopped", robot=robots[check.robot]))
     chosen = record.chosen(check.robot, check)
-    enough, seconds = _seconds(check, record, chosen, words)
+    enough, seconds, share = _seconds(check, record, chosen, words)
     names = bound_words(check, robots, words)
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     if value is None:
-        return Verdict(False, words("check.nothing", **names, seconds=seconds))
+        return Verdict(False, words("check.nothing", **names, seconds=seconds), share)
     shown = _rounded(value, check.below, check.above, words)
-    text = words("check.bound", **names, value=shown) + seconds
-    return Verdict(enough and _within(value, check.below, check.above), text)
+    text, broken = words("check.bound", **names, value=shown) + seconds, _broken(check, record)
+    if broken is not None:
+        text += words("check.broken", time=words.written(f"{broken:.1f}"))
+    passed = enough and _within(value, check.below, check.above)
+    return Verdict(passed, text, share, broken=broken)
 
 
 @verdict.register
@@ -106,16 +119,16 @@ def _(check: Compare, record: Record, words: Words) -> Verdict:
         statistic(record, robot, check.quantity, check.stat, record.chosen(robot, check))
         for robot in (check.larger, smaller)
     ]
-    enough, seconds = _seconds(check, record, chosen, words)
+    enough, seconds, share = _seconds(check, record, chosen, words)
     names = compare_words(check, robots, words)
     large, small = both
     if large is None or small is None:
         names |= {"robot": robots[check.larger], "wanted": f"{names['wanted']}×"}
-        return Verdict(False, words("check.nothing", **names, seconds=seconds))
+        return Verdict(False, words("check.nothing", **names, seconds=seconds), share)
     ratio = large / max(small, TINY)
     shown = _rounded(ratio, None, check.ratio, words) if ratio < 1000 else ">1000"
     text = words("check.compare", **names, ratio=shown)
-    return Verdict(enough and ratio >= check.ratio, text + seconds)
+    return Verdict(enough and ratio >= check.ratio, text + seconds, share)
 
 
 @verdict.register
@@ -124,7 +137,7 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
     if record.stopped(check.robot):
         return Verdict(False, words("check.stopped", robot=robots[check.robot]))
     chosen = record.chosen(check.robot, check)
-    enough, seconds = _seconds(check, record, chosen, words)
+    enough, seconds, share = _seconds(check, record, chosen, words)
     value = statistic(record, check.robot, check.quantity, check.stat, chosen)
     before = record.before.get(check)
     limit = None if before is None else check.share * before
@@ -138,7 +151,7 @@ def _(check: Better, record: Record, words: Words) -> Verdict:
         value="–" if value is None else f"{_rounded(value, limit, None, words)} {unit}",
         before="–" if before is None else f"{_rounded(before, None, None, words)} {unit}",
     )
-    return Verdict(passed, text + seconds)
+    return Verdict(passed, text + seconds, share)
 
 
 def measured(check: Better | Once, record: Record) -> float | None:
@@ -303,8 +316,20 @@ def happens(event: Happening, wanted: Event) -> bool:
     return event.name == wanted.event and wanted.name in ("", event.detail)
 
 
-def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple[bool, str]:
-    """Whether the chosen instants last long enough, and the words for it.
+def _broken(check: Bound, record: Record) -> float | None:
+    """When a value was beyond a bound on the largest or smallest one, which no later one mends."""
+    bound = {"max": check.below, "min": check.above}.get(check.stat)
+    if bound is None or check.last > 0:
+        return None
+    values = record.values[check.robot][check.quantity]
+    beyond = record.chosen(check.robot, check) & (
+        values > bound if check.stat == "max" else values < bound
+    )
+    return float(record.times[beyond.argmax()]) if beyond.any() else None
+
+
+def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple[bool, str, float]:
+    """Whether the chosen instants last long enough, the words for it, and the share that they last.
 
     The shown duration is rounded down, so that it never looks sufficient when it is not.
     """
@@ -313,7 +338,8 @@ def _seconds(check: Window, record: Record, chosen: Mask, words: Words) -> tuple
     shown = words.written(f"{math.floor(10 * have) / 10:.1f}")
     if enough:
         shown = need if point in need else f"{need}{point}0"
-    return enough, words("check.seconds", have=shown, need=need)
+    share = 1.0 if enough else math.floor(100 * have / check.least) / 100
+    return enough, words("check.seconds", have=shown, need=need), share
 
 
 def bound_words(check: Bound, robots: Mapping[RobotName, str], words: Words) -> dict[str, str]:

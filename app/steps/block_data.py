@@ -8,10 +8,12 @@ import msgspec
 
 from onpath.app.steps.step_html import StepPart
 from onpath.lessons.action_schema import Script
+from onpath.lessons.checks import bound_words
 from onpath.lessons.progress import Answer, Truth
-from onpath.lessons.record import QUANTITIES
+from onpath.lessons.record import QUANTITIES, ROBOTS
 from onpath.lessons.schema import Choice, Lesson, NumberQuestion, Quiz, Sketch
 from onpath.lessons.sides import robot_names
+from onpath.lessons.task_schema import Bound, Task
 from onpath.lessons.words import Words
 
 
@@ -28,7 +30,35 @@ def block_data(part: StepPart, lesson: Lesson, index: int, words: Words) -> dict
         data["right"] = [option.right for option in block.options].index(True)
     elif isinstance(block, NumberQuestion) and part.told:
         data |= {"number": block.number, "tolerance": block.tolerance}
+    elif isinstance(block, Task):
+        data["limits"] = limits_data(block, lesson.laws_shown(index), words)
     return data
+
+
+PLOTS = {"torque": "torques"} | {
+    name: name
+    for name in ("distance", "speed", "rate", "place", "across", "across_rate", "deflection")
+}
+PLOTS |= {"energy": "energy"}
+"""Quantity of a check -> plot that shows it."""
+BESIDE = ("settling", "overshoot")
+"""Statistics whose bounds are none of the plotted quantity."""
+
+
+def limits_data(task: Task, laws: dict[str, str], words: Words) -> list[dict[str, Any]]:
+    """What a task wants of plotted quantities; see `LimitData` in the page's script."""
+    robots = robot_names(laws, words)
+    return [
+        {
+            "plot": PLOTS[check.quantity],
+            "below": check.below,
+            "above": check.above,
+            "side": ROBOTS.index(check.robot),
+            "label": f"{robots[check.robot]}: {bound_words(check, robots, words)['wanted']}",
+        }
+        for check in task.check
+        if isinstance(check, Bound) and check.quantity in PLOTS and check.stat not in BESIDE
+    ]
 
 
 def sketch_data(block: Sketch, laws: dict[str, str], words: Words) -> dict[str, Any]:

@@ -38,6 +38,7 @@ during-released = , nach dem Loslassen
 check-below = unter { $limit } { $unit }
 check-above = über { $limit } { $unit }
 check-and = { $first } und { $second }
+check-broken = { " " }(verfehlt bei { $time } s)
 check-bound = { $robot }: { $stat }{ $during }: { $value } { $unit }; verlangt: { $wanted }
 check-compare = { $larger }: { $stat }{ $during } ist das { $ratio }-fache des anderen; verlangt: das { $wanted }-fache oder mehr
 check-better = { $robot }: { $stat }{ $during }: { $value }; im Durchgang davor: { $before }; verlangt: weniger
@@ -1068,8 +1069,6 @@ parameter-wall_z2-help = wo die Mitte der Wand ist, nach oben
 parameter-wall_angle-label = Wand: Winkel
 parameter-wall_angle-help = Richtung der freien Seite, gegen den Uhrzeigersinn von rechts aus; 90° ist oben
 
-parameter-phase-label = Phasenebene
-parameter-phase-help = ξ₁ und ξ₂ der letzten Sekunden als Kurve: Ein Gesetz, das wirkt, endet in der Mitte
 
 parameter-presenting-label = Große Schrift
 parameter-presenting-help = die Texte sind größer, wie für einen Beamer

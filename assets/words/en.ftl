@@ -40,6 +40,7 @@ during-released = { " " }after letting go
 check-below = below { $limit } { $unit }
 check-above = above { $limit } { $unit }
 check-and = { $first } and { $second }
+check-broken = { " " }(missed at { $time } s)
 check-bound = { $robot }: { $stat }{ $during } { $value } { $unit }; wanted: { $wanted }
 check-compare = { $larger }'s { $stat }{ $during } is { $ratio } times the other's; wanted: { $wanted } times or more
 check-better = { $robot }: { $stat }{ $during } { $value }; in the run before: { $before }; wanted: less

@@ -10,7 +10,7 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from onpath.lessons.checks import verdict
+from onpath.lessons.checks import judge, verdict
 from onpath.lessons.measures.earlier_run import EarlierRun
 from onpath.lessons.record import Happening, Record
 from onpath.lessons.task_schema import (
@@ -26,6 +26,7 @@ from onpath.lessons.task_schema import (
 from onpath.lessons.words import Words
 from onpath.models.paths.path_design import presets
 from onpath.models.systems.catalogue import FIVE_BAR
+from tests.support.random_records import some_check, some_record
 
 DT = 1e-3  # [s], a tick
 NEED = re.compile(r"\(([\d.]+) of ([\d.]+) s\)")
@@ -236,3 +237,35 @@ def test_an_edited_path_and_a_drawn_one_are_the_student_s_own() -> None:
     for path in (*presets(), "edited", "drawn"):
         own = verdict(check, replace(record, path=path), WORDS)
         assert own.passed == (path in ("edited", "drawn")) and "your own" in own.words
+
+
+def test_a_bound_is_missed_for_good_at_the_first_value_beyond_it() -> None:
+    rng, missed = np.random.default_rng(32), 0
+    while missed < 60:
+        record, check = some_record(rng), some_check(rng)
+        if not isinstance(check, Bound):
+            continue
+        found = verdict(check, record, WORDS)
+        assert found.share is None or 0 <= found.share <= 1
+        if found.passed:
+            assert found.share == 1 and found.broken is None
+        if found.broken is None:
+            continue
+        missed += 1
+        chosen = record.chosen(check.robot, check)
+        values, times = record.values[check.robot][check.quantity], record.times
+        beyond = values > check.below if check.stat == "max" else values < check.above
+        assert beyond[chosen & (times == found.broken)].all()
+        assert not beyond[chosen & (times < found.broken)].any()
+        assert f"missed at {found.broken:.1f} s" in found.words
+
+
+def test_a_task_is_begun_by_what_is_done_in_its_run() -> None:
+    task = Task(id="one", text="", check=(Bound(quantity="distance", below=3.0),))
+    frames = Frames(np.full(300, 10), np.zeros(300, dtype=bool), np.zeros(300))
+    for held in (False, True):
+        record = replace(frames, held=np.full(300, held)).record()
+        (found,) = judge(task, record, WORDS)
+        assert found.passed and found.begun is held
+    (again,) = judge(task, replace(record, run=1), WORDS)
+    assert not again.begun

@@ -49,6 +49,7 @@ MESSAGES = {
         *("robot", "stat", "during", "value", "unit", "wanted"),
         *("setting", "equals", "least"),
     ),
+    "check.broken": ("time",),
     "check.seconds": ("have", "need"),
     "check.nothing": ("robot", "stat", "during", "seconds", "wanted"),
     "check.event": ("event", "have", "need"),

@@ -432,6 +432,12 @@ export interface LessonMessage {
 export interface Verdict {
     passed: boolean
     words: string
+    /** of the time that it must last, from 0 to 1; None if it has no duration. */
+    share: number | null
+    /** whether anything has been done in this run that it could judge. */
+    begun: boolean
+    /** when it was missed for good in this run, [s]; None if it was not. */
+    broken: number | null
 }
 
 /** What is measured in the open step of a lesson, at most ten times a second. */

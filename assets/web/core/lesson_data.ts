@@ -115,8 +115,18 @@ export interface Only {
 
 export type Check = Bound | Compare | Better | Once | EventCheck | Order | SettingCheck | Only
 
+/** What a task wants of a quantity that is plotted. */
+export interface LimitData {
+    plot: string
+    below: number | null
+    above: number | null
+    side: 0 | 1
+    label: string
+}
+
 export interface TaskData {
     kind: "task"
+    limits: LimitData[]
     id: string
     best: string
     checks?: Check[]

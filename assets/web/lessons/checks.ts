@@ -29,6 +29,12 @@ export interface RunRecord {
 export interface Verdict {
     passed: boolean
     words: string
+    /** Of the time that it must last, from 0 to 1; null if it has no duration. */
+    share: number | null
+    /** Whether anything has been done in this run that it could judge. */
+    begun: boolean
+    /** When it was missed for good in this run, [s]; null if it was not. */
+    broken: number | null
 }
 
 type Words = Record<string, string>
@@ -37,7 +43,8 @@ const INSTANT = 1e-6 // [s]
 const BAND = 0.05 // of the largest value, within which a quantity has settled
 
 export function judge(checks: Check[], record: RunRecord, words: Words): Verdict[] {
-    return checks.map(check => verdict(check, record, words)).filter(each => each.words)
+    const begun = record.happenings.some(each => each.run === record.run)
+    return checks.map(check => ({ share: null, broken: null, ...verdict(check, record, words), begun })).filter(each => each.words)
 }
 
 /** The number of the way in which a task is passed, from 1; 0 if it has none that holds. */
@@ -45,7 +52,9 @@ export function wayOf(ways: Check[], record: RunRecord, words: Words): number {
     return ways.findIndex(check => verdict(check, record, words).passed) + 1
 }
 
-function verdict(check: Check, record: RunRecord, words: Words): Verdict {
+type Found = Pick<Verdict, "passed" | "words"> & Partial<Verdict>
+
+function verdict(check: Check, record: RunRecord, words: Words): Found {
     if (check.kind === "bound") return bound(check, record, words)
     if (check.kind === "compare") return compare(check, record, words)
     if (check.kind === "better") return better(check, record, words)
@@ -72,43 +81,55 @@ export function happens(each: { name: string; detail: string }, wanted: { event:
     return each.name === wanted.event && (wanted.name === "" || wanted.name === each.detail)
 }
 
-function bound(check: Bound, record: RunRecord, words: Words): Verdict {
+function bound(check: Bound, record: RunRecord, words: Words): Found {
     const { said, below, above } = check
     if (stopped(record, check.robot)) return halted(said["robot"]!, words)
     const mask = chosen(record, check.robot, check)
-    const [enough, seconds] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, said, words)
     const value = statistic(record, check.robot, check.quantity, check.stat, mask)
     if (value === null)
-        return { passed: false, words: filled(words["check.nothing"]!, { ...said, seconds }) }
-    const shown = filled(words["check.bound"]!, { ...said, value: digits(value, below, above, words) })
-    return { passed: enough && within(value, below, above), words: shown + seconds }
+        return { passed: false, words: filled(words["check.nothing"]!, { ...said, seconds }), share }
+    const shown = filled(words["check.bound"]!, { ...said, value: digits(value, below, above, words) }) + seconds
+    const broken = missed(check, record, mask)
+    const when = broken === null ? "" : filled(words["check.broken"]!, { time: localized(fixed(broken, 1), { words }) })
+    return { passed: enough && within(value, below, above), words: shown + when, share, broken }
 }
 
-function compare(check: Compare, record: RunRecord, words: Words): Verdict {
+/** When a value was beyond a bound on the largest or smallest one, which no later one mends. */
+function missed(check: Bound, { times, values }: RunRecord, mask: boolean[]): number | null {
+    const limit = check.stat === "max" ? check.below : check.stat === "min" ? check.above : null
+    if (limit === null || check.last > 0) return null
+    const all = values[check.robot][check.quantity]!
+    const first = all.findIndex((value, i) => mask[i] && (check.stat === "max" ? value > limit : value < limit))
+    return times[first] ?? null
+}
+
+function compare(check: Compare, record: RunRecord, words: Words): Found {
     const { said } = check
     if (stopped(record, check.smaller)) return halted(said["smaller"]!, words)
     const mask = chosen(record, check.larger, check)
-    const [enough, seconds] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, said, words)
     const [large, small] = [check.larger, check.smaller].map(robot =>
         statistic(record, robot, check.quantity, check.stat, chosen(record, robot, check)),
     ) as [number | null, number | null]
     if (large === null || small === null) {
         const values = { ...said, robot: said["larger"]!, wanted: `${said["wanted"]}×`, seconds }
-        return { passed: false, words: filled(words["check.nothing"]!, values) }
+        return { passed: false, words: filled(words["check.nothing"]!, values), share }
     }
     const ratio = large / Math.max(small, TINY)
     const shown = ratio < 1000 ? digits(ratio, null, check.ratio, words) : ">1000"
     return {
         passed: enough && ratio >= check.ratio,
         words: filled(words["check.compare"]!, { ...said, ratio: shown }) + seconds,
+        share,
     }
 }
 
-function better(check: Better, record: RunRecord, words: Words): Verdict {
+function better(check: Better, record: RunRecord, words: Words): Found {
     const { said } = check
     if (stopped(record, check.robot)) return halted(said["robot"]!, words)
     const mask = chosen(record, check.robot, check)
-    const [enough, seconds] = duration(check, record, mask, said, words)
+    const [enough, seconds, share] = duration(check, record, mask, said, words)
     const value = statistic(record, check.robot, check.quantity, check.stat, mask)
     const before = record.before.get(check) ?? null
     const limit = before === null ? null : check.share * before
@@ -118,6 +139,7 @@ function better(check: Better, record: RunRecord, words: Words): Verdict {
     return {
         passed: enough && value !== null && limit !== null && value < limit,
         words: filled(words["check.better"]!, shown) + seconds,
+        share,
     }
 }
 
@@ -128,7 +150,7 @@ export function measured(check: Better | Once, record: RunRecord): number | null
     return statistic(record, check.robot, check.quantity, check.stat, mask)
 }
 
-function once(check: Once, record: RunRecord, words: Words): Verdict {
+function once(check: Once, record: RunRecord, words: Words): Found {
     const kept = record.before.get(check) ?? null
     const now = kept === null && setting(check.setting, record, words).passed
     const mask = chosen(record, check.robot, check)
@@ -144,7 +166,7 @@ export function keeps(check: Once, record: RunRecord, words: Words): number | nu
     return value !== null && within(value, check.below, check.above) ? value : null
 }
 
-function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict {
+function setting(check: SettingCheck, record: RunRecord, words: Words): Found {
     const value = record.settings[check.name] ?? "None"
     const { equals, said } = check
     const passed =
@@ -157,7 +179,7 @@ function setting(check: SettingCheck, record: RunRecord, words: Words): Verdict 
 }
 
 /** A check that holds has no message. */
-function only({ names, labels }: Only, record: RunRecord, words: Words): Verdict {
+function only({ names, labels }: Only, record: RunRecord, words: Words): Found {
     const others = record.changed.filter(name => !names.includes(name))
     if (!others.length) return { passed: true, words: "" }
     const told = others.map(name => labels[name] ?? name).join(", ")
@@ -169,7 +191,7 @@ function same(value: Setting, wanted: Setting, whole: boolean): boolean {
     return Math.abs(value - wanted) <= 1e-6 + 1e-3 * Math.abs(wanted)
 }
 
-function halted(robot: string, words: Words): Verdict {
+function halted(robot: string, words: Words): Found {
     return { passed: false, words: filled(words["check.stopped"]!, { robot }) }
 }
 
@@ -281,12 +303,13 @@ function secondsOf(record: RunRecord, mask: boolean[]): number {
     return sum(steps(record).filter((_, i) => mask[i]))
 }
 
-/** Whether the instants last long enough, and the words for it, rounded down. */
-function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string] {
+/** Whether the instants last long enough, the words for it, and the share that they last, rounded down. */
+function duration(check: TimeWindow, record: RunRecord, mask: boolean[], said: Said, words: Words): [boolean, string, number] {
     const have = secondsOf(record, mask)
     const need = said["need"]!, point = words["point"]!
     const enough = have >= check.least - INSTANT
     const tenths = Math.floor(10 * have)
     const shown = enough ? (need.includes(point) ? need : `${need}${point}0`) : `${Math.floor(tenths / 10)}${point}${tenths % 10}`
-    return [enough, filled(words["check.seconds"]!, { have: shown, need })]
+    const share = enough ? 1 : Math.floor((100 * have) / check.least) / 100
+    return [enough, filled(words["check.seconds"]!, { have: shown, need }), share]
 }

@@ -98,7 +98,7 @@ class Face {
         const lesson = this.engine.lesson!
         this.column.hear(lesson)
         const step = lesson.lesson ? lesson.steps[lesson.index] : undefined
-        this.strip.follows(step?.plots ?? null)
+        this.strip.follows(step)
         this.transport.subdued = step?.kind === "run" && !lesson.notes?.played[String(lesson.index)]
     }
 

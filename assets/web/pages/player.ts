@@ -125,7 +125,7 @@ export class Player implements Robots {
         }
         if (turn !== this.turn) return stage.close()
         this.stage = stage
-        stage.figure.strip.follows(step.plots)
+        stage.figure.strip.follows(step)
         if (figure.form.groups.length) this.view?.offer(stage.figure.form.element)
         student.recorded = stage.simulation
         if (step.kind === "predict" || !step.running) stage.run(false)

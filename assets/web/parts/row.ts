@@ -89,8 +89,8 @@ export class Row {
     private least(low: number, high: number): [number, number] {
         const { chart, data } = this
         const wanted = chart.limits.flatMap(({ below, above }) => [below, above]).filter(each => each !== null)
-        const [least, most] = data.floats ? [(low + high - data.least[1]) / 2, (low + high + data.least[1]) / 2] : data.least
-        return [Math.min(least, ...wanted), Math.max(most, ...wanted.map(each => 1.25 * each))]
+        if (wanted.length) return [Math.min(0, ...wanted.map(each => 1.5 * each)), Math.max(0, ...wanted.map(each => 1.5 * each))]
+        return data.floats ? [(low + high - data.least[1]) / 2, (low + high + data.least[1]) / 2] : [...data.least]
     }
 }
 

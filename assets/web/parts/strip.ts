@@ -2,6 +2,7 @@
 
 import { made } from "../core/dom"
 import { shown, type Engine, type Vector } from "../core/engine"
+import type { StepData } from "../core/lesson_data"
 import { said, written, type Texts } from "../core/words"
 import type { Chart, Limit } from "./chart"
 import { firstAfter, type Span } from "./curves"
@@ -24,8 +25,7 @@ export class Strip {
     readonly menu: PlotMenu
     readonly handle = made("div", "handle", made("span", ""))
     rows: Row[] = []
-    /** What a task wants, by the name of a row. */
-    limits: Record<string, Limit[]> = {}
+    private limits: Record<string, Limit[]> = {} // of a step's tasks, by the name of a row
     private readonly stack = made("div", "stack", this.handle)
     private phase: PhasePlane | null = null
     private chosen: readonly string[]
@@ -67,9 +67,15 @@ export class Strip {
         if (this.phase) this.phase.sheet.zoom = zoom
     }
 
-    /** Show the rows that a lesson's step names besides the distance, or the user's own. */
-    follows(step: readonly string[] | null): void {
-        this.inStep = step && [...step]
+    /** Show the plots of a lesson's step besides the distance, with what its tasks want; or the user's own. */
+    follows(step: StepData | undefined): void {
+        const wanted = step?.blocks.flatMap(block => (block.kind === "task" ? block.limits : [])) ?? []
+        this.limits = {}
+        for (const { plot, below, above, side, label } of wanted) {
+            const limits = (this.limits[plot] ??= [])
+            if (!limits.some(each => each.label === label)) limits.push({ below, above, label, tone: `side${side}` })
+        }
+        this.inStep = step ? [...new Set([...step.plots, ...Object.keys(this.limits)])] : null
         this.build()
     }
 
@@ -119,8 +125,9 @@ export class Strip {
         })
         stack.replaceChildren(...this.rows.map(({ chart }) => chart.plot), handle)
         if (this.phase) stack.after(this.phase.element)
-        this.element.style.setProperty("--rows", String(this.rows.length))
-        document.documentElement.style.setProperty("--op-rows", String(this.rows.length))
+        const root = document.documentElement // whose style makes room for the rows
+        root.style.setProperty("--op-rows", String(this.rows.length))
+        root.classList.toggle("op-rows", this.rows.length > 1 || this.phase !== null)
         const menu = (name: string) => rows.find(row => row.name === name)?.menu ?? said(texts, "plot.phase")
         this.menu.show(possible.filter(name => name !== DISTANCE).map(name => ({ name, menu: menu(name), on: names.includes(name) })))
         this.zoom = this.large
@@ -148,7 +155,7 @@ export class Strip {
             const { chart, data } = row
             Object.assign(chart, { from: this.first, until: this.first + SECONDS, at: sample.time, spans, limits: limits[data.name] ?? [] })
             row.follow(times)
-            if (data.name !== DISTANCE) row.tell(sample, now)
+            row.tell(sample, now)
         }
     }
 

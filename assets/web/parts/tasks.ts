@@ -43,11 +43,25 @@ export class Task {
         const text = JSON.stringify([verdicts, passed, way])
         if (text === this.shown) return
         this.shown = text
-        const lines = verdicts.map(verdict => made("li", verdict.passed ? "right" : "", `${verdict.passed ? "✓" : "○"} ${verdict.words}`))
+        const done = verdicts.every(verdict => verdict.passed)
+        const lines = verdicts.map(verdict => lineOf(verdict, done))
         if (passed) lines.push(made("li", "right", `✓ ${said(page, "lesson.passed")}${passed.trim()}`))
         element.querySelector(".verdicts")!.replaceChildren(...lines)
         const whys = [...element.querySelectorAll<HTMLDetailsElement>(".after")]
         const told = passed ? whys.find(each => Number(each.dataset["way"]) === way) ?? whys[0] : undefined
         for (const each of whys) each.hidden = each !== told // closed: its title asks why
     }
+}
+
+/** A condition: open, met, or missed for good; nothing is met before anything was done. A bar fills while it must last. */
+function lineOf({ passed, words, share, begun, broken }: Verdict, done: boolean): HTMLElement {
+    const met = passed && (begun || done)
+    const line = made("li", broken !== null ? "wrong" : met ? "right" : "", `${broken !== null ? "✗" : met ? "✓" : "○"} ${words}`)
+    if (share === null || share === 1 || !begun) return line
+    const filled = made("span", "")
+    filled.style.width = `${100 * share}%`
+    const bar = made("span", "share", filled)
+    bar.ariaHidden = "true" // the words tell it
+    line.append(bar)
+    return line
 }

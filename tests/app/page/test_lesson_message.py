@@ -15,15 +15,18 @@ from onpath.app.lab import commands as c
 from onpath.app.lab.commands import TakeStep
 from onpath.app.lab.commands.command_codec import command_from
 from onpath.app.lab.lab import Lab
+from onpath.app.lab.plot_rows import row_data
+from onpath.app.lab.plot_samples import sample_layout
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.page.lesson_message import lesson_message, measured
 from onpath.app.page.lesson_view import LessonView
 from onpath.app.page.step_navigation import RECORD
+from onpath.app.steps.block_data import limits_data
 from onpath.lessons.concept_test.concept_test import AFTER, BEFORE
 from onpath.lessons.progress import Answer, Truth
 from onpath.lessons.schema import KINDS, Choice, NumberQuestion, OpenQuestion, Quiz, Sketch, Step
-from onpath.lessons.words import Words
-from onpath.models.systems.catalogue import FIVE_BAR
+from onpath.lessons.words import ENGLISH, Words
+from onpath.models.systems.catalogue import FIVE_BAR, ROBOTS
 from tests.support.built_in import built_in_course
 from tests.support.lab import do, loop_cache, run
 
@@ -223,7 +226,9 @@ def test_verdicts_and_curves_are_measured(lab: Lab) -> None:
     found = json.loads(encoded(measured(view(lab))))
     assert found["truth"] is None and found["verdicts"]
     for verdicts in found["verdicts"].values():
-        assert all(set(each) == {"passed", "words"} for each in verdicts)
+        assert all(
+            set(each) == {"passed", "words", "share", "begun", "broken"} for each in verdicts
+        )
 
 
 def test_what_is_optional_is_named_so_on_the_way_to_the_end_and_there(lab: Lab) -> None:
@@ -284,3 +289,20 @@ def test_what_is_said_after_a_task_depends_on_how_it_was_passed(lab: Lab) -> Non
                 assert [each for each, text in texts.items() if text in page] == [expected]
                 seen += 1
     assert seen > 5
+
+
+def test_what_a_task_wants_is_drawn_in_a_row_that_its_robot_has() -> None:
+    drawn = 0
+    lessons = [lesson for languages in COURSE.lessons.values() for lesson in languages.values()]
+    for lesson in lessons:
+        for index, step in enumerate(lesson.steps):
+            name = lesson.scene_at(index).robot or lesson.front.robot
+            robot = ROBOTS[name].make(ROBOTS[name].parameters())
+            rows = {row["name"] for row in row_data(sample_layout(robot).fields, False, ENGLISH)}
+            for task in step.tasks():
+                limits = limits_data(task, lesson.laws_shown(index), ENGLISH)
+                drawn += len(limits)
+                assert {limit["plot"] for limit in limits} <= rows, (lesson.name, index)
+                for limit in limits:
+                    assert (limit["below"], limit["above"]) != (None, None) and limit["label"]
+    assert drawn > 40
