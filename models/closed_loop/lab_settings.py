@@ -204,15 +204,6 @@ class LabSettings:
         "Wall: angle",
         shown_in=DEGREES,
     )
-    phase: bool = own(
-        switch(
-            False,
-            "ξ₁ and ξ₂ of the last seconds as a curve: a law that works ends in the middle",
-            group="view",
-            label="Phase plane",
-        ),
-        kept="nowhere",
-    )
     presenting: bool = own(
         switch(False, "texts are larger, as for a projector", group="view", label="Large type"),
         kept="lab",
