@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 import numpy as np
@@ -35,8 +35,10 @@ def judging() -> Iterator[NodePage]:
 
 JUDGE_ALL = """text => {
     const {cases, words} = JSON.parse(text)
-    const nothing = {passed: true, words: ""}  // is left out
-    return cases.map(({check, record}) => judge([check], record, words)[0] ?? nothing)
+    const begun = ({happenings, run}) => happenings.some(each => each.run === run)
+    const nothing = {passed: true, words: "", share: null, broken: null}  // is left out
+    return cases.map(({check, record}) =>
+        judge([check], record, words)[0] ?? {...nothing, begun: begun(record)})
 }"""
 
 
@@ -53,7 +55,8 @@ def test_checks_say_and_decide_what_the_lab_s_do(
         data = check_data(check, record.parameters, names, words)
         cases.append({"check": data, "record": as_data(record)})
         found = verdict(check, record, words)
-        expected.append({"passed": found.passed, "words": found.words})
+        begun = any(event.run == record.run for event in record.happenings)
+        expected.append(asdict(replace(found, begun=begun)))
     passed = sum(each["passed"] for each in expected)
     assert records / 10 < passed < records * 9 / 10
     for i in range(0, records, 500):
