@@ -35,7 +35,36 @@ import { Recorded } from "./lessons/recorded"
 import { Kernels } from "./simulation/kernels"
 import { readFileSync } from "node:fs"
 
-const { figure, values, words, plays } = JSON.parse(readFileSync(0, "utf8"))
+const { figure, remade, values, words, plays } = JSON.parse(readFileSync(0, "utf8"))
+const ticksAt = frame => Math.floor(frame / 60 / figure.dt + 1e-9)
+const names = Object.keys(remade)
+
+/** Do what a reader does who changes the robot, which gives another simulation. */
+async function done({ script, checks }) {
+    let simulation = new Recorded(figure, await Kernels.from(figure.module), values, names)
+    const earlier = new EarlierRun(), waiting = [...script.do]
+    let [passed, verdicts, before] = [false, [], 0]
+    for (let frame = 0, now = 0; before + now < script.until - 1e-9; now = ++frame / 60) {
+        while (waiting.length && waiting[0][0] <= before + now + 1e-9) {
+            const [, action] = waiting.shift(), { run, time } = simulation
+            const name = names.find(each => each in (action.set ?? {}))
+            if (name) {
+                const value = action.set[name], other = remade[name][String(value)]
+                const next = new Recorded(other, await Kernels.from(other.module), values, names)
+                next.goOnFrom(simulation, name, value)
+                simulation = next
+            } else simulation.act(action)
+            if (simulation.run !== run) [before, frame, now] = [before + time, 0, 0]
+        }
+        simulation.advance(ticksAt(frame + 1) - ticksAt(frame))
+        if (frame % 6) continue
+        const record = simulation.record(earlier.values)
+        earlier.follow(record, checks, words)
+        verdicts = judge(checks, record, words)
+        passed ||= verdicts.every(each => each.passed)
+    }
+    return { passed, verdicts }
+}
 
 /** Play a script, and look at the checks ten times a second. */
 async function played({ script, checks, quantity }) {
@@ -57,7 +86,7 @@ async function played({ script, checks, quantity }) {
 }
 
 const results = []
-for (const play of plays) results.push(await played(play))
+for (const play of plays) results.push(await (names.length ? done(play) : played(play)))
 console.log(JSON.stringify(results))
 """
 
@@ -81,6 +110,7 @@ def play_on_site(lesson: Lesson, index: int, plays: list[tuple[Script, Task | No
     laws = lesson.scene_at(index).laws.named
     data = {
         "figure": site.figure,
+        "remade": site.remade,
         "values": site.data["values"],
         "words": site.figure["words"] | check_words(ENGLISH),
         "plays": [

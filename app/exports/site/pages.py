@@ -118,8 +118,8 @@ def lesson_page(
     """
     figures = list[dict[str, Any]]()
     for step in steps:
-        if step.figure and step.figure not in figures:
-            figures.append(step.figure)
+        more = [each for values in step.remade.values() for each in values.values()]
+        figures += [each for each in (step.figure, *more) if each not in figures]
     data = {
         "words": _messages(words) | check_words(words),
         "lesson": lesson.name,
@@ -127,7 +127,14 @@ def lesson_page(
         "scorm": scorm and asdict(scorm),
         "figures": figures,
         "steps": [
-            {**step.data, "figure": figures.index(step.figure) if step.figure else -1}
+            {
+                **step.data,
+                "figure": figures.index(step.figure),
+                "remade": {
+                    name: {value: figures.index(each) for value, each in values.items()}
+                    for name, values in step.remade.items()
+                },
+            }
             for step in steps
         ],
     }

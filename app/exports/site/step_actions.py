@@ -76,6 +76,8 @@ def _settable(figure: FigureChoice, values: Mapping[str, Value]) -> Mapping[str,
         Unsupported: one may not, or not to its value.
     """
     for name, value in values.items():
+        if value in figure.remade.get(name, ()):
+            continue
         if name not in (*figure.sliders, *figure.changing):
             raise Unsupported(f"{name}: only in the lab")
         options = specs(figure.parameters)[name].options

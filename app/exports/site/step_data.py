@@ -26,7 +26,8 @@ class SiteStep:
         number: number of the step, from 1.
         html: its column; see `onpath.app.steps`.
         data: data for the page's script; see assets/web/core/lesson_data.ts.
-        figure: data of the step's figure; empty if only the lab can show it.
+        figure: data of the step's figure.
+        remade: parameter that makes another robot -> its value -> data of the figure with it.
         lab_only: whether its run can only be seen in the lab.
     """
 
@@ -34,6 +35,7 @@ class SiteStep:
     html: Markup
     data: dict[str, Any]
     figure: dict[str, Any]
+    remade: dict[str, dict[str, dict[str, Any]]]
     lab_only: bool
 
 
@@ -79,6 +81,13 @@ def site_step(
         html=html,
         data=data,
         figure=figure_of(figure, words),
+        remade={
+            name: {
+                str(value): figure_of(step_figure(lesson, index, {name: value}), words)
+                for value in values
+            }
+            for name, values in figure.choice.remade.items()
+        },
         lab_only=lab_only,
     )
 
@@ -97,7 +106,9 @@ def _values(step: Step, figure: StepFigure) -> dict[str, Any]:
     checks = [check for task in step.tasks() for check in task.evaluated]
     names = [check.name for check in checks if isinstance(check, Setting | Once)]
     values = values_of(parameters)
-    known = {name: values[name] for name in (*names, *choice.changing) if name in values}
+    known = {
+        name: values[name] for name in (*names, *choice.sliders, *choice.changing) if name in values
+    }
     return {**known, **scene}
 
 

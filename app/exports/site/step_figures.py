@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import Any
 
 from onpath.app.channel.messages import FormField
@@ -29,13 +30,13 @@ from onpath.lessons.labels import setting_label
 from onpath.lessons.record import QUANTITIES
 from onpath.lessons.schema import Lesson, Step, Text
 from onpath.lessons.sides import ROLES, law_titles, robot_names
-from onpath.lessons.task_schema import Reference, Task
+from onpath.lessons.task_schema import Once, Reference, Setting, Task
 from onpath.lessons.words import Words
 from onpath.models.closed_loop.lab_settings import SETTINGS, lab_specs
 from onpath.models.closed_loop.simulation import raised
 from onpath.models.closed_loop.start import Start
 from onpath.models.control.laws.registry import law_name
-from onpath.models.control.settable import specs
+from onpath.models.control.settable import specs, value_of
 from onpath.models.control.sides import DEFAULT_LAWS, SIDES
 from onpath.models.paths.curve_faults import curve_faults
 from onpath.models.paths.curves import Curve
@@ -124,8 +125,13 @@ class StepFigure:
         return names
 
 
-def step_figure(lesson: Lesson, index: int) -> StepFigure:
+def step_figure(
+    lesson: Lesson, index: int, given: Mapping[str, Any] = MappingProxyType({})
+) -> StepFigure:
     """The figure of a step.
+
+    Args:
+        given: values of parameters that make another robot.
 
     Raises:
         ValueError: a figure cannot show its set-up.
@@ -138,6 +144,7 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     curves = {first: presets()[first].curve}
     own = {name: value for name, value in scene.set.items() if name in SETTINGS}
     values = {name: value for name, value in scene.set.items() if name not in own}
+    values |= given
     figure = chosen(robot, laws, curves, values, sliders=(), controls=_controls(scene, step))
     figure = replace(
         figure,
@@ -153,7 +160,8 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
     used = _used(actions)
     settable = dict.fromkeys(name for name in (*wanted, *used) if name in known)
     figure = _changing(figure, settable, used)
-    sliders = tuple(name for name in wanted if name in figure.changing)
+    figure = replace(figure, remade=_remade(figure, lesson, wanted))
+    sliders = tuple(name for name in wanted if name in (*figure.changing, *figure.remade))
     lacking = [name for name in (*wanted, *own) if name not in (*sliders, *HERE)]
     return StepFigure(
         choice=replace(figure, sliders=sliders),
@@ -163,6 +171,24 @@ def step_figure(lesson: Lesson, index: int) -> StepFigure:
         plots=scene.plots,
         used=used,
     )
+
+
+def _remade(
+    figure: FigureChoice, lesson: Lesson, wanted: Iterable[str]
+) -> dict[str, tuple[Any, ...]]:
+    """The parameters that make another robot, with their options from the first to the last that is
+    the step's own, or that tasks name."""
+    checks = [check for task in lesson.tasks() for check in task.check]
+    named = [check for check in checks if isinstance(check, Setting | Once)]
+    own, known = figure.parameters, specs(figure.parameters)
+    remade = dict[str, tuple[Any, ...]]()
+    for name in wanted:
+        if name in known and known[name].options and name not in figure.changing:
+            options = known[name].options
+            places = [options.index(check.equals) for check in named if check.name == name]
+            places.append(options.index(value_of(own, name)))
+            remade[name] = options[min(places) : max(places) + 1]
+    return remade
 
 
 def _controls(scene: StepSetup, step: Step) -> tuple[str, ...]:
@@ -183,6 +209,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
     ]
     changes = changes_data(choice, figure.used)
     views = [view_field(name, value, words) for name, value in figure.views.items()]
+    own = {name: value_of(choice.parameters, name) for name in choice.remade}
     return {
         **data,
         "laws": [
@@ -190,7 +217,7 @@ def figure_of(figure: StepFigure, words: Words) -> dict[str, Any]:
             for law, texts, names in zip(data["laws"], stops, _names(choice, words), strict=True)
         ],
         "form": figure_form(choice, words, "step", views),
-        "changes": changes | {"values": changes["values"] | figure.views},
+        "changes": changes | {"values": changes["values"] | figure.views | own},
         "drawings": drawings_data(choice, figure.drawings, figure.marks, words),
         "controls": choice.controls,
         "quantities": figure.quantities,

@@ -167,7 +167,11 @@ class _Writer:
         curves = ("times", "tracker", "follower")
         more = {"truth": {each: getattr(truth, each) for each in curves}} if truth else {}
         figure = self._shared_kernels(step.figure)
-        return replace(step, figure=figure, data=step.data | more)
+        remade = {
+            name: {value: self._shared_kernels(each) for value, each in figures.items()}
+            for name, figures in step.remade.items()
+        }
+        return replace(step, figure=figure, remade=remade, data=step.data | more)
 
     def _following(self, name: str, words: Words) -> dict[str, str] | None:
         names = list(self._course.lessons)

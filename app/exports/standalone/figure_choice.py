@@ -58,6 +58,8 @@ class FigureChoice:
             in any case.
         begins: where and how the runs start.
         drawings: what may be drawn besides the robots; see drawings.py.
+        remade: parameters that make another robot -> their values on the page, each of which needs
+            a figure of its own.
     """
 
     robot: str
@@ -72,6 +74,9 @@ class FigureChoice:
     bends: bool = False
     begins: Start = ON_PATH
     drawings: tuple[str, ...] = ()
+    remade: Mapping[str, tuple[Any, ...]] = dataclasses.field(
+        default_factory=dict[str, tuple[Any, ...]]
+    )
 
     @property
     def every_law(self) -> tuple[str, ...]:

@@ -51,7 +51,7 @@ def setting_of(figure: FigureChoice, name: str, words: Words, place: str = "figu
         words,
         default=value_of(usual, name),
         mark=value_of(parameters, name),
-        options=page_values(figure, name, {}) if spec.options else (),
+        options=figure.remade.get(name, page_values(figure, name, {}) if spec.options else ()),
     )
 
 

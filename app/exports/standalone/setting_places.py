@@ -70,7 +70,8 @@ def setting_places(figure: FigureChoice, used: Used) -> SettingPlaces:
 
     Parameters whose numbers depend on each other have a table of the values that actions give them.
     """
-    names = dict.fromkeys((*figure.sliders, *figure.changing))
+    every = dict.fromkeys((*figure.sliders, *figure.changing))
+    names = [name for name in every if name not in figure.remade]
     places, tables, rest = dict[str, int](), list[Table](), list[str]()
     for name in names:
         if (place := _single(figure, name)) is not None:

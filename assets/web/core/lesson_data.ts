@@ -169,6 +169,8 @@ export interface StepData {
     values: Record<string, Setting> & { lengths: number[]; paths: string[] }
     blocks: BlockData[]
     figure: number
+    /** A parameter that makes another robot -> its value -> the figure with it. */
+    remade: Record<string, Record<string, number>>
     /** What is plotted besides the distance. */
     plots: string[]
 }

@@ -25,10 +25,28 @@ export class Recorded extends Simulation {
     private times: number[] = []
     private samples: Record<Robot, Record<string, number[]>>
 
-    constructor(override readonly data: SiteFigure, kernels: Kernels, private readonly begun: StepData["values"]) {
+    /** Called if a parameter gets a value that makes another robot. */
+    remake: (name: string, value: Setting) => void = () => {}
+
+    /** `remade`: the parameters that make another robot. */
+    constructor(
+        override readonly data: SiteFigure, kernels: Kernels, private readonly begun: StepData["values"],
+        private readonly remade: readonly string[] = [],
+    ) {
         super(data, kernels)
         this.samples = this.nothing()
         this.setUp()
+    }
+
+    /** Begin anew as another robot than before, with the other settings as they are. */
+    goOnFrom(before: Recorded, name: string, value: Setting): void {
+        this.settings = { ...before.settings, [name]: value }
+        this.changes.values = { ...before.values, [name]: value }
+        this.configure()
+        this.run = before.run
+        this.restart()
+        this.happenings = [...before.happenings]
+        this.note("set", name)
     }
 
     /** As when the step began. */
@@ -74,6 +92,11 @@ export class Recorded extends Simulation {
     }
 
     override set(values: Record<string, Setting>): void {
+        const makes = Object.entries(values).find(([name, value]) => this.remade.includes(name) && value !== this.values[name])
+        if (makes) {
+            this.remake(...makes)
+            return
+        }
         super.set(values)
         for (const [name, value] of Object.entries(values)) {
             if (!(name in this.begun)) continue // how something is drawn

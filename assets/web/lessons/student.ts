@@ -54,6 +54,11 @@ export class LocalStudent implements Student {
         this.earlier = new EarlierRun()
     }
 
+    /** The tasks are about another robot now, and what was measured before counts on. */
+    goesOn(recorded: Recorded): void {
+        this.about = recorded
+    }
+
     goes(step: number): void {
         const { notes, page } = this
         notes.step = step

@@ -1,7 +1,7 @@
 // The player of a lesson: one step at a time, in a column beside the robots.
 
 import { made } from "../core/dom"
-import type { PageData } from "../core/lesson_data"
+import type { PageData, Setting, StepData } from "../core/lesson_data"
 import { refused } from "../core/refusal"
 import { said } from "../core/words"
 import { given } from "../lessons/notes"
@@ -117,16 +117,14 @@ export class Player implements Robots {
         const into = section.querySelector<HTMLElement>(".stage")!
         let stage: Stage
         try {
-            stage = await Stage.open(figure, step.values, into)
+            stage = await Stage.open(figure, step, into)
         } catch (error) {
             if (turn !== this.turn) return
             into.replaceChildren(refused(figure, error))
             return this.run()
         }
         if (turn !== this.turn) return stage.close()
-        this.stage = stage
-        stage.figure.strip.follows(step)
-        if (figure.form.groups.length) this.view?.offer(stage.figure.form.element)
+        this.put(stage, step)
         student.recorded = stage.simulation
         if (step.kind === "predict" || !step.running) stage.run(false)
         this.tasks = step.blocks.flatMap((block, i) =>
@@ -134,6 +132,32 @@ export class Player implements Robots {
         )
         this.run()
         if ((await this.recall([this.index])) && turn === this.turn) this.run()
+    }
+
+    private put(stage: Stage, step: StepData): void {
+        const { page } = this
+        this.stage = stage
+        stage.figure.strip.follows(step)
+        if (page.figures[step.figure]!.form.groups.length) this.view?.offer(stage.figure.form.element)
+        stage.simulation.remake = (name, value) => void this.remake(name, value)
+    }
+
+    /** Show another robot, with all else as it is; its run begins. */
+    private async remake(name: string, value: Setting): Promise<void> {
+        const { page, stage, turn, student } = this
+        const step = page.steps[this.index]!
+        const data = page.figures[step.remade[name]?.[String(value)] ?? -1]
+        if (!stage || !data) return
+        await kernelsOf(data.module)
+        if (turn !== this.turn) return
+        const { simulation, figure: { running } } = stage
+        stage.close()
+        const next = await Stage.open(data, step, this.section.querySelector<HTMLElement>(".stage")!)
+        next.simulation.goOnFrom(simulation, name, value)
+        this.put(next, step)
+        student.goesOn(next.simulation)
+        next.figure.changed()
+        next.run(running)
     }
 
     /** Find out what happened in runs that were seen, as far as this visit does not know: curves are not kept, since the page

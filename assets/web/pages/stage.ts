@@ -34,8 +34,8 @@ export class Stage {
     ) {}
 
     /** Put a figure into the page. */
-    static async open(data: SiteFigure, values: StepData["values"], into: HTMLElement): Promise<Stage> {
-        const simulation = new Recorded(data, await kernelsOf(data.module), values)
+    static async open(data: SiteFigure, { values, remade }: StepData, into: HTMLElement): Promise<Stage> {
+        const simulation = new Recorded(data, await kernelsOf(data.module), values, Object.keys(remade))
         const ended = new AbortController()
         return new Stage(new Figure(simulation, into, ended.signal, true), simulation, into, ended)
     }

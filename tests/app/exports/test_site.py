@@ -164,7 +164,6 @@ def test_a_task_is_offered_if_its_solution_can_be_done_here() -> None:
     assert len(offered) == 30
     assert {name for name, can_pass in offered.items() if not can_pass} == {
         *("excite", "excite-well"),  # identification
-        "broken-promise",  # another number of modes
     }
 
 
