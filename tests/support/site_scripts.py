@@ -92,14 +92,24 @@ console.log(JSON.stringify(results))
 
 
 @cache
-def _bundle() -> str:
-    """The player as one script."""
+def _bundle(code: str) -> str:
+    """Code and the pages' scripts that it imports as one script."""
     home = asset_path("web")
-    command = [str(ESBUILD), "--bundle", "--format=esm", "--platform=node", "--loader=ts"]
-    made = subprocess.run(
-        command, input=PLAYER, cwd=home, text=True, capture_output=True, check=True
-    )
+    page = "globalThis.matchMedia = () => ({ addEventListener() {} })"
+    options = ["--bundle", "--format=esm", "--platform=node", "--loader=ts", f"--banner:js={page}"]
+    command = [str(ESBUILD), *options]
+    made = subprocess.run(command, input=code, cwd=home, text=True, stdout=-1, check=True)
     return made.stdout
+
+
+def answer_of(code: str, data: Any) -> Any:
+    """What code prints that reads data as JSON and imports the pages' scripts."""
+    with NamedTemporaryFile("w", encoding="utf-8", suffix=".mjs") as file:
+        file.write(_bundle(code))
+        file.flush()
+        command, given = ["node", file.name], json.dumps(data)
+        run = subprocess.run(command, input=given, text=True, stdout=-1, check=True)
+    return json.loads(run.stdout)
 
 
 def play_on_site(lesson: Lesson, index: int, plays: list[tuple[Script, Task | None]]) -> Any:
@@ -123,10 +133,4 @@ def play_on_site(lesson: Lesson, index: int, plays: list[tuple[Script, Task | No
             for script, task in plays
         ],
     }
-    with NamedTemporaryFile("w", encoding="utf-8", suffix=".mjs") as file:
-        file.write(_bundle())
-        file.flush()
-        run = subprocess.run(
-            ["node", file.name], input=json.dumps(data), text=True, capture_output=True, check=True
-        )
-    return json.loads(run.stdout)
+    return answer_of(PLAYER, data)

@@ -1,0 +1,127 @@
+"""What a site draws besides the robots is what the scene of the lab draws, to 0.1 mm."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+
+from onpath.app.exports.site.step_figures import figure_of, step_figure
+from onpath.app.exports.standalone.drawings import SWITCHES, drawings_data
+from onpath.app.exports.standalone.figure_choice import chosen
+from onpath.app.exports.standalone.figure_data import figure_data
+from onpath.app.scene.label_geometry import label_function
+from onpath.app.scene.mass_nodes import SIDES, ellipse
+from onpath.app.scene.tube_nodes import tube_shape
+from onpath.lessons.course import BUILT_IN, read_course
+from onpath.lessons.words import ENGLISH
+from onpath.models.arrays import Array
+from onpath.models.paths.path_design import presets
+from onpath.models.systems.robots import Robot
+from tests.support.site_scripts import answer_of, needs_node
+
+pytestmark = needs_node
+
+TENTH = 1e-4  # [m]
+PAGE = """
+import { Drawings } from "./parts/drawings"
+import { Kernels } from "./simulation/kernels"
+import { Simulation } from "./simulation/simulation"
+import { readFileSync } from "node:fs"
+
+const { figure, pull, larger } = JSON.parse(readFileSync(0, "utf8"))
+const simulation = new Simulation(figure, await Kernels.from(figure.module))
+simulation.pull(pull)
+simulation.advance(700)
+const side = simulation.sides[1], { followed } = simulation
+const row = side.logged(), { q } = figure.log
+const drawn = { q: [...row.slice(q[0], q[0] + q[1])] }
+const { drawings } = figure
+if (larger) drawn.larger = [...side.picture(larger)]
+else {
+    drawn.labels = side.drawn("labels", drawings.labels.points)
+    drawn.ellipse = side.drawn("ellipse", 49)
+    const { edges, across, along } = new Drawings(drawings, () => {}).lines(followed, 0)
+    drawn.tube = { edges, across, along }
+}
+console.log(JSON.stringify(drawn))
+"""
+
+
+def drawn_on_page(robot: str, path: str, drawings: tuple[str, ...], **more: Any) -> Any:
+    """The robot that is pulled, and what a page draws of it and its path."""
+    figure = chosen(robot, paths={path: presets()[path].curve}, sliders=(), controls=())
+    figure = replace(figure, drawings=drawings)
+    data = figure_data(figure, ENGLISH)
+    data["drawings"] = drawings_data(figure, drawings, (), ENGLISH)
+    return figure, answer_of(PAGE, {"figure": data, "pull": [0.03, -0.02], **more})
+
+
+def seen(robot: Robot, points: Array) -> Array:
+    """Points of the robot's frame, (..., 3), in the picture, (..., 2)."""
+    return points @ np.array(robot.seen).T
+
+
+def test_labels_and_the_ellipse_of_the_mass_are_those_of_the_scene() -> None:
+    figure, page = drawn_on_page("five_bar", "ellipse", SWITCHES)
+    robot, q = figure.machine, np.array(page["q"])
+    bars = np.array(ca.Function("b", [robot.system.q], [robot.skeleton(robot.system.q, 1)[0]])(q))
+    tip = robot.position(robot.endpoint(q))
+    labels = np.array(label_function(robot, bars.shape[1] // 2).function(bars, tip)).T
+    np.testing.assert_allclose(page["labels"], seen(robot, labels), rtol=0, atol=TENTH)
+    turn = np.linspace(0, 2 * np.pi, SIDES + 1)
+    directions = np.column_stack([np.cos(turn), np.sin(turn)])
+    points = ellipse(robot, tip, figure.parameters, directions)
+    np.testing.assert_allclose(page["ellipse"], seen(robot, points), rtol=0, atol=TENTH)
+    assert np.ptp(points, axis=0).max() > 0.03
+
+
+@pytest.mark.parametrize("path", ["circle", "ellipse", "clover", "segment"])
+def test_the_tube_and_its_grid_are_those_of_the_scene(path: str) -> None:
+    figure, page = drawn_on_page("five_bar", path, SWITCHES)
+    robot, curve = figure.machine, presets()[path].curve
+    theta = np.linspace(-np.pi, np.pi, 961)
+    drawn = SimplePath(robot.position(robot.frame.lift(curve.at(theta))))
+    shape: Any = tube_shape(robot, drawn)  # type: ignore[arg-type]
+    edges = seen(robot, shape.fill.vertices).reshape(-1, 2, 2)
+    found = np.array(page["tube"]["edges"]).transpose(1, 0, 2)
+    np.testing.assert_allclose(found, edges, rtol=0, atol=TENTH)
+    spokes = np.array(page["tube"]["across"])
+    np.testing.assert_allclose(spokes, seen(robot, shape.normals), rtol=0, atol=TENTH)
+    lines = {tuple(np.round(line[0], 3)) for line in page["tube"]["along"]}
+    starts = seen(robot, shape.offsets)[:, 0]
+    for line in lines:
+        assert np.abs(starts - line).max(axis=1).min() < 1e-3
+
+
+class SimplePath:
+    """A path as a snapshot shows it."""
+
+    def __init__(self, points: Array) -> None:
+        self.points = points
+
+
+def test_a_bending_is_drawn_larger_as_in_the_scene() -> None:
+    figure, page = drawn_on_page("flexible", "circle", ("larger",), larger=20.0)
+    robot, q = figure.machine, np.array(page["q"])
+    parts = robot.skeleton(robot.system.q, 20.0)
+    function = ca.Function("larger", [robot.system.q], list(parts))
+    wanted = np.concatenate([seen(robot, np.array(part).T) for part in function(q)])
+    np.testing.assert_allclose(np.reshape(page["larger"], (-1, 2)), wanted, rtol=0, atol=TENTH)
+
+
+def test_a_step_has_the_drawings_that_it_shows_and_switches_for_all() -> None:
+    course = read_course([BUILT_IN])[0]
+    for name in course.lessons:
+        lesson = course.lesson(name, "en")
+        for index in range(len(lesson.steps)):
+            scene = lesson.scene_at(index)
+            if not (scene.show or "show" in scene.controls):
+                continue
+            data = figure_of(step_figure(lesson, index), ENGLISH)["drawings"]
+            switches = [each["name"] for each in data["switches"]]
+            assert data["shown"] == [*scene.show] and {*scene.show} <= {*switches}
+            assert ("show" in scene.controls) == (switches == [*SWITCHES])
