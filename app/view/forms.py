@@ -55,7 +55,8 @@ def setting_field(
             FormOption(value=each, label=option_label(name, each, words)) for each in offered
         ),
         needs=tuple(
-            FormNeed(name=need.name, of=need.of, others=need.others) for need in spec.needs
+            FormNeed(name=need.name, of=need.of, others=tuple(n.name for n in need.instead))
+            for need in spec.needs
         ),
         default=default,
         mark=mark if mark != default else None,
