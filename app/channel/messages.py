@@ -366,12 +366,10 @@ class FormNeed(Struct, frozen=True, omit_defaults=True):
 
     Attributes:
         of: none: any but 0, "off" and false.
-        others: names of fields of which each suffices in its place.
     """
 
     name: str
     of: tuple[FieldValue, ...] = ()
-    others: tuple[str, ...] = ()
 
 
 class FormOption(Struct, frozen=True, omit_defaults=True, kw_only=True):
@@ -394,6 +392,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
         help: what one will see, in a sentence.
         low, high, step: range of a number.
         factor: how many of `unit` make one unit of the value.
+        needs: what it needs in order to act: of each, one suffices.
         on: the number to which a switch sets it, if 0 is off.
         default: to which one goes back; None: there is no way back.
         mark: the value of a lesson's step.
@@ -415,7 +414,7 @@ class FormField(Struct, frozen=True, omit_defaults=True, kw_only=True):
     scale: Literal["linear", "log"] = "linear"
     on: float | None = None
     options: tuple[FormOption, ...] = ()
-    needs: tuple[FormNeed, ...] = ()
+    needs: tuple[tuple[FormNeed, ...], ...] = ()
     default: FieldValue | None = None
     mark: FieldValue | None = None
     act: Mapping[str, Any] | None = None

@@ -2,16 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, Literal
 
 from onpath.app.channel.messages import FieldValue, FormField, FormNeed, FormOption
 from onpath.lessons.labels import option_label, parameter_help, parameter_label, parameter_unit
 from onpath.lessons.words import Words
+from onpath.models.closed_loop.lab_settings import SETTINGS
 from onpath.models.control.laws.registry import LAWS, law_named
 from onpath.models.control.settable import specs
-from onpath.models.systems.parameter_specs import Spec
+from onpath.models.systems.parameter_specs import Need, Spec
 from onpath.models.systems.parameters import Parameters
+
+Place = Literal["lab", "step", "figure"]
+ELSEWHERE = ("rate", "presenting", "phase")
+"""Settings of the lab that stand beside its plots, or with the page's look."""
+
+
+def fields_of(
+    place: Place, kind: type[Parameters], laws: Iterable[str], named: Sequence[str] = ()
+) -> list[str]:
+    """The settings that a place shows: of those that can act on a robot under some laws, the lab
+    has all, and a step or a figure those that it names.
+
+    Args:
+        kind: of the robot's parameters.
+    """
+    acts = acting(kind, laws)
+    known = {*acts, *SETTINGS}
+    for name, setting in SETTINGS.items():
+        if all({one.name for one in _instead(need)} & known for need in setting.spec.needs):
+            acts.append(name)
+    if place == "lab":
+        return [name for name in acts if name not in ELSEWHERE]
+    return [name for name in dict.fromkeys(named) if name in acts]
 
 
 def acting(kind: type[Parameters], laws: Iterable[str]) -> list[str]:
@@ -54,14 +78,18 @@ def setting_field(
         options=tuple(
             FormOption(value=each, label=option_label(name, each, words)) for each in offered
         ),
-        needs=tuple(
-            FormNeed(name=need.name, of=need.of, others=tuple(n.name for n in need.instead))
-            for need in spec.needs
-        ),
+        needs=tuple(tuple(_instead(need)) for need in spec.needs),
         default=default,
         mark=mark if mark != default else None,
         section=section,
     )
+
+
+def _instead(need: Need) -> Iterator[FormNeed]:
+    """The conditions of which each fulfils a need."""
+    yield FormNeed(name=need.name, of=need.of)
+    for other in need.instead:
+        yield from _instead(other)
 
 
 def drawing_field(name: str, words: Words, mark: bool | None = None) -> FormField:

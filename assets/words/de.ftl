@@ -1627,6 +1627,21 @@ form-no_number = Das ist keine Zahl. Möglich ist { $low } bis { $high }.
 form-range = Möglich ist { $low } bis { $high }.
 form-differs = { $value } wurde nicht übernommen.
 form-use = Verwenden
+form-group_setup = Aufbau
+form-group_laws = Gesetze
+form-group_hand = Hand und Bremse
+form-group_gains = Verstärkungen
+form-group_along = Bewegung längs der Bahn
+form-group_reality = Wirklichkeit
+form-group_view = Ansicht
+form-group_robot = Dieser Roboter
+form-ideal = ideal
+form-section_motors = Motoren
+form-section_sensors = Sensoren
+form-section_friction = Reibung
+form-section_computer = Rechner
+form-section_load = Last
+form-section_model = Fehler des Modells
 
 ## Eine Abbildung ohne Server
 

@@ -1219,6 +1219,21 @@ form-no_number = That is not a number. It can be from { $low } to { $high }.
 form-range = It can be from { $low } to { $high }.
 form-differs = { $value } was not taken.
 form-use = Use
+form-group_setup = Set-up
+form-group_laws = Laws
+form-group_hand = Hand and brake
+form-group_gains = Gains
+form-group_along = Motion along the path
+form-group_reality = Reality
+form-group_view = View
+form-group_robot = This robot
+form-ideal = ideal
+form-section_motors = Motors
+form-section_sensors = Sensors
+form-section_friction = Friction
+form-section_computer = Computer
+form-section_load = Load
+form-section_model = Errors of the model
 
 ## A figure without a server
 

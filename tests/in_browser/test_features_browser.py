@@ -30,7 +30,7 @@ NOT = ("no", "-", "fixed")
 """How a cell begins that denies something."""
 OWN = "across = -K1*xi - K2*dxi; along = 9*(2 - dtheta)"
 
-NAMED = "button, a, summary, label, option, h2, legend, canvas, [role=slider]"
+NAMED = "button, a, summary, label, input, option, h2, legend, canvas, [role=slider]"
 SEEN = """([scope, marks, named]) => {
     const shown = each => each.checkVisibility() && !each.matches(":empty:not(canvas, input)")
     const all = [...document.querySelectorAll(scope)]

@@ -15,8 +15,6 @@ export interface FormNeed {
     name: string
     /** none: any but 0, "off" and false. */
     of?: (number | string | boolean)[]
-    /** names of fields of which each suffices in its place. */
-    others?: string[]
 }
 
 /** A row of a form. Its value is told by its name; a note's is what it says. */
@@ -40,7 +38,8 @@ export interface FormField {
     /** the number to which a switch sets it, if 0 is off. */
     on?: number | null
     options?: FormOption[]
-    needs?: FormNeed[]
+    /** what it needs in order to act: of each, one suffices. */
+    needs?: FormNeed[][]
     /** to which one goes back; None: there is no way back. */
     default?: number | string | boolean | null
     /** the value of a lesson's step. */

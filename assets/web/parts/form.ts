@@ -2,9 +2,9 @@
 // its rows, and app/view/forms.py for what it is told.
 
 import { made, tell } from "../core/dom"
-import type { FormGroup, FormMessage, FormNeed } from "../core/form_data"
+import type { FormField, FormGroup, FormMessage, FormNeed } from "../core/form_data"
 import { said } from "../core/words"
-import { rowOf, same, type FormHost, type Row, type RowForm, type Value } from "./fields"
+import { rowOf, same, type FormHost, type Row, type RowForm } from "./fields"
 
 export type { FormHost } from "./fields"
 
@@ -91,13 +91,13 @@ export class Form implements RowForm {
     readonly row = (name: string): Row | undefined => this.rows.get(name)
 
     /** Whether a field with these conditions acts. */
-    acts(needs: readonly FormNeed[] = []): boolean {
-        const value = (name: string) => this.rows.get(name)?.value ?? this.host.value(name)
-        const meets = (need: FormNeed, given: Value) => (need.of?.length ? need.of.some(each => same(each, given)) : Boolean(given) && given !== "off")
-        return needs.every(need => {
-            const given = [need.name, ...need.others ?? []].map(value).filter(each => each !== undefined)
-            return !given.length || given.some(each => meets(need, each))
-        })
+    acts(needs: FormField["needs"] = []): boolean {
+        const meets = ({ name, of }: FormNeed) => {
+            const value = this.rows.get(name)?.value ?? this.host.value(name)
+            if (value === undefined) return true
+            return of?.length ? of.some(each => same(each, value)) : Boolean(value) && value !== "off"
+        }
+        return needs.every(each => each.some(meets))
     }
 
     /** Bring a field into view, with the focus on it; returns whether the form has it. */
@@ -168,7 +168,7 @@ class GroupView {
         const rows = new Map<string, HTMLElement[]>()
         for (const field of group.fields) {
             const section = field.section ?? "", element = form.row(field.name)!.element
-            element.classList.toggle("under", group.fields.some(each => field.needs?.some(need => [need.name, ...need.others ?? []].includes(each.name))))
+            element.classList.toggle("under", group.fields.some(each => field.needs?.flat().some(need => need.name === each.name)))
             rows.set(section, [...(rows.get(section) ?? []), element])
         }
         const parts = [...rows].flatMap(([section, elements]) => {

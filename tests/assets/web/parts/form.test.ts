@@ -12,7 +12,7 @@ const K1: FormField = { name: "K1", kind: "number", label: "K1 across", symbol: 
 const SPEED: FormField = { name: "speed", kind: "number", label: "Speed", low: -20, high: 20, step: 0.1, default: 2, mark: 3 }
 const LIMIT: FormField = { name: "limit", kind: "number", label: "Limit", low: 0, high: 5, step: 0.05, on: 0.5, default: 0 }
 const CUT: FormField = {
-    name: "cut", kind: "choice", label: "At the limit", default: "slow", needs: [{ name: "limit" }],
+    name: "cut", kind: "choice", label: "At the limit", default: "slow", needs: [[{ name: "limit" }]],
     options: [{ value: "slow", label: "slow down" }, { value: "cut", label: "cut" }],
 }
 const TURNED: FormField = { name: "turned", kind: "number", label: "Angle", unit: "°", low: -Math.PI, high: Math.PI, step: Math.PI / 36, factor: 180 / Math.PI, default: 0 }
