@@ -272,7 +272,16 @@ export class RemoteEngine implements Engine {
         this.tell("state")
     }
 
+    /** Take a message; the page goes on after one that it cannot use. */
     private hear(message: LabMessage): void {
+        try {
+            this.take(message)
+        } catch (error) {
+            console.warn(`a message that cannot be used: ${String(error)}`)
+        }
+    }
+
+    private take(message: LabMessage): void {
         this.heard++
         if (!this.connected) {
             this.connected = true
@@ -317,18 +326,20 @@ export class RemoteEngine implements Engine {
     private frame({ rows, running, past, anew, fields, straight }: FrameMessage): void {
         const { samples } = this
         const { held, pulled } = this.flags
+        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
+        const fresh = rows.map((row, i) => this.sample(row, straight?.[i - late] ?? null))
+        if (!fresh.length) return
         let gone = 0
         if (anew) {
             samples.length = 0
             let first = 0
             this.fields = new Map((fields ?? []).map(([name, size, unit]) => [name, { first: (first += size) - size, size, unit }]))
         }
-        while (samples.length && samples[samples.length - 1]!.time >= rows[0]![0]! / TIME) {
+        while (samples.length && samples[samples.length - 1]!.time >= fresh[0]!.time) {
             samples.pop()
             gone++
         }
-        const late = rows.length - (straight?.length ?? 0) // rows before those with a straight link
-        for (const [i, row] of rows.entries()) samples.push(this.sample(row, straight?.[i - late] ?? null))
+        samples.push(...fresh)
         const old = samples.findIndex(sample => sample.time >= this.present.time - SECONDS)
         if (old > 64) samples.splice(0, old)
         const before = this.state

@@ -1,0 +1,78 @@
+import { TEXTS } from "../page"
+import assert from "node:assert/strict"
+import { test } from "node:test"
+import type { RemoteEngine } from "../../../../assets/web/channel/channel"
+import type { LessonMessage } from "../../../../assets/web/channel/messages"
+import { noNotes } from "../../../../assets/web/lessons/notes"
+import { Column } from "../../../../assets/web/parts/column"
+import { chance } from "../random"
+
+const PAGER = `<div class="ways"><button type="button" data-send='[{"do":"GoToStep","by":1},{"do":"PlayStep"}]'>Next</button></div>`
+const part = (number: number, inside: string) => `<div data-block="${number}">${inside}</div>`
+const FIELD = part(2, "<p>What do you see?</p><textarea></textarea><button type=button>Keep</button>")
+
+function opened(): { column: Column; sent: unknown[]; hear: (changes?: Partial<LessonMessage>) => void } {
+    const sent: unknown[] = [], ended = new AbortController().signal
+    const engine = { connected: true, path: { lines: [] }, send: (message: unknown) => sent.push(message) } as unknown as RemoteEngine
+    const column = new Column(TEXTS, engine, () => true, () => {}, ended)
+    document.body.replaceChildren(column.element)
+    let version = 0
+    const hear = (changes: Partial<LessonMessage> = {}) => column.hear({
+        is: "lesson", lesson: "a", version: ++version, index: 0, ended: false, test: false, playing: false, symbols: {}, head: "<p>1. A</p>", pager: PAGER,
+        sections: { "0": `<h2 id="title-1">One</h2>${FIELD}${part(3, "<p>Two</p>")}` },
+        steps: [{ kind: "play", optional: false, running: true, script: null, figure: -1, values: { lengths: [], paths: [] }, blocks: Array.from({ length: 5 }, () => ({ kind: "text", links: [] })) }],
+        notes: noNotes(), charts: [], ...changes,
+    } as LessonMessage)
+    return { column, sent, hear }
+}
+
+const words = () => document.querySelector(".step.open .words")!
+
+test("a column without a lesson is not there", () => {
+    const { column, hear } = opened()
+    hear({ lesson: "" })
+    assert.ok(column.element.hidden && !column.open)
+    hear()
+    assert.ok(!column.element.hidden && column.open)
+    hear({ lesson: "" })
+    assert.ok(column.element.hidden)
+})
+
+test("what has not changed stays as it is, with what is typed in it and the focus", () => {
+    const { hear } = opened()
+    hear()
+    const field = words().querySelector("textarea")!
+    field.value = "half a sent"
+    field.focus()
+    const draw = chance(3)
+    for (let k = 0; k < 40; k++) {
+        const some = (numbers: number[]) => numbers.filter(() => draw() < 0.7).map(number => part(number, `<p>${Math.floor(3 * draw())}</p>`))
+        const [before, others] = [some([0, 1]), some([3, 4])] as const
+        hear({ sections: { "0": `<h2 id="title-1">One</h2>${before.join("")}${FIELD}${others.join("")}` }, pager: PAGER + (k % 2 ? "<p>more</p>" : "") })
+        assert.ok(words().querySelector("textarea") === field)
+        assert.equal(field.value, "half a sent")
+        assert.ok(document.activeElement === field, `${k}`)
+        const shown = [...words().querySelectorAll("[data-block]")].map(each => each.outerHTML.replace(/<\/textarea>.*/, ""))
+        assert.equal(shown.length, before.length + 1 + others.length)
+    }
+})
+
+test("a button that is replaced by its successor keeps the focus", () => {
+    const { hear } = opened()
+    hear({ sections: { "0": `<h2>One</h2>${part(0, "<button type=button>Hint 1</button>")}` } })
+    words().querySelector("button")!.focus()
+    hear({ sections: { "0": `<h2>One</h2>${part(0, "<p>The hint.</p><button type=button>Hint 2</button>")}` } })
+    assert.equal(document.activeElement?.textContent, "Hint 2")
+})
+
+test("a button sends what stands in it, and keys turn pages unless they are typed", () => {
+    const { sent, hear } = opened()
+    hear()
+    document.querySelector<HTMLElement>(".pager [data-send]")!.click()
+    assert.deepEqual(sent, [{ do: "GoToStep", by: 1 }, { do: "PlayStep" }])
+    sent.length = 0
+    for (const target of [words().querySelector("textarea")!, document.body])
+        target.dispatchEvent(new KeyboardEvent("keydown", { key: "PageDown", bubbles: true, cancelable: true }))
+    assert.deepEqual(sent[0], { do: "GoToStep", by: 1 })
+    assert.equal(sent.length, 1)
+})
