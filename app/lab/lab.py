@@ -153,20 +153,28 @@ class Lab:
             Processor time of the commands in this thread, [s]; what it waits for others is not
             the user's doing.
         """
-        begun, applied = thread_time(), 0
-        while self.has_commands and not self.simulation.has_to_step:
-            if thread_time() - begun >= most:
-                break
-            self._apply_next()
-            applied += 1
-        is_behind = self._part is not None or self.simulation.lacks_loops
-        is_behind = is_behind or (self.has_commands and not applied)
-        self._waiting = self._waiting + 1 if is_behind else 0
+        begun = thread_time()
+        self._apply_commands(begun + most)
         if self._part is not None:
             return thread_time() - begun
         if not self.frozen:
             self._play()
         taken = thread_time() - begun
+        self._follow()
+        return taken
+
+    def _apply_commands(self, until: float) -> None:
+        """Apply queued commands until a processor time, [s], or until one has to wait for loops."""
+        applied = 0
+        while self.has_commands and not self.simulation.has_to_step and thread_time() < until:
+            self._apply_next()
+            applied += 1
+        is_behind = self._part is not None or self.simulation.lacks_loops
+        is_behind = is_behind or (self.has_commands and not applied)
+        self._waiting = self._waiting + 1 if is_behind else 0
+
+    def _follow(self) -> None:
+        """Do what follows from the frame before: models, lessons, messages, and who watches."""
         self._adopt_identified()
         self._end_level_set()
         self.lessons.follow(self)
@@ -174,7 +182,6 @@ class Lab:
             self.clear_message()
         if self.watch is not None:
             self.watch(self)
-        return taken
 
     def _apply_next(self) -> None:
         """Apply the next part of a command, or begin the next command."""
