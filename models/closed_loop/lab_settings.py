@@ -72,10 +72,13 @@ def own(declared: Any, *, kept: Kept = "code", by: Role = "lab", of_robot: bool 
         kept, by, of_robot: see `Setting`.
 
     Raises:
-        ValueError: it is kept in share codes, which anybody makes, and not everybody may set it.
+        ValueError: it is kept in share codes, which anybody makes, and not everybody may set it; or
+            it is a robot's, whose settings are kept in set-ups only.
     """
     if kept == "code" and by != "lab":
         raise ValueError("whoever makes a share code can set what it keeps")
+    if kept == "lab" and of_robot:
+        raise ValueError("the settings of single robots are kept in set-ups")
     spec, default = declared.metadata["spec"], declared.default
     setting = Setting(spec=spec, default=default, by=by, kept=kept, of_robot=of_robot)
     return dataclasses.field(default=default, metadata={"setting": setting})

@@ -13,7 +13,7 @@ from onpath.models.closed_loop.simulation import brake_at
 from onpath.models.paths.curves import Curve
 from onpath.models.paths.frames import Frame
 from onpath.models.systems.forces import wall
-from onpath.models.systems.parameter_specs import out_of_range, unknown_name
+from onpath.models.systems.parameter_specs import out_of_range
 from onpath.models.systems.robots import Robot
 
 ALONG = "along"
@@ -26,17 +26,6 @@ def in_plane(frame: Frame, z: Array) -> Array:
     """A vector of the path's plane, (2,), as a unit vector of the output space, (p,)."""
     vector = frame.lift(z) - frame.lift(np.zeros(2))
     return vector / np.linalg.norm(vector)
-
-
-def check_direction(direction: str) -> str:
-    """The name of a direction.
-
-    Raises:
-        CodedError: it is none of `DIRECTIONS`.
-    """
-    if direction not in DIRECTIONS:
-        raise unknown_name(direction, list(DIRECTIONS), "direction")
-    return direction
 
 
 def brake_in(

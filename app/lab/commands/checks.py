@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 
 from onpath.models.arrays import Array
 from onpath.models.control.sides import SIDES
 from onpath.models.errors import CodedError
-from onpath.models.systems.parameter_specs import out_of_range, unknown_name
+from onpath.models.systems.parameter_specs import unknown_name
 
 
 def finite(value: float) -> float:
@@ -26,18 +25,6 @@ def finite(value: float) -> float:
     if not math.isfinite(result):
         raise CodedError("error.not_a_number")
     return result
-
-
-def within(what: str, value: float, bounds: Sequence[float]) -> float:
-    """Check that a number is between the first and the last of `bounds`.
-
-    Raises:
-        ValueError: it is out of range or not finite.
-    """
-    number = finite(value)
-    if not bounds[0] <= number <= bounds[-1]:
-        raise out_of_range(what, f"{number:g}", f"{bounds[0]:g}", f"{bounds[-1]:g}")
-    return number
 
 
 def point(value: Array, size: int) -> Array:
