@@ -66,7 +66,6 @@ STATES = {
 CONTROLS = {
     "path": ("path", "rise"),
     "laws": tuple(name for side in SIDES for name in (side, f"typed_{side}")),
-    "direction": ("hold_direction",),
     "wall": tuple(name for name, each in SETTINGS.items() if each.spec.group == "wall"),
     "start": tuple(name for name, each in SETTINGS.items() if each.spec.group == "start"),
     "flexible": ("output", "alpha", "larger"),

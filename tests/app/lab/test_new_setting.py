@@ -76,7 +76,7 @@ messages._resource = with_new_words
 @pytest.mark.thorough
 def test_a_setting_is_declared_once_and_is_everywhere() -> None:
     before = {
-        lab_settings.__name__: ("    phase: bool = own(", SETTING),
+        lab_settings.__name__: ("    presenting: bool = own(", SETTING),
         parameters.__name__: ("    coulomb: float = number(", PARAMETER),
     }
     script = ADD.format(before=before, german=GERMAN) + textwrap.dedent(EVERYWHERE)
@@ -103,6 +103,7 @@ from onpath.app.lab.setups.step_setup import setup_of_scene
 from onpath.app.lab.snapshots.take_snapshot import take_page_snapshot
 from onpath.app.server.new_lab import new_lab as newcomers_lab
 from onpath.app.view.forms import setting_field
+from onpath.app.view.lab_form import form_of, refusals_in, values_in
 from onpath.lessons.action_schema import StepSetup
 from onpath.lessons.course import NO_LESSONS
 from onpath.lessons.vocabulary.lists import names_markdown
@@ -126,7 +127,8 @@ assert shown(lab) == {"trails": 1.5, "wind": 0.0}
 do(lab, *[c.Set(name, value) for name, value in NEW.items()])
 assert shown(lab) == NEW and not lab.refused
 do(lab, *[c.Set(name, 99.0) for name in NEW])
-assert shown(lab) == NEW and lab.refused.keys() == NEW.keys()
+snapshot = take_page_snapshot(lab, 1.0)
+assert shown(lab) == NEW and snapshot.refused.keys() == NEW.keys()
 
 # In the form, in both languages.
 for name, spec in lab_specs(FIVE_BAR.parameters).items():
@@ -138,6 +140,16 @@ for name, spec in lab_specs(FIVE_BAR.parameters).items():
         assert (english.low, english.high, english.unit) == (spec.low, spec.high, spec.unit)
         assert german.label == {"trails": "Spuren", "wind": "Wind"}[name]
         assert german.help.startswith(("wie lang", "ein Wind"))
+
+# In the form of the lab, and of a lesson's step that names it.
+setup = StepSetup(controls=tuple(NEW), set=NEW)
+for step, marks in ((None, {}), (setup, NEW)):
+    form = form_of(snapshot, step, Words("de"))
+    fields = {each.name: each for group in form.groups for each in group.fields if each.name in NEW}
+    assert fields.keys() == NEW.keys()
+    assert {name: each.mark for name, each in fields.items() if each.mark is not None} == marks
+shows = values_in(snapshot, {}, (), Words("de"))
+assert {name: shows[name] for name in NEW} == NEW and refusals_in(snapshot).keys() == NEW.keys()
 
 # In a share code.
 other = new_lab()
