@@ -241,7 +241,7 @@ class Tab:
 
     def _canvas(self) -> dict[str, float]:
         """Position and size of the scene in the window, [px]."""
-        box = self.page.locator("canvas").first.bounding_box()
+        box = self.page.locator("canvas[data-engine]").first.bounding_box()
         assert box is not None
         return {"x": box["x"], "y": box["y"], "width": box["width"], "height": box["height"]}
 

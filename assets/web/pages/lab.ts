@@ -67,7 +67,7 @@ class Face {
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo, this.strip.menu.element)
         const head = made("div", "head", this.transport.element, this.clock)
-        this.column = new Column(texts, engine, () => !UPRIGHT.matches, symbol => this.light(symbol), signal)
+        this.column = new Column(texts, engine, () => true, symbol => this.light(symbol), signal)
         this.element = made("section", "", head, made("div", "numbers", ...this.readings), this.strip.element, this.column.beneath)
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
