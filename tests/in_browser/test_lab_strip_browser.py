@@ -51,7 +51,8 @@ COLLISIONS = """() => {
     const parts = ".handle span, summary, button, .value, .whose, .clock"
     for (const each of document.querySelectorAll(`#op-strip :is(${parts})`)) {
         const {left, top, right, bottom, width} = each.getBoundingClientRect()
-        if (!each.checkVisibility() || each.closest("details")?.clientWidth === 1) continue
+        if (!each.checkVisibility({visibilityProperty: true})) continue
+        if (each.closest("details")?.clientWidth === 1) continue
         found.push([each.textContent || each.className, left, top, right, bottom])
     }
     const shared = (a, b, k) => Math.min(a[k + 2], b[k + 2]) - Math.max(a[k], b[k])
@@ -62,7 +63,7 @@ COLLISIONS = """() => {
 BOXES = """() => {
     const box = (each) => each.getBoundingClientRect().toJSON()
     const seen = [...document.querySelectorAll("#op-strip button, #op-strip select")].filter(
-        (each) => each.offsetParent !== null)
+        (each) => each.checkVisibility({visibilityProperty: true}))
     return {
         scene: box(document.querySelector("canvas[data-engine]")),
         strip: box(document.querySelector("#op-strip")),
@@ -76,7 +77,8 @@ BOXES = """() => {
 COVERED = """() => [...document.querySelectorAll("#op-strip button, #root button")].filter(each => {
     const box = each.getBoundingClientRect()
     const [x, y] = [(box.left + box.right) / 2, (box.top + box.bottom) / 2]
-    if (!each.checkVisibility() || x < 0 || y < 0 || x > innerWidth || y > innerHeight) return false
+    if (!each.checkVisibility({visibilityProperty: true})) return false
+    if (x < 0 || y < 0 || x > innerWidth || y > innerHeight) return false
     const found = document.elementFromPoint(x, y)
     const shown = each.closest(".mantine-ScrollArea-viewport")?.getBoundingClientRect()
     if (shown && (y < shown.top || y > shown.bottom)) return false
@@ -145,7 +147,7 @@ def test_a_lesson_is_read_beside_the_robots_and_above_the_strip(tab: Tab) -> Non
     expect(column).to_be_hidden()
     tab.ask(c.OpenLesson(next(iter(tab.lab.lessons.course.lessons))))
     expect(column).to_be_visible()
-    read, scene = column.bounding_box(), tab.page.locator("canvas").first.bounding_box()
+    read, scene = column.bounding_box(), tab.page.locator("canvas[data-engine]").bounding_box()
     assert read and scene and read["width"] > 300 and scene["width"] > 300
     assert (
         read["x"] + read["width"] <= scene["x"] + 1 or scene["x"] + scene["width"] <= read["x"] + 1
