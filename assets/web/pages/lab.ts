@@ -72,7 +72,6 @@ class Face {
         this.element.id = "op-strip"
         this.element.ariaLabel = said(texts, "chart.title")
         this.voice = new Voice(engine, texts, () => UPRIGHT.matches, signal)
-        head.prepend(this.voice.invitation)
         // Before viser's panel, so that Tab and screen readers come to them first.
         this.shell = OURS ? new Shell(engine, texts, signal, reopen) : null
         document.body.prepend(this.stage.element, this.voice.element, this.column.element, this.element, ...this.shell?.elements ?? [],

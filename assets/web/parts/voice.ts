@@ -31,8 +31,7 @@ export class Voice {
     private readonly message: HTMLElement
     private readonly invited = made("div", "")
     private readonly act: HTMLButtonElement
-    /** What newcomers are invited to do; a part of the strip, where it covers nothing. */
-    readonly invitation: HTMLElement
+    private readonly invitation: HTMLElement // what newcomers are invited to do
     private told = "" // a message that was closed or replaced by a summary does not come back
     private messages: number // shown so far: the same one may be shown again
     private summaries: number
@@ -64,14 +63,14 @@ export class Voice {
         this.message.id = "op-message"
         this.act = this.button("op-act", "", () => this.accept())
         const skip = this.button("op-quiet", said(texts, "invite.skip"), () => this.skip())
-        this.invitation = made("div", "", this.invited, this.act, skip)
+        this.invitation = made("div", "op-over-scene", this.invited, this.act, skip)
         this.invitation.id = "op-invitation"
         this.invited.ariaLive = "polite"
         this.invited.id = "op-invited"
         this.act.setAttribute("aria-describedby", this.invited.id)
         this.invited.tabIndex = -1
         this.message.hidden = this.invitation.hidden = true
-        this.element.append(this.message, this.region)
+        this.element.append(this.invitation, this.message, this.region)
         new DistanceTones(engine, ended)
         engine.on(change => change === "state" && this.show(), ended)
         ended.addEventListener("abort", () => this.element.remove())
