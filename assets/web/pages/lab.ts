@@ -62,7 +62,7 @@ class Face {
         this.transport = new Transport(texts, engine, ["hold", "run", "step", "reset"], signal, RATES)
         this.readings = indices.map(i => made("div", `reading side${i}`, made("span", "value", this.numbers[i]!, " mm"), made("span", "whose")))
         for (const reading of this.readings) reading.role = "group"
-        this.stage = new OverStage(engine, texts, this.sketch.element, this.overlay.element)
+        this.stage = new OverStage(engine, texts, this.overlay.element, this.sketch.element)
         Object.assign(this.undo, { type: "button", textContent: said(texts, "past.undo"), title: said(texts, "past.undo_hint") })
         this.undo.addEventListener("click", () => engine.send({ do: "UndoGoOn" }))
         this.transport.element.append(this.undo, this.strip.menu.element)
